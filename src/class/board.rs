@@ -1,7 +1,7 @@
 //! The board: the class on a second terminal, for the teacher. Seats, votes, notes, and the clock.
 
 use super::folder::{ClassFolder, ClassState, VoteStage};
-use super::votes::{SeatStatus, Tally, present, sittings};
+use super::votes::{SeatStatus, Tally, present, seat_statuses};
 use super::{login, unix_ms};
 use crate::engine::text::number::counted;
 use crate::engine::text::wrap::{columns, wrapped};
@@ -11,7 +11,7 @@ use chrono::Local;
 
 /// The lines of the board, at most `width` columns wide.
 pub fn lines(folder: &ClassFolder, width: usize) -> Vec<String> {
-    let (seats, unread) = match sittings(folder) {
+    let (seats, unread) = match seat_statuses(folder) {
         Ok(seats) => (seats, None),
         Err(reason) => (Vec::new(), Some(reason)),
     };
@@ -19,8 +19,9 @@ pub fn lines(folder: &ClassFolder, width: usize) -> Vec<String> {
     let mut board = vec![format!("{time} · {}", present(&seats).1)];
     board.extend(unread);
     board.extend(seats.iter().filter_map(|it| it.trouble.clone()));
-    let waiting = login::waiting(folder, unix_ms() / 1000).into_iter();
-    board.extend(waiting.map(|seat| seat.in_words() + "; k 4 in the teacher's lab ends that"));
+    for seat in login::waiting(folder, unix_ms() / 1000) {
+        board.push(seat.in_words() + "; k 4 in the teacher's lab ends that");
+    }
     if folder.is_full() {
         board.push("the disk is full: what is answered now cannot be kept".to_owned());
     }
@@ -44,13 +45,15 @@ pub fn lines(folder: &ClassFolder, width: usize) -> Vec<String> {
             board.extend(of_seats(&state, &seats, width));
         }
     }
-    board
-        .iter()
-        .flat_map(|line| match columns(line) {
-            fits if fits <= width => vec![line.clone()], // with its blanks
-            _ => wrapped(line, width),
-        })
-        .collect()
+    let mut lines = Vec::new();
+    for line in board {
+        if columns(&line) <= width {
+            lines.push(line); // with its blanks
+        } else {
+            lines.extend(wrapped(&line, width));
+        }
+    }
+    lines
 }
 
 /// The page in words, with the votes on its questions.
@@ -67,32 +70,36 @@ fn of_page(state: &ClassState, seats: &[SeatStatus]) -> Vec<String> {
 /// The votes on `predict`, a round after the other. While a round goes on nobody's choice is shown.
 fn of_rounds(predict: &Predict, state: &ClassState, seats: &[SeatStatus]) -> String {
     let question = state.question(&predict.name);
-    let round_of = |round| {
-        let tally = Tally::of(seats, &state.lesson, predict, round);
-        let (votes, late) = (counted(tally.votes as u64, "vote"), tally.late);
-        let counts = format!("  round {round}: {votes}, {late} late\n");
-        if round == question.round() && question.stage == VoteStage::Counted {
-            return counts;
+    let mut text = String::new();
+    for round in 1..=question.round() {
+        let tally = Tally::count(seats, &state.lesson, predict, round);
+        let votes = counted(tally.votes as u64, "vote");
+        text += &format!("  round {round}: {votes}, {} late\n", tally.late);
+        if round < question.round() || question.stage != VoteStage::Counted {
+            text += &tally.drawn().text();
+            text.extend(tally.advice.map(|advice| advice + "\n"));
         }
-        let drawn = counts + &tally.drawn().text();
-        drawn + &tally.advice.map_or(String::new(), |advice| advice + "\n")
-    };
-    (1..=question.round()).map(round_of).collect()
+    }
+    text
 }
 
 /// The seats in columns.
 fn of_seats(state: &ClassState, seats: &[SeatStatus], width: usize) -> Vec<String> {
-    let cell = |sitting: &SeatStatus| {
-        let place = sitting.lessons.get(&state.lesson);
+    let mut cells = Vec::new();
+    for seat in seats {
+        let place = seat.lessons.get(&state.lesson);
         let votes = place.map_or(0, |place| place.predictions.all().count());
-        let votes = counted(votes as u64, "vote");
-        format!("{}, {votes}", sitting.in_words(state))
-    };
-    let cells: Vec<_> = seats.iter().map(cell).collect();
+        cells.push(format!(
+            "{}, {}",
+            seat.in_words(state),
+            counted(votes as u64, "vote")
+        ));
+    }
     let widest = cells.iter().map(|cell| columns(cell)).max().unwrap_or(0) + 2;
-    let rows = cells.chunks((width / widest).max(1)).map(|row| {
-        let row: String = row.iter().map(|cell| format!("{cell:<widest$}")).collect();
-        row.trim_end().to_owned()
-    });
-    rows.collect()
+    let mut rows = Vec::new();
+    for row in cells.chunks((width / widest).max(1)) {
+        let padded: String = row.iter().map(|cell| format!("{cell:<widest$}")).collect();
+        rows.push(padded.trim_end().to_owned());
+    }
+    rows
 }

@@ -2,7 +2,7 @@
 
 use super::{ago, unix_ms};
 use crate::engine::text::printable::PrintablePath;
-use crate::lab::playback::pace::Speed;
+use crate::lab::Snapshot;
 use crate::lab::storage::confined::SESSIONS;
 use crate::lab::storage::shared;
 use crate::lessons::KeptNumbers;
@@ -86,20 +86,11 @@ pub enum VoteStage {
 /// The run that the class follows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PresentedRun {
-    /// The name under which it was opened.
-    pub name: String,
-    pub step: u64,
-    /// When it ends, s of the run: an edit of the time step holds it, and the run file does not say it.
-    pub end_s: f64,
-    /// When it stood there, ms since 1970.
+    #[serde(flatten)]
+    pub snapshot: Snapshot,
+    /// When it was at the snapshot's step, ms since 1970.
     pub at_ms: u64,
     pub is_running: bool,
-    pub speed: Speed,
-    pub exact: bool,
-    /// How it is shown, as `[view]` says it.
-    pub look: toml::Table,
-    /// The run file.
-    pub run: String,
 }
 
 impl ClassFolder {
@@ -156,19 +147,19 @@ impl ClassFolder {
     /// When it cannot be read, or another version has written it.
     pub fn state(&self) -> Result<Option<ClassState>, String> {
         let path = self.state_file();
-        let unread = |error: &dyn std::fmt::Display| format!("{}: {error}", PrintablePath(&path));
-        let read = shared::read(&path, LONGEST_STATE).map_err(|error| unread(&error))?;
+        let damaged = || format!("{}: is damaged", PrintablePath(&path));
+        let read = shared::read(&path, LONGEST_STATE)
+            .map_err(|error| format!("{}: {error}", PrintablePath(&path)))?;
         let Some(text) = read else { return Ok(None) };
-        let table: toml::Table = toml::from_str(&text).map_err(|_| unread(&"is damaged"))?;
+        let table: toml::Table = toml::from_str(&text).map_err(|_| damaged())?;
         let version = table.get("gyrolab").and_then(toml::Value::as_str);
         if version != Some(CLASS_VERSION) {
-            let version = version.unwrap_or("unknown");
             return Err(format!(
-                "the teacher's gyrolab is {version}, this one is {CLASS_VERSION}: both must be the same"
+                "the teacher's gyrolab is {}, this one is {CLASS_VERSION}: both must be the same",
+                version.unwrap_or("unknown")
             ));
         }
-        let state = table.try_into().map_err(|_| unread(&"is damaged"))?;
-        Ok(Some(state))
+        table.try_into().map(Some).map_err(|_| damaged())
     }
 
     /// Publishes `state`.
@@ -230,8 +221,10 @@ impl ClassState {
 
     pub fn question(&self, name: &str) -> QuestionState {
         let questions = self.questions.get(&self.lesson);
-        let question = questions.and_then(|all| all.get(name));
-        question.cloned().unwrap_or_default()
+        questions
+            .and_then(|all| all.get(name))
+            .cloned()
+            .unwrap_or_default()
     }
 
     pub(super) fn question_mut(&mut self, name: &str) -> &mut QuestionState {

@@ -47,16 +47,17 @@ impl WrongCodes {
     /// Reads what the folder holds for the seat `word`. A file that cannot be read counts nothing: the next wrong code
     /// replaces it.
     fn read(folder: &ClassFolder, word: &str) -> Self {
-        let parsed = || {
-            let text = shared::read_of_anyone(&Self::file(folder, word), LONGEST_COUNT);
-            let text = text.ok()??;
-            let (count, at_unix_s) = text.split_once(' ')?;
-            Some(Self {
-                count: count.parse().ok()?,
-                at_unix_s: at_unix_s.parse().ok()?,
-            })
-        };
-        parsed().unwrap_or_default()
+        let text = shared::read_of_anyone(&Self::file(folder, word), LONGEST_COUNT);
+        let parsed = text.ok().flatten().and_then(|text| Self::parse(&text));
+        parsed.unwrap_or_default()
+    }
+
+    fn parse(text: &str) -> Option<Self> {
+        let (count, at_unix_s) = text.split_once(' ')?;
+        Some(Self {
+            count: count.parse().ok()?,
+            at_unix_s: at_unix_s.parse().ok()?,
+        })
     }
 
     fn write(self, folder: &ClassFolder, word: &str) -> Result<(), String> {
@@ -87,13 +88,13 @@ impl WrongCodes {
 ///
 /// # Errors
 /// Why there is none, in words for the student.
-pub fn take(folder: &ClassFolder, typed: &str, now_unix_s: u64) -> Result<(Seat, bool), String> {
-    let typed = typed.trim().to_lowercase();
-    match name_of(&typed) {
-        Some(name) => come_back(folder, &typed, name, now_unix_s).map(|seat| (seat, false)),
-        None if is_name(&typed) => begin(folder, &typed).map(|seat| (seat, true)),
+pub fn claim(folder: &ClassFolder, typed: &str, now_unix_s: u64) -> Result<(Seat, bool), String> {
+    let word = typed.trim().to_lowercase();
+    match name_of(&word) {
+        Some(name) => come_back(folder, &word, name, now_unix_s).map(|seat| (seat, false)),
+        None if is_name(&word) => begin(folder, &word).map(|seat| (seat, true)),
         None => {
-            let shown: String = typed.chars().take(2 * LONGEST_SEAT_NAME).collect();
+            let shown: String = word.chars().take(2 * LONGEST_SEAT_NAME).collect();
             Err(format!("{}: {RULE}", printable(&shown)))
         }
     }
@@ -107,7 +108,7 @@ fn begin(folder: &ClassFolder, name: &str) -> Result<Seat, String> {
     }
     for _ in 0..100 {
         let code = RandomState::new().build_hasher().finish() % CODES;
-        let seat = Seat::of(folder, &format!("{name}-{code:0CODE_DIGITS$}"));
+        let seat = Seat::named(folder, &format!("{name}-{code:0CODE_DIGITS$}"));
         match seat.make() {
             Ok(true) => return Ok(seat),
             Ok(false) => {}
@@ -128,8 +129,8 @@ fn come_back(
     now_unix_s: u64,
 ) -> Result<Seat, String> {
     // One login after the other, so that each is counted. On a file system without locks some may count as one.
-    let turn = File::open(folder.wrong());
-    let turn = turn.map_err(|error| format!("no code can be tried now: {error}"))?;
+    let turn =
+        File::open(folder.wrong()).map_err(|error| format!("no code can be tried now: {error}"))?;
     let _ = turn.lock(); // held until this function returns
     let mut seats = all_seats(folder)?;
     seats.retain(|seat| name_of(&seat.word) == Some(name));
@@ -173,13 +174,13 @@ fn come_back(
 
 /// A seat that accepts no code for a while.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Waiting {
+pub struct WaitingSeat {
     pub word: String,
     pub wrong: WrongCodes,
     wait_s: u64,
 }
 
-impl Waiting {
+impl WaitingSeat {
     /// As the lists of the teacher have it.
     pub fn in_words(&self) -> String {
         let (word, count) = (&self.word, self.wrong.count);
@@ -191,22 +192,22 @@ impl Waiting {
 }
 
 /// Returns the seats that accept no code now.
-pub fn waiting(folder: &ClassFolder, now_unix_s: u64) -> Vec<Waiting> {
-    let entries = fs::read_dir(folder.wrong()).into_iter().flatten().flatten();
-    let words = entries.filter_map(|entry| entry.file_name().into_string().ok());
-    let seats = words.filter(|word| name_of(word).is_some() && Seat::of(folder, word).is_there());
-    let mut waiting: Vec<_> = seats
-        .map(|word| {
-            let wrong = WrongCodes::read(folder, &word);
-            let wait_s = wrong.wait_s(now_unix_s);
-            Waiting {
+pub fn waiting(folder: &ClassFolder, now_unix_s: u64) -> Vec<WaitingSeat> {
+    let mut waiting = Vec::new();
+    for entry in fs::read_dir(folder.wrong()).into_iter().flatten().flatten() {
+        let Ok(word) = entry.file_name().into_string() else {
+            continue;
+        };
+        let wrong = WrongCodes::read(folder, &word);
+        let wait_s = wrong.wait_s(now_unix_s);
+        if wait_s > 0 && name_of(&word).is_some() && Seat::named(folder, &word).is_there() {
+            waiting.push(WaitingSeat {
                 word,
                 wrong,
                 wait_s,
-            }
-        })
-        .filter(|seat| seat.wait_s > 0)
-        .collect();
+            });
+        }
+    }
     waiting.sort_unstable_by(|a, b| a.word.cmp(&b.word));
     waiting
 }

@@ -30,6 +30,7 @@ use crate::lab::action::LessonKey;
 use crate::lessons::Lessons;
 use std::ops::ControlFlow;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
+use toml::Table;
 
 /// How often the files are looked at.
 const CLASS_POLL_INTERVAL: Duration = Duration::from_millis(300);
@@ -37,8 +38,10 @@ const LEAST_WAIT: Duration = Duration::from_millis(10);
 
 /// What a class adds to a lab.
 pub trait ClassRole {
-    /// Takes note of the lab before it is shown.
-    fn begin(&mut self, _lab: &mut Lab) {}
+    /// The state of the lessons with which the lab begins; its session has `kept` this one.
+    fn lessons(&self, kept: Table) -> Table {
+        kept
+    }
 
     /// Brings lab and files up to date; `now` is the time since the lab was opened. Breaks where the lab is to end.
     fn advance(
@@ -51,15 +54,15 @@ pub trait ClassRole {
     }
 
     /// Does what the key of the class stands for.
-    fn act(&mut self, lab: &mut Lab, lessons: &mut Lessons);
+    fn on_class_key(&mut self, lab: &mut Lab, lessons: &mut Lessons);
 
     /// Does what `key` means to the class. Returns whether that is all of it.
-    fn takes(&mut self, _key: LessonKey, _lab: &mut Lab, _lessons: &Lessons) -> bool {
+    fn intercept(&mut self, _key: LessonKey, _lab: &mut Lab, _lessons: &Lessons) -> bool {
         false
     }
 
     /// Takes note of what keys have done.
-    fn acted(&mut self, _lab: &mut Lab, _lessons: &Lessons) {}
+    fn after_keys(&mut self, _lab: &mut Lab, _lessons: &Lessons) {}
 
     /// How long the loop may wait until the files are looked at again.
     fn wait(&self, _now: Duration) -> Duration {
@@ -82,7 +85,7 @@ pub trait ClassRole {
 pub struct NoClass;
 
 impl ClassRole for NoClass {
-    fn act(&mut self, lab: &mut Lab, _lessons: &mut Lessons) {
+    fn on_class_key(&mut self, lab: &mut Lab, _lessons: &mut Lessons) {
         lab.refuse("this is no lab of a class: gyrolab man class says how one begins");
     }
 }

@@ -9,7 +9,7 @@ use crate::lessons::class::KeptLessons;
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::io::{self, ErrorKind};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// It is raised when the form or the meaning of a seat's file changes.
@@ -38,7 +38,7 @@ pub struct Seat {
 /// What the file of a seat holds.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Record {
+pub struct SeatRecord {
     /// The number of its format.
     pub format: u32,
     /// Whether it has stepped aside from a class that follows.
@@ -77,27 +77,33 @@ pub(super) fn name_of(word: &str) -> Option<&str> {
 /// # Errors
 /// When the folder of the seats cannot be read.
 pub fn all_seats(folder: &ClassFolder) -> Result<Vec<Seat>, String> {
-    let unread = |error: io::Error| format!("{}: {error}", PrintablePath(&folder.seats()));
-    let entries = match fs::read_dir(folder.seats()) {
-        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
-        entries => entries.map_err(unread)?,
+    let mut words = match words_in(&folder.seats()) {
+        Err(error) if error.kind() == ErrorKind::NotFound => Vec::new(),
+        Err(error) => return Err(format!("{}: {error}", PrintablePath(&folder.seats()))),
+        Ok(words) => words,
     };
-    let mut names = Vec::new();
-    for entry in entries {
-        let entry = entry.map_err(unread)?;
+    words.sort_unstable();
+    Ok(words.iter().map(|it| Seat::named(folder, it)).collect())
+}
+
+/// The words of the seats in the folder `seats`.
+fn words_in(seats: &Path) -> io::Result<Vec<String>> {
+    let mut words = Vec::new();
+    for found in fs::read_dir(seats)? {
+        let entry = found?;
         let is_folder = entry.file_type().is_ok_and(|it| it.is_dir());
-        let name = entry.file_name().into_string();
-        names.extend(
-            name.ok()
-                .filter(|name| is_folder && name_of(name).is_some()),
-        );
+        if let Ok(word) = entry.file_name().into_string()
+            && is_folder
+            && name_of(&word).is_some()
+        {
+            words.push(word);
+        }
     }
-    names.sort_unstable();
-    Ok(names.iter().map(|name| Seat::of(folder, name)).collect())
+    Ok(words)
 }
 
 impl Seat {
-    pub(super) fn of(folder: &ClassFolder, word: &str) -> Self {
+    pub(super) fn named(folder: &ClassFolder, word: &str) -> Self {
         Self {
             word: word.to_owned(),
             folder: folder.seats().join(word),
@@ -123,39 +129,41 @@ impl Seat {
     ///
     /// # Errors
     /// When it cannot be read, or another version has written it.
-    pub fn record(&self) -> Result<Record, String> {
+    pub fn record(&self) -> Result<SeatRecord, String> {
         let text = shared::read(&self.file("seat"), LONGEST_SEAT_FILE)
             .map_err(|error| error.to_string())?;
         let Some(text) = text else {
-            return Ok(Record::default());
+            return Ok(SeatRecord::default());
         };
-        let record: Record = toml::from_str(&text).map_err(|_| "is damaged".to_owned())?;
-        let is_own = record.format == SEAT_FORMAT;
-        is_own
-            .then_some(record)
-            .ok_or_else(|| format!("another version of gyrolab wrote it, this is {CLASS_VERSION}"))
+        let record: SeatRecord = toml::from_str(&text).map_err(|_| "is damaged".to_owned())?;
+        if record.format != SEAT_FORMAT {
+            return Err(format!(
+                "another version of gyrolab wrote it, this is {CLASS_VERSION}"
+            ));
+        }
+        Ok(record)
     }
 
     /// What its file holds, with the places in the lessons.
     ///
     /// # Errors
     /// As for [`record`](Self::record), and when the places are damaged; with the name of the seat.
-    pub fn places(&self) -> Result<(Record, KeptLessons), String> {
-        let read = || {
-            let record = self.record()?;
-            let kept = KeptLessons::read(&record.lessons);
-            let kept = kept.map_err(|_| "is damaged".to_owned())?;
-            Ok((record, kept))
-        };
-        read().map_err(|reason: String| format!("the file of the seat {}: {reason}", self.word))
+    pub fn places(&self) -> Result<(SeatRecord, KeptLessons), String> {
+        let read = self
+            .record()
+            .and_then(|record| match KeptLessons::read(&record.lessons) {
+                Ok(kept) => Ok((record, kept)),
+                Err(_) => Err("is damaged".to_owned()),
+            });
+        read.map_err(|reason| format!("the file of the seat {}: {reason}", self.word))
     }
 
-    pub fn save(&self, record: &Record) -> Result<(), String> {
-        let record = Record {
+    pub fn save(&self, record: &SeatRecord) -> Result<(), String> {
+        let text = toml::to_string(&SeatRecord {
             format: SEAT_FORMAT,
             ..record.clone()
-        };
-        let text = toml::to_string(&record).map_err(|error| error.to_string())?;
+        })
+        .map_err(|error| error.to_string())?;
         if text.len() > LONGEST_SEAT_FILE {
             return Err("the file of this seat is above 1 MB".to_owned());
         }

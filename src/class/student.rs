@@ -1,16 +1,16 @@
 //! A student's lab: it follows the teacher's, and keeps in the files of its seat where it stands and what was voted.
 
-use super::folder::{ClassFolder, ClassState, PresentedRun, QuestionState, VoteStage};
-use super::seat::{Record, Seat};
+use super::folder::{ClassFolder, ClassState, PresentedRun, VoteStage};
+use super::seat::{Seat, SeatRecord};
 use super::{CLASS_POLL_INTERVAL, ClassRole, LEAST_WAIT, unix_ms, votes};
-use crate::engine::scenario::{Document, Scenario};
-use crate::lab::Lab;
+use crate::engine::scenario::Scenario;
 use crate::lab::action::LessonKey;
 use crate::lab::command::{Command, SeekTarget};
 use crate::lab::playback::Playback;
 use crate::lab::playback::pace::Speed;
 use crate::lab::storage::shared;
 use crate::lab::view::HideablePart;
+use crate::lab::{Lab, Snapshot};
 use crate::lessons::page::ClassOverlay;
 use crate::lessons::predictions::Predictions;
 use crate::lessons::taken::OpenLesson;
@@ -28,8 +28,8 @@ pub struct Student {
     folder: ClassFolder,
     seat: Seat,
     /// The word under which this process has the seat open.
-    holds: String,
-    record: Record,
+    lock_token: String,
+    record: SeatRecord,
     /// Whether the record is to be written.
     is_new: bool,
     state: Option<ClassState>,
@@ -38,7 +38,7 @@ pub struct Student {
     is_on: bool,
     /// What of the teacher's run is shown.
     shown: PresentedView,
-    stood: Option<PlaybackSnapshot>,
+    last_snapshot: Option<PlaybackSnapshot>,
     /// Whether a run that was played aside is pinned.
     has_pinned: bool,
     /// Whether a class was on in this lab.
@@ -69,27 +69,26 @@ type PlaybackSnapshot = (
     Option<(String, usize)>,
 );
 
-fn stand(lab: &Lab, lessons: &Lessons) -> PlaybackSnapshot {
+fn playback_snapshot(lab: &Lab, lessons: &Lessons) -> PlaybackSnapshot {
     let playback = &lab.player().playback;
+    let open = lessons.taken();
     (
         lab.runs().depth(),
         playback.step_number(),
         playback.steps_to_go(),
         playback.is_running() || !lab.script().is_done(),
         playback.speed(),
-        lessons
-            .taken()
-            .map(|taken| (taken.lesson.name.clone(), taken.place.page)),
+        open.map(|open| (open.lesson.name.clone(), open.place.page)),
     )
 }
 
 impl Student {
-    /// The lab of `seat`, which this process has open under the word `holds`; `record` is what its file holds.
-    pub fn new(folder: ClassFolder, seat: Seat, holds: String, record: Record) -> Self {
+    /// The lab of `seat`, which this process has open under the word `lock_token`; `record` is what its file holds.
+    pub fn new(folder: ClassFolder, seat: Seat, lock_token: String, record: SeatRecord) -> Self {
         Self {
             folder,
             seat,
-            holds,
+            lock_token,
             record,
             is_new: true,
             ..Self::default()
@@ -109,10 +108,9 @@ impl Student {
     }
 
     /// Takes note of the place in the lessons, with what was answered.
-    fn note(&mut self, lab: &Lab) {
-        if let Some(kept) = &lab.lessons
-            && *kept != self.record.lessons
-        {
+    fn note(&mut self, lessons: &Lessons) {
+        let kept = lessons.kept();
+        if !kept.is_empty() && *kept != self.record.lessons {
             self.record.lessons.clone_from(kept);
             self.is_new = true;
         }
@@ -120,7 +118,7 @@ impl Student {
 
     /// Looks at the files: whether the seat is still this lab's, and what the teacher shows.
     fn look(&mut self, lab: &mut Lab) {
-        if !self.seat.is_held(&self.holds) {
+        if !self.seat.is_held(&self.lock_token) {
             self.ended =
                 Some("this seat was opened in another lab, which goes on from here, or it is gone");
         }
@@ -159,24 +157,27 @@ impl Student {
     }
 
     /// Shows what the teacher shows.
-    fn follow(&mut self, lab: &mut Lab, lessons: &mut Lessons) {
+    fn show_presented(&mut self, lab: &mut Lab, lessons: &mut Lessons) {
         let Some(state) = self.state.clone() else {
             return;
         };
         let Some(run) = &state.shown else { return };
-        let scenario = lab.player().run().scenario();
-        let is_own = |(_, shown): &(_, _)| !Arc::ptr_eq(shown, scenario);
-        if self.shown.run.as_ref().is_some_and(is_own) {
-            return self.step_aside(lab); // the run was changed here
-        }
-        if self
-            .shown
-            .run
-            .as_ref()
-            .is_none_or(|(file, _)| *file != run.run)
-            && let Err(reason) = self.open(run, lab)
-        {
-            return lab.tell(reason);
+        match &self.shown.run {
+            Some((_, shown)) if !Arc::ptr_eq(shown, lab.player().run().scenario()) => {
+                return self.step_aside(lab); // the run was changed here
+            }
+            Some((file, _)) if *file == run.snapshot.run => {}
+            _ => {
+                if lab.show_run(&run.snapshot).is_err() {
+                    return lab.tell("the teacher's run cannot be read: n and N turn pages");
+                }
+                let shown = Arc::clone(lab.player().run().scenario());
+                self.shown = PresentedView {
+                    run: Some((run.snapshot.run.clone(), shown)),
+                    page: self.shown.page,
+                    ..PresentedView::default()
+                };
+            }
         }
         if self.shown.page != state.page {
             let is_turned = std::mem::replace(&mut self.shown.page, state.page) != 0;
@@ -184,48 +185,33 @@ impl Student {
                 let _ = lab.carry_out(&Command::Pin(false)); // it belongs to the page before
             }
         }
-        let is_there = go_with(run, lab);
-        if let Err(reason) = lessons.follow(&state.followed(is_there), lab) {
+        let is_there = sync_to_presenter(run, lab);
+        if let Err(reason) = lessons.show_class_page(&state.followed(is_there), lab) {
             lab.tell(reason.lines().next().unwrap_or_default());
         }
-        self.show_as(run, lab, lessons);
+        self.show_as(&run.snapshot, lab, lessons);
         lab.set_undo_floor(true); // undo would lead to a run that was shown before
     }
 
-    /// Opens the run of the teacher.
-    fn open(&mut self, run: &PresentedRun, lab: &mut Lab) -> Result<(), &'static str> {
-        let read = Document::parse(&run.name, &run.run);
-        let scenario = read.and_then(|document| document.scenario());
-        let unread = "the teacher's run cannot be read: n and N turn pages";
-        let scenario = scenario.map_err(|_| unread)?;
-        lab.show_run(&run.name, Arc::new(scenario), run.end_s);
-        let shown = Arc::clone(lab.player().run().scenario());
-        self.shown = PresentedView {
-            run: Some((run.run.clone(), shown)),
-            page: self.shown.page,
-            ..PresentedView::default()
-        };
-        Ok(())
-    }
-
     /// Shows the run as the teacher does, where that has changed.
-    fn show_as(&mut self, run: &PresentedRun, lab: &mut Lab, lessons: &Lessons) {
+    fn show_as(&mut self, presented: &Snapshot, lab: &mut Lab, lessons: &Lessons) {
         // What stands so already is left out: a key may be refused where it has no use.
         let own = Table::try_from(&lab.view().look).unwrap_or_default();
-        let mut patch = run.look.clone();
+        let look = Table::try_from(&presented.look).unwrap_or_default();
+        let mut patch = look.clone();
         patch.retain(|key, value| {
-            let is_known = |look: &Table| look.get(key) == Some(value);
-            key != "hide" && !is_known(&self.shown.look) && !is_known(&own)
+            let known = [self.shown.look.get(key), own.get(key)];
+            key != "hide" && !known.contains(&Some(value))
         });
         if !patch.is_empty() {
             let _ = lab.carry_out(&Command::Look(patch)); // what suits another screen may not suit this one
         }
-        self.shown.look.clone_from(&run.look);
-        if self.shown.exact != Some(run.exact) {
-            self.shown.exact = Some(run.exact);
-            let _ = lab.carry_out(&Command::Exact(run.exact));
+        self.shown.look = look;
+        let shows_exact = presented.shows_exact;
+        if self.shown.exact.replace(shows_exact) != Some(shows_exact) {
+            let _ = lab.carry_out(&Command::Exact(shows_exact));
         }
-        let hidden = hidden(run, lessons.taken());
+        let hidden = hidden(&presented.look.hide, lessons.taken());
         if hidden != self.shown.hidden {
             let _ = lab.carry_out(&Command::look("hide", &hidden));
             self.shown.hidden = hidden;
@@ -233,7 +219,7 @@ impl Student {
     }
 
     /// What the class adds to the page.
-    fn dress(&self, lessons: &Lessons) -> ClassOverlay {
+    fn overlay(&self, lessons: &Lessons) -> ClassOverlay {
         let Some(taken) = lessons.taken().filter(|_| self.has_begun) else {
             return ClassOverlay::default();
         };
@@ -243,27 +229,32 @@ impl Student {
                 ..ClassOverlay::default()
             };
         };
-        let asked = taken.page().filter(|_| taken.lesson.name == state.lesson);
-        let asked = asked.and_then(|page| votes::question(page, state));
-        let border = if self.follows() { "k: step aside" } else { "" };
-        let of_lesson = state.questions.get(&taken.lesson.name).into_iter();
-        let round = |(name, question): (&String, &QuestionState)| {
-            let is_closed = question.stage == VoteStage::Closed;
-            (name.clone(), (question.round(), is_closed))
-        };
-        let shown = asked
-            .as_ref()
-            .filter(|(_, question)| !question.bars.is_empty());
-        ClassOverlay {
+        let page = taken.page().filter(|_| taken.lesson.name == state.lesson);
+        let asked = page.and_then(|page| votes::question(page, state));
+        let mut overlay = ClassOverlay {
             framed: self.title(taken, asked.is_some()),
-            border: border.to_owned(),
             is_followed: self.follows(),
-            rounds: of_lesson.flatten().map(round).collect(),
-            votes: shown.map(|(predict, question)| {
-                (predict.name.clone(), vec![votes::drawn(&question.bars)])
-            }),
             ..ClassOverlay::default()
+        };
+        if overlay.is_followed {
+            overlay.border = "k: step aside".to_owned();
         }
+        for (name, question) in state
+            .questions
+            .get(&taken.lesson.name)
+            .into_iter()
+            .flatten()
+        {
+            let is_closed = question.stage == VoteStage::Closed;
+            let round = (question.round(), is_closed);
+            overlay.rounds.insert(name.clone(), round);
+        }
+        if let Some((predict, question)) = asked
+            && !question.bars.is_empty()
+        {
+            overlay.votes = Some((predict.name.clone(), vec![votes::drawn(&question.bars)]));
+        }
+        overlay
     }
 
     /// The title of the page, a form a line; `asks` says whether the page has a question.
@@ -304,7 +295,7 @@ impl Student {
         let shown = self.state.as_ref().and_then(|state| state.shown.as_ref());
         let is_own = lab.runs().is_above_floor()
             && player.playback.step_number() > 0
-            && shown.is_some_and(|shown| shown.run != own);
+            && shown.is_some_and(|shown| shown.snapshot.run != own);
         if is_own && lab.carry_out(&Command::Pin(true)).is_ok() {
             self.has_pinned = true;
             let pinned =
@@ -324,36 +315,37 @@ impl Student {
 }
 
 impl ClassRole for Student {
-    fn begin(&mut self, lab: &mut Lab) {
-        if !self.record.lessons.is_empty() {
-            lab.lessons = Some(self.record.lessons.clone()); // never older than the session
+    fn lessons(&self, kept: Table) -> Table {
+        if self.record.lessons.is_empty() {
+            return kept;
         }
+        self.record.lessons.clone() // never older than the session
     }
 
     fn advance(&mut self, now: Duration, lab: &mut Lab, lessons: &mut Lessons) -> ControlFlow<()> {
         let was_new = self.is_new;
-        self.note(lab);
+        self.note(lessons);
         if now >= self.next_look || self.is_new && !was_new {
             self.next_look = now + CLASS_POLL_INTERVAL;
             self.look(lab);
             if self.follows() {
-                self.follow(lab, lessons);
+                self.show_presented(lab, lessons);
             }
             lab.files_mut().note = self.note_for_exports(lessons);
-            lessons.set_dress(self.dress(lessons), lab);
+            lessons.set_overlay(self.overlay(lessons), lab);
             if self.is_new && self.ended.is_none() {
                 self.trouble = self.seat.save(&self.record).err();
                 self.is_new = self.trouble.is_some();
             }
         }
-        self.stood = Some(stand(lab, lessons));
+        self.last_snapshot = Some(playback_snapshot(lab, lessons));
         if self.ended.is_some() {
             return ControlFlow::Break(());
         }
         ControlFlow::Continue(())
     }
 
-    fn act(&mut self, lab: &mut Lab, _lessons: &mut Lessons) {
+    fn on_class_key(&mut self, lab: &mut Lab, _lessons: &mut Lessons) {
         if self.class().is_none() {
             lab.refuse("no class is on");
         } else if self.record.is_aside {
@@ -366,7 +358,7 @@ impl ClassRole for Student {
         self.next_look = Duration::ZERO;
     }
 
-    fn takes(&mut self, key: LessonKey, lab: &mut Lab, _lessons: &Lessons) -> bool {
+    fn intercept(&mut self, key: LessonKey, lab: &mut Lab, _lessons: &Lessons) -> bool {
         let is_of_teacher = key == LessonKey::Notes && self.is_on;
         if is_of_teacher {
             lab.refuse("the notes are the teacher's");
@@ -374,10 +366,9 @@ impl ClassRole for Student {
         is_of_teacher
     }
 
-    fn acted(&mut self, lab: &mut Lab, lessons: &Lessons) {
-        let stood = self.stood.as_ref();
-        let is_other = stood.is_some_and(|stood| *stood != stand(lab, lessons));
-        if is_other && self.follows() {
+    fn after_keys(&mut self, lab: &mut Lab, lessons: &Lessons) {
+        let now = Some(playback_snapshot(lab, lessons));
+        if self.last_snapshot.is_some() && self.last_snapshot != now && self.follows() {
             self.step_aside(lab);
         }
     }
@@ -397,7 +388,7 @@ impl ClassRole for Student {
         } else {
             Ok(())
         };
-        self.seat.leave(&self.holds);
+        self.seat.leave(&self.lock_token);
         if let Some(ended) = self.ended {
             return Ok(ended.to_owned());
         }
@@ -410,18 +401,15 @@ impl ClassRole for Student {
     }
 }
 
-/// What is hidden: what the page hides stays so until the predictions here are locked, whatever the teacher sees.
-fn hidden(run: &PresentedRun, taken: Option<&OpenLesson>) -> Vec<HideablePart> {
-    let shown = run.look.get("hide").cloned();
-    let shown: Vec<HideablePart> = shown
-        .and_then(|hidden| hidden.try_into().ok())
-        .unwrap_or_default();
+/// What is hidden where the teacher's lab hides `presented`: what the page hides stays so until the predictions here are
+/// locked, whatever the teacher sees.
+fn hidden(presented: &[HideablePart], taken: Option<&OpenLesson>) -> Vec<HideablePart> {
     let page = taken.and_then(|taken| Some((taken.page()?, &taken.place.predictions)));
     let Some((page, predictions)) = page.filter(|(page, _)| page.predicts().next().is_some())
     else {
-        return shown;
+        return presented.to_vec();
     };
-    let mut hidden = Predictions::hidden_after_lock(page, &shown);
+    let mut hidden = Predictions::hidden_after_lock(page, presented);
     if !predictions.are_locked_on(page) {
         hidden.extend(page.lab().map(Setup::hides).unwrap_or_default());
     }
@@ -429,9 +417,9 @@ fn hidden(run: &PresentedRun, taken: Option<&OpenLesson>) -> Vec<HideablePart> {
 }
 
 /// The step at which `run` is by now, and how many steps it may be off.
-fn wanted(run: &PresentedRun, playback: &Playback, time_step_s: f64) -> (u64, f64) {
+fn expected_step(run: &PresentedRun, playback: &Playback, time_step_s: f64) -> (u64, f64) {
     let since_s = unix_ms().saturating_sub(run.at_ms) as f64 / 1000.0;
-    let (ahead, off) = match run.speed {
+    let (ahead, off) = match run.snapshot.speed {
         _ if !run.is_running => (0.0, 0.0),
         Speed::Top => (0.0, f64::INFINITY),
         Speed::Times(speed) => (
@@ -439,31 +427,32 @@ fn wanted(run: &PresentedRun, playback: &Playback, time_step_s: f64) -> (u64, f6
             speed * OFF_S / time_step_s + 1.0,
         ),
     };
-    let step = run.step.saturating_add(ahead as u64);
+    let step = run.snapshot.step.saturating_add(ahead as u64);
     (step.min(playback.end_step()), off)
 }
 
 /// Brings the run of `lab` to where `run` is by now. Returns whether it stands or plays there. A command that is refused
 /// leaves it where it is.
-fn go_with(run: &PresentedRun, lab: &mut Lab) -> bool {
+fn sync_to_presenter(run: &PresentedRun, lab: &mut Lab) -> bool {
     let playback = &lab.player().playback;
     if playback.steps_to_go().is_some() {
         return false;
     }
-    let (wanted, off) = wanted(run, playback, lab.player().motion().time_step_s);
-    let is_off = wanted.abs_diff(playback.step_number()) as f64 > off;
-    if playback.speed() != run.speed {
-        let _ = lab.carry_out(&Command::Speed(run.speed));
+    let (step, off) = expected_step(run, playback, lab.player().motion().time_step_s);
+    let is_off = step.abs_diff(playback.step_number()) as f64 > off;
+    let speed = run.snapshot.speed;
+    if playback.speed() != speed {
+        let _ = lab.carry_out(&Command::Speed(speed));
     }
     if is_off {
-        let _ = lab.carry_out(&Command::GoTo(SeekTarget::Step(wanted)));
+        let _ = lab.carry_out(&Command::GoTo(SeekTarget::Step(step)));
     }
-    let playback = &lab.player().playback;
-    if playback.steps_to_go().is_some() {
+    let there = &lab.player().playback;
+    if there.steps_to_go().is_some() {
         return false;
     }
-    let is_running = run.is_running && playback.step_number() < playback.end_step();
-    if is_running != playback.is_running() {
+    let is_running = run.is_running && there.step_number() < there.end_step();
+    if is_running != there.is_running() {
         let command = if is_running {
             Command::Run
         } else {

@@ -1,21 +1,20 @@
 //! The teacher's lab: what it shows goes to the class, and the votes of the class come to its pages.
 
 use super::folder::{CLASS_VERSION, ClassFolder, ClassState, LONGEST_RUN, PresentedRun, VoteStage};
-use super::votes::{self, FEWEST_VOTES_SHOWN, SeatStatus, Tally, present, sittings};
+use super::votes::{self, FEWEST_VOTES_SHOWN, SeatStatus, Tally, present, seat_statuses};
 use super::{CLASS_POLL_INTERVAL, ClassRole, LEAST_WAIT, login, unix_ms};
 use crate::engine::data::find_shipped;
 use crate::engine::scenario::Scenario;
 use crate::engine::text::printable::PrintablePath;
-use crate::lab::Lab;
 use crate::lab::action::LessonKey;
 use crate::lab::sheet::{Paragraph, SheetLineKind};
+use crate::lab::{Lab, Snapshot};
 use crate::lessons::page::ClassOverlay;
 use crate::lessons::taken::OpenLesson;
 use crate::lessons::{LessonPage, Lessons};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Duration;
-use toml::Table;
 
 #[derive(Debug, Default)]
 pub struct Teacher {
@@ -24,7 +23,7 @@ pub struct Teacher {
     /// The state that the class knows.
     published: Option<ClassState>,
     is_followed: bool,
-    menu: Menu,
+    menu: ClassMenu,
     seats: Vec<SeatStatus>,
     /// The run that was shown last, and its file.
     run: Option<(Arc<Scenario>, String)>,
@@ -34,7 +33,7 @@ pub struct Teacher {
 
 /// What the class's key has opened.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Menu {
+enum ClassMenu {
     #[default]
     Closed,
     Open,
@@ -43,8 +42,8 @@ enum Menu {
 }
 
 /// A line of the list of the seats.
-enum Entry<'a> {
-    Waiting(login::Waiting),
+enum SeatEntry<'a> {
+    Waiting(login::WaitingSeat),
     Seat(&'a SeatStatus),
 }
 
@@ -79,7 +78,7 @@ impl Teacher {
 
     /// Makes the state that of the lab and of the votes.
     fn look(&mut self, lab: &Lab, lessons: &Lessons) {
-        match sittings(&self.folder) {
+        match seat_statuses(&self.folder) {
             Ok(seats) => {
                 self.trouble = seats.iter().find_map(|seat| seat.trouble.clone());
                 self.seats = seats;
@@ -99,11 +98,11 @@ impl Teacher {
         if let Some((predict, question)) = page.and_then(|page| votes::question(page, &self.state))
         {
             let (lesson, round) = (&self.state.lesson, question.round());
-            let here = self.seats.iter().filter(|sitting| sitting.is_here());
+            let here = self.seats.iter().filter(|status| status.is_here());
             self.state.answered = here
-                .filter(|it| it.vote(lesson, predict, round).is_some())
+                .filter(|status| status.vote(lesson, predict, round).is_some())
                 .count();
-            let tally = Tally::of(&self.seats, lesson, predict, round);
+            let tally = Tally::count(&self.seats, lesson, predict, round);
             let is_shown = question.stage == VoteStage::All && tally.votes >= FEWEST_VOTES_SHOWN;
             let bars = if is_shown { tally.bars } else { Vec::new() };
             self.state.question_mut(&predict.name).bars = bars;
@@ -114,11 +113,11 @@ impl Teacher {
     fn shown(&mut self, lab: &Lab) -> Option<PresentedRun> {
         let playback = &lab.player().playback;
         let scenario = playback.run().scenario();
-        let known = self.run.take();
-        let known = known.filter(|(run, _)| Arc::ptr_eq(run, scenario));
-        let (_, run) = self
-            .run
-            .insert(known.unwrap_or_else(|| (Arc::clone(scenario), published(scenario))));
+        let is_known = |(known, _): &(_, _)| Arc::ptr_eq(known, scenario);
+        if !self.run.as_ref().is_some_and(is_known) {
+            self.run = Some((Arc::clone(scenario), published(scenario)));
+        }
+        let (_, run) = self.run.as_ref()?;
         if run.len() > LONGEST_RUN {
             let rule = "the run's file is above 64 kB: the class cannot follow it";
             self.trouble = Some(rule.to_owned());
@@ -126,22 +125,22 @@ impl Teacher {
         }
         let (step, is_running) = (playback.step_number(), playback.is_running());
         let before = self.state.shown.as_ref();
-        let still = before.filter(|before| !is_running && before.step == step);
+        let still = before.filter(|before| !is_running && before.snapshot.step == step);
         Some(PresentedRun {
-            name: lab.runs().name().to_owned(),
-            step,
-            end_s: lab.runs().present().end_s,
+            snapshot: Snapshot {
+                name: lab.runs().name().to_owned(),
+                run: run.clone(),
+                end_s: Some(lab.runs().present().end_s),
+                step,
+                ..lab.snapshot()
+            },
             at_ms: still.map_or_else(unix_ms, |before| before.at_ms),
             is_running,
-            speed: playback.speed(),
-            exact: playback.run().shows_exact(),
-            look: Table::try_from(&lab.view().look).unwrap_or_default(),
-            run: run.clone(),
         })
     }
 
     /// What the class adds to the page.
-    fn dress(&self, lessons: &Lessons) -> ClassOverlay {
+    fn overlay(&self, lessons: &Lessons) -> ClassOverlay {
         let (here, counts) = present(&self.seats);
         let framed = lessons.taken().map(|taken| {
             let (page, pages) = (taken.place.page, taken.lesson.pages.len());
@@ -156,19 +155,19 @@ impl Teacher {
         });
         let page = lessons.taken().and_then(|taken| taken.page());
         let border = match (self.menu, self.is_followed) {
-            (Menu::Closed, _) => "k: show, again, follow, seats\nk: class",
-            (Menu::Open, true) => "1 show 2 again 3 unfollow 4 seats",
-            (Menu::Open, false) => "1 show 2 again 3 follow 4 seats",
-            (Menu::Seats(_), _) => "Enter closes, opens; Esc: back",
+            (ClassMenu::Closed, _) => "k: show, again, follow, seats\nk: class",
+            (ClassMenu::Open, true) => "1 show 2 again 3 unfollow 4 seats",
+            (ClassMenu::Open, false) => "1 show 2 again 3 follow 4 seats",
+            (ClassMenu::Seats(_), _) => "Enter closes, opens; Esc: back",
         };
         ClassOverlay {
             framed: framed.unwrap_or_default(),
             border: border.to_owned(),
             is_of_teacher: true,
-            asks_digit: self.menu == Menu::Open,
+            asks_digit: self.menu == ClassMenu::Open,
             votes: page.and_then(|page| self.votes(page)),
             instead: match self.menu {
-                Menu::Seats(selected) => Some(self.list(selected)),
+                ClassMenu::Seats(selected) => Some(self.list(selected)),
                 _ => None,
             },
             ..ClassOverlay::default()
@@ -181,7 +180,7 @@ impl Teacher {
         let (round, answered, here) = (question.round(), self.state.answered, self.state.here);
         let since_s = unix_ms().saturating_sub(question.since_ms) / 1000;
         let (minutes, seconds) = (since_s / 60, since_s % 60);
-        let tally = Tally::of(&self.seats, &self.state.lesson, predict, round);
+        let tally = Tally::count(&self.seats, &self.state.lesson, predict, round);
         let seen = match question.stage {
             VoteStage::Counted | VoteStage::Teacher => "",
             VoteStage::All if tally.votes < FEWEST_VOTES_SHOWN => {
@@ -206,42 +205,40 @@ impl Teacher {
     }
 
     /// The seats that accept no code, then all seats.
-    fn entries(&self) -> Vec<Entry<'_>> {
+    fn entries(&self) -> Vec<SeatEntry<'_>> {
         let waiting = login::waiting(&self.folder, unix_ms() / 1000).into_iter();
-        let seats = self.seats.iter().map(Entry::Seat);
-        waiting.map(Entry::Waiting).chain(seats).collect()
+        let seats = self.seats.iter().map(SeatEntry::Seat);
+        waiting.map(SeatEntry::Waiting).chain(seats).collect()
     }
 
     fn list(&self, selected: usize) -> Vec<Paragraph> {
-        let line = |(index, entry): (usize, Entry<'_>)| {
+        let mut list = vec![Paragraph::new(SheetLineKind::Heading, "The seats")];
+        for (index, entry) in self.entries().into_iter().enumerate() {
             let (text, is_given) = match entry {
-                Entry::Waiting(seat) => (seat.in_words(), true),
-                Entry::Seat(sitting) => (
-                    sitting.in_words(&self.state),
-                    self.state.closed.contains(&sitting.seat.word),
+                SeatEntry::Waiting(seat) => (seat.in_words(), true),
+                SeatEntry::Seat(status) => (
+                    status.in_words(&self.state),
+                    self.state.closed.contains(&status.seat.word),
                 ),
             };
-            let is_selected = index == selected;
             let kind = SheetLineKind::Choice {
-                is_selected,
+                is_selected: index == selected,
                 is_given,
             };
-            Paragraph::new(kind, text)
-        };
-        let lines = self.entries().into_iter().enumerate().map(line);
-        let title = Paragraph::new(SheetLineKind::Heading, "The seats");
+            list.push(Paragraph::new(kind, text));
+        }
         let legend = if self.seats.is_empty() {
             "No seat is taken yet."
         } else {
             "[x]: closed, and Enter opens it. lost: no sign for 10 s; away: left."
         };
-        let legend = Paragraph::new(SheetLineKind::Hint, legend);
-        [title].into_iter().chain(lines).chain([legend]).collect()
+        list.push(Paragraph::new(SheetLineKind::Hint, legend));
+        list
     }
 
     /// Does what the menu has under `digit`.
     fn choose(&mut self, digit: u8, lab: &mut Lab, taken: Option<&OpenLesson>) {
-        self.menu = Menu::Closed;
+        self.menu = ClassMenu::Closed;
         match digit {
             1 | 2 => {
                 let page = taken.and_then(OpenLesson::page);
@@ -273,7 +270,7 @@ impl Teacher {
                     "the class does not follow: k 3 lets it follow again"
                 });
             }
-            4 => self.menu = Menu::Seats(0),
+            4 => self.menu = ClassMenu::Seats(0),
             _ => lab.refuse("1 shows the votes, 2 asks again, 3 lets the class follow, 4: seats"),
         }
     }
@@ -282,8 +279,8 @@ impl Teacher {
     fn close_or_open(&mut self, selected: usize, lab: &mut Lab) {
         let word = match self.entries().into_iter().nth(selected) {
             None => return,
-            Some(Entry::Waiting(seat)) => return self.folder.forget_wrong_codes(&seat.word),
-            Some(Entry::Seat(sitting)) => sitting.seat.word.clone(),
+            Some(SeatEntry::Waiting(seat)) => return self.folder.forget_wrong_codes(&seat.word),
+            Some(SeatEntry::Seat(status)) => status.seat.word.clone(),
         };
         if !self.state.closed.remove(&word) {
             lab.refuse(format!("{word} is closed: Enter opens it again"));
@@ -294,49 +291,49 @@ impl Teacher {
 
 impl ClassRole for Teacher {
     fn advance(&mut self, now: Duration, lab: &mut Lab, lessons: &mut Lessons) -> ControlFlow<()> {
-        let is_new = lessons.taken().is_some_and(|taken| {
-            (&taken.lesson.name, taken.place.page) != (&self.state.lesson, self.state.page)
+        let is_new = lessons.taken().is_some_and(|open| {
+            (&open.lesson.name, open.place.page) != (&self.state.lesson, self.state.page)
         });
         if now >= self.next_look || is_new {
             self.next_look = now + CLASS_POLL_INTERVAL;
             self.trouble = None;
             self.look(lab, lessons);
             self.publish();
-            lessons.set_dress(self.dress(lessons), lab);
+            lessons.set_overlay(self.overlay(lessons), lab);
         }
         ControlFlow::Continue(())
     }
 
-    fn act(&mut self, lab: &mut Lab, lessons: &mut Lessons) {
+    fn on_class_key(&mut self, lab: &mut Lab, lessons: &mut Lessons) {
         self.menu = match self.menu {
-            Menu::Closed => Menu::Open,
-            _ => Menu::Closed,
+            ClassMenu::Closed => ClassMenu::Open,
+            _ => ClassMenu::Closed,
         };
-        lessons.set_dress(self.dress(lessons), lab);
+        lessons.set_overlay(self.overlay(lessons), lab);
         lab.view_mut().turn_to_sheet();
     }
 
-    fn takes(&mut self, key: LessonKey, lab: &mut Lab, lessons: &Lessons) -> bool {
+    fn intercept(&mut self, key: LessonKey, lab: &mut Lab, lessons: &Lessons) -> bool {
         match (self.menu, key) {
-            (Menu::Closed, _) => return false,
-            (Menu::Open, LessonKey::Digit(digit)) => {
+            (ClassMenu::Closed, _) => return false,
+            (ClassMenu::Open, LessonKey::Digit(digit)) => {
                 self.choose(digit, lab, lessons.taken());
             }
-            (Menu::Seats(selected), LessonKey::Move(direction)) => {
+            (ClassMenu::Seats(selected), LessonKey::Move(direction)) => {
                 let last = self.entries().len().saturating_sub(1);
-                let selected = selected.saturating_add_signed(direction.rows(10)).min(last);
-                self.menu = Menu::Seats(selected);
+                let moved = selected.saturating_add_signed(direction.rows(10));
+                self.menu = ClassMenu::Seats(moved.min(last));
             }
-            (Menu::Seats(selected), LessonKey::Take) => self.close_or_open(selected, lab),
+            (ClassMenu::Seats(selected), LessonKey::Take) => self.close_or_open(selected, lab),
             (_, key) => {
-                self.menu = Menu::Closed;
+                self.menu = ClassMenu::Closed;
                 return key == LessonKey::Leave;
             }
         }
         true
     }
 
-    fn acted(&mut self, _lab: &mut Lab, _lessons: &Lessons) {
+    fn after_keys(&mut self, _lab: &mut Lab, _lessons: &Lessons) {
         self.next_look = Duration::ZERO;
     }
 

@@ -2,7 +2,7 @@
 
 use super::ClassFolder;
 use super::folder::{ClassState, QuestionState, VoteStage};
-use super::seat::{Presence, Record, Seat, all_seats};
+use super::seat::{Presence, Seat, SeatRecord, all_seats};
 use crate::engine::text::number::{shortest, significant};
 use crate::engine::text::printable::printable;
 use crate::lab::sheet::{Paragraph, SheetLineKind};
@@ -35,41 +35,47 @@ pub struct SeatStatus {
 ///
 /// # Errors
 /// When the folder of the seats cannot be read.
-pub fn sittings(folder: &ClassFolder) -> Result<Vec<SeatStatus>, String> {
-    let sitting = |seat: Seat| {
+pub fn seat_statuses(folder: &ClassFolder) -> Result<Vec<SeatStatus>, String> {
+    let seats = all_seats(folder)?.into_iter();
+    Ok(seats.map(SeatStatus::read).collect())
+}
+
+/// How many of `seats` are here, and in words with those that are aside, lost or away.
+pub fn present(seats: &[SeatStatus]) -> (usize, String) {
+    let (mut here, mut aside, mut lost, mut away) = (0, 0, 0, 0);
+    for seat in seats {
+        match seat.presence {
+            Presence::Here => here += 1,
+            Presence::Lost => lost += 1,
+            Presence::Away => away += 1,
+        }
+        aside += usize::from(seat.is_here() && seat.is_aside);
+    }
+    let mut words = format!("{here} here");
+    for (count, how) in [(aside, "of them aside"), (lost, "lost"), (away, "away")] {
+        if count > 0 {
+            words += &format!(", {count} {how}");
+        }
+    }
+    (here, words)
+}
+
+impl SeatStatus {
+    fn read(seat: Seat) -> Self {
         let (places, trouble) = match seat.places() {
             Ok(places) => (places, None),
-            Err(trouble) => (<(Record, KeptLessons)>::default(), Some(trouble)),
+            Err(trouble) => (<(SeatRecord, KeptLessons)>::default(), Some(trouble)),
         };
         let (record, kept) = places;
-        SeatStatus {
+        Self {
             is_aside: record.is_aside,
             lessons: kept.lessons,
             presence: seat.presence(),
             seat,
             trouble,
         }
-    };
-    Ok(all_seats(folder)?.into_iter().map(sitting).collect())
-}
+    }
 
-/// How many of `seats` are here, and in words with those that are aside, lost or away.
-pub fn present(seats: &[SeatStatus]) -> (usize, String) {
-    let count = |is_so: &dyn Fn(&SeatStatus) -> bool| seats.iter().filter(|it| is_so(it)).count();
-    let here = count(&SeatStatus::is_here);
-    let others = [
-        (count(&|it| it.is_here() && it.is_aside), "of them aside"),
-        (count(&|it| it.presence == Presence::Lost), "lost"),
-        (count(&|it| it.presence == Presence::Away), "away"),
-    ];
-    let others = others.into_iter().filter(|(count, _)| *count > 0);
-    let others: String = others
-        .map(|(count, how)| format!(", {count} {how}"))
-        .collect();
-    (here, format!("{here} here{others}"))
-}
-
-impl SeatStatus {
     pub fn is_here(&self) -> bool {
         self.presence == Presence::Here
     }
@@ -118,27 +124,22 @@ pub struct Tally {
 }
 
 impl Tally {
-    pub fn of(seats: &[SeatStatus], lesson: &str, predict: &Predict, round: u32) -> Self {
-        let votes = seats
+    pub fn count(seats: &[SeatStatus], lesson: &str, predict: &Predict, round: u32) -> Self {
+        let (mut choices, mut late) = (Vec::new(), Vec::new());
+        for vote in seats
             .iter()
-            .filter_map(|it| it.vote(lesson, predict, round));
-        let (late, in_time): (Vec<_>, Vec<_>) = votes.partition(|given| given.late);
-        let numbers = |given: &[&LockedAnswer]| -> Vec<f64> {
-            let answers = given.iter().map(|given| &given.answer);
-            answers.filter_map(|it| predict.asked.number(it)).collect()
-        };
-        let bars = |numbers: &[f64]| match &predict.asked {
-            AnswerKind::Choice(all) => of_choices(all.len(), numbers),
-            AnswerKind::Number { .. } => of_numbers(numbers.to_vec()),
-        };
-        let choices = numbers(&in_time);
+            .filter_map(|it| it.vote(lesson, predict, round))
+        {
+            let numbers = if vote.late { &mut late } else { &mut choices };
+            numbers.extend(predict.asked.number(&vote.answer));
+        }
         let right = predict.right.as_ref();
         Self {
             votes: choices.len(),
             late: late.len(),
             advice: right.and_then(|right| advice(right, &choices)),
-            bars: bars(&choices),
-            late_bars: bars(&numbers(&late)),
+            bars: bars(&predict.asked, choices),
+            late_bars: bars(&predict.asked, late),
         }
     }
 
@@ -153,7 +154,7 @@ impl Tally {
 }
 
 fn advice(right: &Right, choices: &[f64]) -> Option<String> {
-    let hits = choices.iter().filter(|choice| right.takes(**choice));
+    let hits = choices.iter().filter(|choice| right.accepts(**choice));
     let all = Some(choices.len()).filter(|all| *all > 0)?;
     let percent = (100 * hits.count() + all / 2) / all;
     let next = match percent {
@@ -161,26 +162,27 @@ fn advice(right: &Right, choices: &[f64]) -> Option<String> {
         30..=70 => "let them talk, then ask again",
         _ => "go on",
     };
-    let right = match right {
+    let answer = match right {
         Right::Choice(number) => number.to_string(),
         Right::Number { value, within } => format!("{} ± {}", shortest(*value), shortest(*within)),
     };
-    Some(format!("right is {right}, {percent} % chose it: {next}"))
+    Some(format!("right is {answer}, {percent} % chose it: {next}"))
 }
 
-fn of_choices(count: usize, choices: &[f64]) -> Vec<(String, usize)> {
-    (1..=count)
-        .map(|number| {
-            (
-                number.to_string(),
-                choices.iter().filter(|it| **it == number as f64).count(),
-            )
-        })
-        .collect()
+fn bars(asked: &AnswerKind, answers: Vec<f64>) -> Vec<(String, usize)> {
+    let AnswerKind::Choice(all) = asked else {
+        return bars_of_numbers(answers);
+    };
+    let mut bars = Vec::new();
+    for number in 1..=all.len() {
+        let given = answers.iter().filter(|it| **it == number as f64);
+        bars.push((number.to_string(), given.count()));
+    }
+    bars
 }
 
 /// The numbers to two digits, the most frequent of them, in their order.
-fn of_numbers(mut numbers: Vec<f64>) -> Vec<(String, usize)> {
+fn bars_of_numbers(mut numbers: Vec<f64>) -> Vec<(String, usize)> {
     numbers.sort_by(f64::total_cmp);
     let mut bars: Vec<(String, usize)> = Vec::new();
     for number in numbers {
@@ -202,15 +204,12 @@ fn of_numbers(mut numbers: Vec<f64>) -> Vec<(String, usize)> {
 pub fn drawn(bars: &[(String, usize)]) -> Paragraph {
     let most = bars.iter().map(|bar| bar.1).max().unwrap_or(0).max(1);
     let width = bars.iter().map(|bar| bar.0.len()).max().unwrap_or(0);
-    Paragraph::new(
-        SheetLineKind::Code,
-        bars.iter()
-            .map(|(name, count)| {
-                let bar = "█".repeat((count * LONGEST_BAR).div_ceil(most));
-                format!("{name:<width$} {bar} {count}\n")
-            })
-            .collect::<String>(),
-    )
+    let mut text = String::new();
+    for (name, count) in bars {
+        let bar = "█".repeat((count * LONGEST_BAR).div_ceil(most));
+        text += &format!("{name:<width$} {bar} {count}\n");
+    }
+    Paragraph::new(SheetLineKind::Code, text)
 }
 
 /// The question of `page` that the class is at: the first that is not closed, or else the first.
@@ -218,15 +217,10 @@ pub fn question<'a>(
     page: &'a LessonPage,
     state: &ClassState,
 ) -> Option<(&'a Predict, QuestionState)> {
-    let mut all = page
-        .predicts()
-        .map(|predict| (predict, state.question(&predict.name)));
-    let first = all.next()?;
-    if first.1.stage != VoteStage::Closed {
-        return Some(first);
-    }
-    let open = all.find(|(_, question)| question.stage != VoteStage::Closed);
-    Some(open.unwrap_or(first))
+    let mut all = page.predicts();
+    let open = all.find(|it| state.question(&it.name).stage != VoteStage::Closed);
+    let asked = open.or_else(|| page.predicts().next())?;
+    Some((asked, state.question(&asked.name)))
 }
 
 const VOTE_COLUMNS: [&str; 8] = [
@@ -239,10 +233,11 @@ pub fn csv(folder: &ClassFolder, seats: &[SeatStatus]) -> Result<String, csv::Er
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(VOTE_COLUMNS)?;
     let mut read = BTreeMap::new();
-    for sitting in seats {
-        for (name, place) in &sitting.lessons {
-            let lesson = read.entry(name.clone());
-            let lesson = lesson.or_insert_with(|| reading::open_again(name).ok());
+    for status in seats {
+        for (name, place) in &status.lessons {
+            let lesson = read
+                .entry(name.clone())
+                .or_insert_with(|| reading::open_again(name).ok());
             for (question, given) in place.predictions.all() {
                 let predict = lesson.as_ref().and_then(|lesson| lesson.predict(question));
                 let number = predict.and_then(|predict| predict.asked.number(&given.answer));
@@ -255,7 +250,7 @@ pub fn csv(folder: &ClassFolder, seats: &[SeatStatus]) -> Result<String, csv::Er
                     printable(folder.short(name)).as_ref(),
                     printable(question).as_ref(),
                     &given.round.to_string(),
-                    &sitting.seat.word,
+                    &status.seat.word,
                     &choice,
                     &given.late.to_string(),
                     &given.page.to_string(),

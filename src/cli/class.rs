@@ -8,7 +8,7 @@ use super::{print, progress, sessions, tell};
 use crate::class::folder::ClassFolder;
 use crate::class::student::Student;
 use crate::class::teacher::Teacher;
-use crate::class::votes::{self, SeatStatus, sittings};
+use crate::class::votes::{self, SeatStatus, seat_statuses};
 use crate::class::{Seat, board, login};
 use crate::engine::export::Destination;
 use crate::engine::text::printable::{PrintablePath, printable};
@@ -89,7 +89,7 @@ fn teach(args: &ClassArgs) -> anyhow::Result<ExitCode> {
 }
 
 fn print_votes(folder: &ClassFolder) -> anyhow::Result<ExitCode> {
-    let seats = sittings(folder).map_err(anyhow::Error::msg)?;
+    let seats = seat_statuses(folder).map_err(anyhow::Error::msg)?;
     print(&votes::csv(folder, &seats)?)?;
     Ok(unread(&seats))
 }
@@ -111,7 +111,7 @@ fn show_board(folder: &ClassFolder) -> anyhow::Result<ExitCode> {
         return Ok(ExitCode::SUCCESS);
     }
     print(&(board::lines(folder, BOARD_WIDTH).join("\n") + "\n"))?;
-    Ok(unread(&sittings(folder).map_err(anyhow::Error::msg)?))
+    Ok(unread(&seat_statuses(folder).map_err(anyhow::Error::msg)?))
 }
 
 /// Writes what each seat has predicted beside what came out: a file for each in the folder `output`.
@@ -124,7 +124,7 @@ fn answers(
     std::fs::create_dir_all(output).with_context(|| PrintablePath(output).to_string())?;
     let interruption = progress::interruption()?;
     let mut files = 0;
-    let seats = sittings(folder).map_err(anyhow::Error::msg)?;
+    let seats = seat_statuses(folder).map_err(anyhow::Error::msg)?;
     let mut code = unread(&seats);
     for SeatStatus { seat, lessons, .. } in seats {
         let mut text = String::new();
@@ -179,13 +179,15 @@ pub(super) fn seat(args: &WorkbenchArgs, dir: &Path) -> anyhow::Result<ExitCode>
     let Some(seat) = asked(&folder)? else {
         return Ok(ExitCode::SUCCESS);
     };
-    let holds = seat.hold().map_err(anyhow::Error::msg)?;
+    let lock_token = seat.hold().map_err(anyhow::Error::msg)?;
     let confined = Confined::enter(&seat.folder)?.as_seat_of(&folder.root);
     let sessions = confined.sessions().map_err(anyhow::Error::msg)?;
     take_over(&sessions);
     // A file that this version cannot read is left as it is.
-    let record = seat.record().map_err(anyhow::Error::msg);
-    let record = record.with_context(|| format!("the file of the seat {}", seat.word))?;
+    let record = seat
+        .record()
+        .map_err(anyhow::Error::msg)
+        .with_context(|| format!("the file of the seat {}", seat.word))?;
     let has_session = session::list(&sessions).is_ok_and(|sessions| !sessions.is_empty());
     let is_on = folder.is_teacher_alive();
     let args = WorkbenchArgs {
@@ -193,7 +195,7 @@ pub(super) fn seat(args: &WorkbenchArgs, dir: &Path) -> anyhow::Result<ExitCode>
         paused: is_on || args.paused,
         ..args.clone()
     };
-    let student = Box::new(Student::new(folder, seat, holds, record));
+    let student = Box::new(Student::new(folder, seat, lock_token, record));
     open_at(&args, DEFAULT, Some(confined), None, Some(student))
 }
 
@@ -207,7 +209,7 @@ fn asked(folder: &ClassFolder) -> anyhow::Result<Option<Seat>> {
             writeln!(stdout)?;
             return Ok(None);
         };
-        match login::take(folder, &line, unix_s()) {
+        match login::claim(folder, &line, unix_s()) {
             Ok((seat, false)) => return Ok(Some(seat)),
             Ok((seat, true)) => {
                 let word = &seat.word;

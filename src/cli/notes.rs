@@ -9,7 +9,7 @@ use crate::engine::text::printable::{printable, printable_lines};
 use crate::engine::text::wrap::wrapped;
 use crate::lab::lessons_in;
 use crate::lab::storage::confined::Confined;
-use crate::lab::storage::session::{self, Listed};
+use crate::lab::storage::session::{self, ListedSession};
 use crate::lessons::class::KeptLessons;
 use crate::lessons::clock;
 use crate::lessons::page::told;
@@ -81,20 +81,21 @@ fn folder() -> anyhow::Result<PathBuf> {
 
 /// The name of the session that is meant: of those with an open lesson, the one in use that was written last.
 fn find(folder: &Path, name: &str) -> anyhow::Result<Option<String>> {
-    let is_meant = |session: &Listed| session.name == name || name.is_empty() && session.is_in_use;
+    let is_meant =
+        |session: &ListedSession| session.name == name || name.is_empty() && session.is_in_use;
     let open = session::list(folder)?.into_iter();
     let open = open.filter(|session| is_meant(session) && open_in(session).is_some());
     let newest = open.max_by_key(|session| session.written);
     Ok(newest.map(|session| session.name))
 }
 
-fn lessons_of(session: &Listed) -> Option<KeptLessons> {
+fn lessons_of(session: &ListedSession) -> Option<KeptLessons> {
     let content = session.content.as_ref().ok()?;
-    KeptLessons::read(&lessons_in(content)?).ok()
+    KeptLessons::read(&lessons_in(content)).ok()
 }
 
 /// The lesson that is open in `session`, and its page.
-fn open_in(session: &Listed) -> Option<(String, LessonProgress)> {
+fn open_in(session: &ListedSession) -> Option<(String, LessonProgress)> {
     let mut lessons = lessons_of(session)?;
     let open = lessons.open?;
     let place = lessons.lessons.remove(&open)?;

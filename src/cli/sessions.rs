@@ -6,15 +6,16 @@ use super::new_lab::{DEFAULT, marker, of_workbench, theme};
 use super::{print, tell};
 use crate::engine::text::printable::{PrintablePath, printable};
 use crate::lab::storage::confined::Confined;
-use crate::lab::storage::session::{self, LeftAlone, Listed, Session};
+use crate::lab::storage::session::{self, LeftAlone, ListedSession, Session};
 use crate::lab::view::View;
-use crate::lab::{Lab, SessionSummary};
+use crate::lab::{Lab, SessionSummary, lessons_in};
 use anyhow::{Context, bail};
 use std::fmt::Write as _;
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, SystemTime};
+use toml::Table;
 
 /// How long the end waits for the disk before it says that the session is not kept.
 const SESSION_SAVE_LIMIT: Duration = Duration::from_secs(3);
@@ -64,10 +65,10 @@ pub(super) fn named(folder: &Path) -> String {
     format!("--folder {}", PrintablePath(folder))
 }
 
-fn row(session: &Listed, now: SystemTime) -> [String; 5] {
+fn row(session: &ListedSession, now: SystemTime) -> [String; 5] {
     let content = session.content.as_ref().map_err(Clone::clone);
-    let summary =
-        content.and_then(|content| SessionSummary::of(content).map_err(|error| error.to_string()));
+    let summary = content
+        .and_then(|content| SessionSummary::read(content).map_err(|error| error.to_string()));
     let (step, run) = match summary {
         Ok(summary) => (
             summary.step.to_string(),
@@ -108,7 +109,7 @@ pub(super) fn tell_of_session(
         Err(trouble) => (None, Some(trouble)),
     };
     let trouble = trouble.as_deref().map(printable);
-    let Some(summary) = kept.and_then(|content| SessionSummary::of(&content).ok()) else {
+    let Some(summary) = kept.and_then(|content| SessionSummary::read(&content).ok()) else {
         tell(format_args!(
             "gyrolab: there is no session to come back to: {}",
             trouble.unwrap_or_else(|| "nothing was kept".into())
@@ -132,16 +133,20 @@ pub(super) fn tell_of_session(
     Ok(())
 }
 
-/// The lab that a session has kept, as the command line wants it to look.
+/// A lab, the state of its lessons, and its session or why there is none.
+type SessionLab = (Lab, Table, Result<Session, String>);
+
+/// The lab that a session has kept, as the command line wants it to look, and the state of its lessons.
 fn resumed(
     content: &session::SessionContent,
     look: DisplayArgs,
     confined: Option<&Confined>,
-) -> Result<Lab, String> {
-    Lab::resumed(content, confined, |scenario| {
+) -> Result<(Lab, Table), String> {
+    let lab = Lab::resumed(content, confined, |scenario| {
         View::new(scenario, marker(look.markers), theme(look))
     })
-    .map_err(|error| error.to_string())
+    .map_err(|error| error.to_string())?;
+    Ok((lab, lessons_in(content)))
 }
 
 /// The session called `name`, or an error that says why it cannot be had.
@@ -150,7 +155,7 @@ pub(super) fn come_back_to(
     args: &WorkbenchArgs,
     confined: Option<&Confined>,
     folder: Result<PathBuf, String>,
-) -> anyhow::Result<(Lab, Result<Session, String>)> {
+) -> anyhow::Result<SessionLab> {
     let folder = folder.map_err(anyhow::Error::msg)?;
     let name_shown = printable(name);
     let found = session::resume(&folder, Some(name), |content| {
@@ -159,7 +164,7 @@ pub(super) fn come_back_to(
     .with_context(|| format!("--resume {name_shown} (gyrolab sessions lists what there is)"))?;
     let passed_over = left_alone(&found.left_alone);
     let why = match (found.resumed, found.in_use_by.first()) {
-        (Some((session, lab)), _) => return Ok((lab, Ok(session))),
+        (Some((session, (lab, lessons))), _) => return Ok((lab, lessons, Ok(session))),
         (None, Some(process)) => format!("it is open in another lab, process {process}"),
         (None, None) if passed_over.is_empty() => "it is open in another lab".to_owned(),
         (None, None) => printable(passed_over.trim_end_matches("; ")).into_owned(),
@@ -173,22 +178,20 @@ pub(super) fn come_back(
     args: &WorkbenchArgs,
     confined: Option<&Confined>,
     folder: Result<PathBuf, String>,
-) -> anyhow::Result<(Lab, Result<Session, String>)> {
-    let found = folder.clone().and_then(|folder| {
-        session::resume(&folder, None, |content| {
-            resumed(content, args.look, confined)
-        })
-        .map_err(|error| error.to_string())
-    });
+) -> anyhow::Result<SessionLab> {
+    let read = |content: &session::SessionContent| resumed(content, args.look, confined);
+    let found = folder
+        .clone()
+        .and_then(|folder| session::resume(&folder, None, read).map_err(|error| error.to_string()));
     let why_none = match found {
         Ok(found) => {
             let passed_over = left_alone(&found.left_alone) + &in_use(&found.in_use_by);
-            if let Some((session, mut lab)) = found.resumed {
+            if let Some((session, (mut lab, lessons))) = found.resumed {
                 if !passed_over.is_empty() {
                     lab.messages_mut()
                         .keep_saying_first(&(passed_over + "this is an older one, "));
                 }
-                return Ok((lab, Ok(session)));
+                return Ok((lab, lessons, Ok(session)));
             }
             let none = if found.in_use_by.is_empty() {
                 "no session to come back to: "
@@ -201,7 +204,7 @@ pub(super) fn come_back(
     };
     let mut lab = of_workbench(args, DEFAULT)?;
     lab.tell(why_none);
-    Ok((lab, begun(folder)))
+    Ok((lab, Table::new(), begun(folder)))
 }
 
 /// Says that newer sessions are open in other labs, of the processes `owners`. A line that has died without a word keeps

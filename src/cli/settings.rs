@@ -7,7 +7,7 @@ use super::tell;
 use crate::engine::scenario::Problems;
 use crate::engine::text::printable::printable_lines;
 use crate::lab::Lab;
-use crate::lab::storage::settings::{self, Read};
+use crate::lab::storage::settings::{self, SettingsFile};
 use crate::lab::view::theme::Marker;
 use crate::tui::theme;
 use clap::ValueEnum;
@@ -15,16 +15,16 @@ use std::path::Path;
 use toml::{Table, Value};
 
 pub(super) struct Chosen {
-    config: Read,
-    remembered: Read,
+    config: SettingsFile,
+    remembered: SettingsFile,
 }
 
 /// Reads the settings: those remembered in `folder`, and the user's own unless the lab is confined to a folder.
 pub(super) fn read(folder: Option<&Path>, is_confined: bool) -> Chosen {
     let config = settings::config().filter(|_| !is_confined);
     Chosen {
-        config: config.map_or_else(Read::default, |path| settings::read_config(&path)),
-        remembered: folder.map_or_else(Read::default, settings::read),
+        config: config.map_or_else(SettingsFile::default, |path| settings::read_config(&path)),
+        remembered: folder.map_or_else(SettingsFile::default, settings::read),
     }
 }
 

@@ -21,6 +21,7 @@ use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
+use toml::Table;
 
 /// Opens the lab on the terminal, at a page of a lesson.
 pub(super) fn open_lesson(
@@ -100,10 +101,13 @@ pub(super) fn open_at(
     let settings_in = folder.as_deref().ok();
     let chosen = settings::read(settings_in, confined.is_some());
     let args = &chosen.complete(args);
-    let (mut lab, session) = match args.resume.as_deref() {
+    let (mut lab, kept, session) = match args.resume.as_deref() {
         Some("") => come_back(args, confined.as_ref(), folder.clone())?,
         Some(session) => come_back_to(session, args, confined.as_ref(), folder.clone())?,
-        None => (of_workbench(args, name)?, begun(folder.clone())),
+        None => {
+            let lab = of_workbench(args, name)?;
+            (lab, Table::new(), begun(folder.clone()))
+        }
     };
     chosen.tell(&mut lab);
     lab.settings.folder = folder.ok();
@@ -117,8 +121,7 @@ pub(super) fn open_at(
     if let Some(commands) = commands {
         lab.take_commands(commands);
     }
-    role.begin(&mut lab);
-    let mut lessons = lessons(&mut lab, lesson)?;
+    let mut lessons = lessons(&mut lab, role.lessons(kept), lesson)?;
     let ran = app::run(&mut lab, &mut lessons, &mut *role, session.as_ref().ok());
     ran.context("the terminal cannot be used")?;
     tell_of_exports(&lab)?;
@@ -145,20 +148,23 @@ fn furnish(lab: &mut Lab, args: &WorkbenchArgs, confined: Option<Confined>) -> a
     Ok(())
 }
 
-/// The lesson that the session of `lab` holds, or the page of one that is asked for.
-fn lessons(lab: &mut Lab, lesson: Option<(&Lesson, usize)>) -> anyhow::Result<Lessons> {
-    let (mut lessons, taken) = Lessons::resumed(lab);
-    if let Err(reason) = taken {
+/// The lessons as a session has `kept` them, at the page of one that is asked for.
+fn lessons(
+    lab: &mut Lab,
+    kept: Table,
+    lesson: Option<(&Lesson, usize)>,
+) -> anyhow::Result<Lessons> {
+    let (mut lessons, opened) = Lessons::resumed(kept, lab);
+    if let Err(reason) = opened {
         lab.tell(format!("the lesson cannot be taken again: {reason}"));
     }
-    let stands = lessons
-        .taken()
-        .map(|taken| (taken.lesson.name.clone(), taken.place.page));
-    if let Some((lesson, page)) = lesson
-        && stands != Some((lesson.name.clone(), page))
-    {
-        let opened = lessons.open(&lesson.name, Some(page), lab);
-        opened.map_err(anyhow::Error::msg)?;
+    if let Some((lesson, page)) = lesson {
+        let open = lessons.taken();
+        if open.is_none_or(|open| (&open.lesson.name, open.place.page) != (&lesson.name, page)) {
+            lessons
+                .open(&lesson.name, Some(page), lab)
+                .map_err(anyhow::Error::msg)?;
+        }
     }
     Ok(lessons)
 }

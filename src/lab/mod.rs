@@ -48,6 +48,7 @@ mod script;
 mod session;
 mod settings;
 pub mod sheet;
+mod snapshot;
 pub mod step_pane;
 pub mod storage;
 pub mod values;
@@ -68,6 +69,7 @@ pub use runs::Runs;
 pub use script::CommandScript;
 pub use session::{SessionSummary, Unreadable, lessons_in};
 pub use settings::Settings;
+pub use snapshot::Snapshot;
 pub use step_pane::StepPane;
 pub use values::Values;
 
@@ -81,6 +83,7 @@ use sheet::Sheet;
 use std::borrow::Cow;
 use std::sync::Arc;
 use std::time::Duration;
+use toml::Table;
 use view::View;
 
 pub struct Lab {
@@ -95,8 +98,6 @@ pub struct Lab {
     messages: Messages,
     script: CommandScript,
     pub settings: Settings,
-    /// What the session keeps of the lessons.
-    pub lessons: Option<toml::Table>,
     /// The time since the lab was opened.
     now: Duration,
     /// Whether the picture has changed since it was drawn.
@@ -118,7 +119,6 @@ impl Lab {
             messages: Messages::default(),
             script: CommandScript::default(),
             settings: Settings::default(),
-            lessons: None,
             now: Duration::ZERO,
             changed: true,
         };
@@ -215,19 +215,15 @@ impl Lab {
         std::mem::take(&mut self.changed)
     }
 
-    /// What a session keeps.
-    pub fn content(&mut self) -> SessionContent {
-        let (player, comparison, edits) = (&self.player, &self.comparison, &self.edits);
-        let (files, view) = (&self.files, &self.view);
-        let place = KeptPlace {
-            lessons: self.lessons.clone(),
-            ..KeptPlace::of(player, comparison, edits, files, view)
-        };
-        let place = toml::to_string(&place).unwrap_or_default();
+    /// What a session keeps, with the state of the `lessons`.
+    pub fn content(&mut self, lessons: &Table) -> SessionContent {
+        let (comparison, edits) = (&self.comparison, &self.edits);
+        let (files, view, snapshot) = (&self.files, &self.view, self.snapshot());
+        let place = KeptPlace::new(snapshot, comparison, edits, files, view, lessons);
         let reference = self.comparison.reference();
         SessionContent {
             work: self.edits.runs.kept(reference, session::written),
-            place,
+            place: toml::to_string(&place).unwrap_or_default(),
         }
     }
 
@@ -325,17 +321,22 @@ impl Lab {
         let file = lab.files.open_scenario(&name).map_or(scenario, Arc::new);
         lab.edits
             .resume(history, &file, place.next_push.clone(), &lab.player);
-        lab.player
-            .resume(place.step, place.speed, place.shows_exact, end_s);
+        let Snapshot {
+            step,
+            speed,
+            shows_exact,
+            ..
+        } = place.snapshot;
+        lab.player.resume(step, speed, shows_exact, end_s);
         lab.edits.follow(&lab.player);
-        lab.take_up(place, pinned);
+        lab.take_up(&place, pinned);
         lab.read_now();
         Ok(lab)
     }
 
-    /// Takes up what may be lost without the run: the pinned run, the measured data and the lesson. Says what is there
-    /// again, and what is lost.
-    fn take_up(&mut self, place: KeptPlace, pinned: Option<KeptPinned>) {
+    /// Takes up what may be lost without the run: the pinned run and the measured data. Says what is there again, and what
+    /// is lost.
+    fn take_up(&mut self, place: &KeptPlace, pinned: Option<KeptPinned>) {
         let mut text = place.in_words();
         match pinned.map(KeptPinned::reference).transpose() {
             Ok(reference) => self.comparison.pin_again(reference),
@@ -351,7 +352,6 @@ impl Lab {
             let (name, why) = (printable(name), problems.in_one_line());
             text += &format!("; the measured data {name} are not beside it: {why}");
         }
-        self.lessons = place.lessons;
         self.tell(text);
     }
 

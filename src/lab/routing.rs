@@ -10,9 +10,9 @@ use super::form::{edit_line, type_into};
 use super::messages::{self, halt_in_words};
 use super::popups::Mode;
 use super::view::Pane;
-use super::{Cleared, CommandScript, Lab, pasted};
+use super::{Cleared, CommandScript, Lab, Snapshot, pasted};
 use crate::engine::run::NotFinite;
-use crate::engine::scenario::Scenario;
+use crate::engine::scenario::{Document, Problems};
 use crate::lab::playback::Halt;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -322,17 +322,25 @@ impl Lab {
         Ok(())
     }
 
-    /// Changes to the run of `scenario`, which another lab shows as `name`, and which ends there at `end_s`. It is paused at
-    /// step 0.
-    pub fn show_run(&mut self, name: &str, scenario: Arc<Scenario>, end_s: f64) {
+    /// Changes to the run of `snapshot`, which another lab shows. It is paused at step 0.
+    ///
+    /// # Errors
+    /// What is wrong with the run; nothing has changed then.
+    pub fn show_run(&mut self, snapshot: &Snapshot) -> Result<(), Problems> {
+        let scenario = Document::parse(&snapshot.name, &snapshot.run)?.scenario()?;
         self.take_commands(Commands::default());
         self.edits.values.forget_nudge();
-        let mut edit = self.edits.open(name, scenario, &self.player);
-        edit.end_s = Some(end_s);
-        self.edits.runs.set_end(end_s);
+        let mut edit = self
+            .edits
+            .open(&snapshot.name, Arc::new(scenario), &self.player);
+        edit.end_s = snapshot.end_s;
+        if let Some(end_s) = snapshot.end_s {
+            self.edits.runs.set_end(end_s);
+        }
         self.apply(edit);
         self.view.keep_focus();
         self.read_now();
+        Ok(())
     }
 
     /// Advances everything that changes with time up to now. `clock` returns the time since the lab was opened; it is read

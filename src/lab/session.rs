@@ -1,11 +1,11 @@
-//! The content of a session: the history of runs, and the place of the lab in it, each as TOML.
+//! The content of a session: the history of runs, and the present snapshot, each as TOML.
 
 use super::comparison::Comparison;
 use super::edits::Edits;
 use super::files::Files;
-use super::player::Player;
 use super::runs::Reference;
-use super::view::{Pane, View, ViewSettings};
+use super::snapshot::Snapshot;
+use super::view::{Pane, View};
 use crate::engine::data::{ColumnOptions, ColumnSigma};
 use crate::engine::journal::Journal;
 use crate::engine::journal::history::History;
@@ -14,11 +14,10 @@ use crate::engine::scenario::csv::Renaming;
 use crate::engine::scenario::file::ScenarioFile;
 use crate::engine::scenario::{Problems, Scenario, keys};
 use crate::engine::text::printable::PrintablePath;
-use crate::lab::playback::pace::Speed;
 use crate::lab::storage::session::{SessionContent, SharedText, later};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
-use toml::Value;
+use toml::{Table, Value};
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -38,14 +37,6 @@ pub(super) struct KeptPinned {
 }
 
 impl KeptPinned {
-    fn of(reference: &Reference) -> Self {
-        let run = reference.run.as_ref();
-        Self {
-            step: reference.step,
-            run: run.map(|scenario| scenario.file.clone()),
-        }
-    }
-
     /// What is to be pinned again.
     pub(super) fn reference(self) -> Result<Reference, Problems> {
         let run = self.run.map(|file| Journal::of(file).scenario());
@@ -56,28 +47,26 @@ impl KeptPinned {
     }
 }
 
-/// The text of the place: the step, how the run is shown, and the push to come.
+/// What a session keeps beside its runs: the snapshot, and what belongs to this screen.
 #[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub(super) struct KeptPlace {
-    pub(super) step: u64,
-    pub(super) speed: Speed,
-    pub(super) shows_exact: bool,
-    pub(super) focus: String,
-    pub(super) filled: bool,
-    pub(super) look: ViewSettings,
-    pub(super) exporting: Option<String>,
+    #[serde(flatten)]
+    pub(super) snapshot: Snapshot,
+    focus: String,
+    filled: bool,
+    exporting: Option<String>,
     /// The measured data beside the run.
     pub(super) measured: Option<String>,
     /// What its columns are called instead.
     #[serde(default)]
-    pub(super) map: Vec<Renaming>,
+    map: Vec<Renaming>,
     /// The uncertainties of columns without any.
     #[serde(default)]
-    pub(super) sigma: Vec<ColumnSigma>,
+    sigma: Vec<ColumnSigma>,
     pub(super) next_push: NextPush,
-    /// What the room of the lessons keeps.
-    pub(super) lessons: Option<toml::Table>,
+    /// The state of the lessons, which the lab does not interpret.
+    #[serde(default, skip_serializing_if = "Table::is_empty")]
+    lessons: Table,
 }
 
 /// What a list of sessions shows of a session.
@@ -90,14 +79,14 @@ pub struct SessionSummary {
 }
 
 impl SessionSummary {
-    pub fn of(content: &SessionContent) -> Result<Self, Unreadable> {
+    pub fn read(content: &SessionContent) -> Result<Self, Unreadable> {
         let runs: KeptRuns = read("the run", &content.work)?;
         let place: KeptPlace = read("the place in it", &content.place)?;
         let present = runs.history.present();
         Ok(Self {
             name: present.name.clone(),
             title: present.journal.file().title,
-            step: place.step,
+            step: place.snapshot.step,
         })
     }
 }
@@ -107,22 +96,20 @@ impl SessionSummary {
 #[error("{0}")]
 pub struct Unreadable(String);
 
-/// What is kept of the lessons in `content`; `None` where nothing is, or it cannot be read.
-pub fn lessons_in(content: &SessionContent) -> Option<toml::Table> {
-    read::<KeptPlace>("the place in it", &content.place)
-        .ok()?
-        .lessons
+/// The state of the lessons in `content`; empty where there is none, or it cannot be read.
+pub fn lessons_in(content: &SessionContent) -> Table {
+    read("the place in it", &content.place).map_or(Table::new(), |place: KeptPlace| place.lessons)
 }
 
 /// `history` as a session keeps it, with the pinned run. The text is written by the thread that first reads it.
 pub(super) fn written(history: &History, reference: Option<&Reference>) -> SharedText {
     let (history, reference) = (history.clone(), reference.cloned());
     later(move || {
-        let runs = KeptRuns {
-            history,
-            pinned: reference.as_ref().map(KeptPinned::of),
-        };
-        toml::to_string(&runs).unwrap_or_default()
+        let pinned = reference.map(|reference| KeptPinned {
+            step: reference.step,
+            run: reference.run.map(|scenario| scenario.file.clone()),
+        });
+        toml::to_string(&KeptRuns { history, pinned }).unwrap_or_default()
     })
 }
 
@@ -146,6 +133,30 @@ pub(super) fn kept(content: &SessionContent) -> Result<KeptContent, Unreadable> 
 }
 
 impl KeptPlace {
+    pub(super) fn new(
+        snapshot: Snapshot,
+        comparison: &Comparison,
+        edits: &Edits,
+        files: &Files,
+        view: &View,
+        lessons: &Table,
+    ) -> Self {
+        let columns = comparison.data().map(|data| data.options.clone());
+        let ColumnOptions { map, sigma } = columns.unwrap_or_default();
+        let exported_to = files.exported_to();
+        Self {
+            snapshot,
+            focus: view.focus.id().to_owned(),
+            filled: view.filled,
+            exporting: exported_to.map(|path| PrintablePath(path).to_string()),
+            measured: comparison.data_to_keep(files),
+            map,
+            sigma,
+            next_push: edits.values.next_push.clone(),
+            lessons: lessons.clone(),
+        }
+    }
+
     /// What is kept of the columns of the measured data.
     pub(super) fn columns(&self) -> ColumnOptions {
         ColumnOptions {
@@ -154,39 +165,14 @@ impl KeptPlace {
         }
     }
 
-    pub(super) fn of(
-        player: &Player,
-        comparison: &Comparison,
-        edits: &Edits,
-        files: &Files,
-        view: &View,
-    ) -> Self {
-        let exported_to = files.exported_to();
-        Self {
-            step: player.step_to_keep(),
-            speed: player.playback.speed(),
-            shows_exact: player.run().shows_exact(),
-            focus: view.focus.id().to_owned(),
-            filled: view.filled,
-            look: view.look.clone(),
-            exporting: exported_to.map(|path| PrintablePath(path).to_string()),
-            measured: comparison.data_to_keep(files),
-            sigma: (comparison.data()).map_or_else(Vec::new, |data| data.options.sigma.clone()),
-            map: comparison
-                .data()
-                .map_or_else(Vec::new, |data| data.options.map.clone()),
-            next_push: edits.values.next_push.clone(),
-            lessons: None,
-        }
-    }
-
     /// Shows in `view` what the session showed.
     pub(super) fn restore(&self, view: &mut View) -> Result<(), Unreadable> {
-        let look = Value::try_from(&self.look).map_err(|error| Unreadable(error.to_string()))?;
-        if let Some(problem) = keys::check_part(&look, "view").list.first() {
+        let look = &self.snapshot.look;
+        let table = Value::try_from(look).map_err(|error| Unreadable(error.to_string()))?;
+        if let Some(problem) = keys::check_part(&table, "view").list.first() {
             return Err(Unreadable(problem.to_string()));
         }
-        view.set_look(self.look.clone());
+        view.set_look(look.clone());
         view.focus = Pane::named(&self.focus)
             .ok_or_else(|| Unreadable(format!("there is no pane {}", self.focus)))?;
         view.filled = self.filled;

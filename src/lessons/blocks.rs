@@ -298,7 +298,7 @@ pub(super) fn setup(
     page: usize,
     known_from: usize,
 ) -> BlockResult<Setup> {
-    let mut content = BlockContent::parse(reader).inspect_err(|_| names.lose())?;
+    let mut content = BlockContent::parse(reader).inspect_err(|_| names.mark_incomplete())?;
     let table = content.document.table().clone();
     let known: Vec<_> = COMMANDS
         .iter()

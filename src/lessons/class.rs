@@ -25,9 +25,10 @@ pub struct Lessons {
     now: Duration,
     /// Whether the page is to be written again.
     has_changed: bool,
+    kept: Table,
     /// The lessons of the folder that the lab is confined to, by the full paths of their files.
     own: Vec<String>,
-    dress: ClassOverlay,
+    overlay: ClassOverlay,
 }
 
 #[derive(Debug, Default)]
@@ -61,14 +62,18 @@ impl KeptLessons {
 
 /// The full paths of the lessons in `folder`, sorted; hidden files and what cannot be read as a lesson are left out.
 pub fn files_in(folder: &Path) -> Vec<String> {
-    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
-    let paths = names
-        .filter(|name| name.ends_with(".md") && !name.starts_with('.'))
-        .map(|name| folder.join(name));
-    // A FIFO would be waited for.
-    let paths = paths.filter(|path| path.is_file() && reading::read_again(path).is_ok());
-    let mut paths: Vec<_> = paths.map(|path| path.display().to_string()).collect();
+    let mut paths = Vec::new();
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        let Ok(name) = entry.file_name().into_string() else {
+            continue;
+        };
+        let path = folder.join(&name);
+        let is_meant = name.ends_with(".md") && !name.starts_with('.');
+        // A FIFO would be waited for.
+        if is_meant && path.is_file() && reading::read_again(&path).is_ok() {
+            paths.push(path.display().to_string());
+        }
+    }
     paths.sort_unstable();
     paths
 }
@@ -81,27 +86,34 @@ fn tell(opened: Result<(), String>, lab: &mut Lab) {
 }
 
 impl Lessons {
-    /// The lessons as the session of `lab` has kept them. The one that was taken is taken again, on its page; the run is
-    /// left where it is.
+    /// The lessons as `kept` has them. The one that was open is opened again, on its page; the run is left where it is.
     ///
     /// # Errors
-    /// Why the lesson that was taken cannot be taken again; where it was left is kept.
-    pub fn resumed(lab: &mut Lab) -> (Self, Result<(), String>) {
-        let mut class = Self::default();
-        let kept = lab.lessons.as_ref().map(KeptLessons::read);
-        let Some(Ok(kept)) = kept else {
-            return (class, Ok(()));
+    /// Why the lesson that was open cannot be opened again; where it was left is kept.
+    pub fn resumed(kept: Table, lab: &mut Lab) -> (Self, Result<(), String>) {
+        let mut lessons = Self {
+            kept,
+            ..Self::default()
         };
-        class.left = kept.lessons;
-        class.has_changed = true;
-        let taken = kept.open.map_or(Ok(()), |name| class.take(&name, lab));
-        class.show(lab);
-        (class, taken)
+        let Ok(kept) = KeptLessons::read(&lessons.kept) else {
+            return (lessons, Ok(()));
+        };
+        lessons.left = kept.lessons;
+        let opened = kept.open.map_or(Ok(()), |name| lessons.load(&name, lab));
+        if !lessons.kept.is_empty() {
+            lessons.show(lab);
+        }
+        (lessons, opened)
+    }
+
+    /// What a session keeps of them: a [`KeptLessons`].
+    pub fn kept(&self) -> &Table {
+        &self.kept
     }
 
     /// Opens the lesson that NAME names, on the page `page` (from 1) or where it was left, and makes the lab stand there.
     pub fn open(&mut self, name: &str, page: Option<usize>, lab: &mut Lab) -> Result<(), String> {
-        self.take(name, lab)?;
+        self.load(name, lab)?;
         if let LessonDialog::Lesson(taken) = &mut self.shown {
             taken.go_to(page, lab)?;
         }
@@ -118,13 +130,12 @@ impl Lessons {
     }
 
     /// Takes the lesson that NAME names, where it was left.
-    fn take(&mut self, name: &str, lab: &mut Lab) -> Result<(), String> {
+    fn load(&mut self, name: &str, lab: &mut Lab) -> Result<(), String> {
         let name = reading::full_name(name);
         if reading::is_file_name(&name) {
             lab.files().admit_reading(Path::new(&name))?;
         }
-        let lesson = reading::open_again(&name);
-        let lesson = lesson.map_err(|problems| problems.to_string())?;
+        let lesson = reading::open_again(&name).map_err(|problems| problems.to_string())?;
         self.leave(lab);
         let place = self.left.remove(&lesson.name).unwrap_or_default();
         let mut taken = OpenLesson::new(lesson, place, self.now);
@@ -144,7 +155,7 @@ impl Lessons {
     }
 
     /// Does what `key` stands for. Returns the direction in which the page is to be scrolled, if that is what it means.
-    pub fn act(&mut self, key: LessonKey, lab: &mut Lab) -> Option<Direction> {
+    pub fn on_key(&mut self, key: LessonKey, lab: &mut Lab) -> Option<Direction> {
         let mut scrolls = None;
         let names = self.names();
         match (&mut self.shown, key) {
@@ -152,7 +163,7 @@ impl Lessons {
                 // Back to the page; the run was left as it was.
                 let from = from.take();
                 self.shown = LessonDialog::Nothing;
-                let taken = from.map_or(Ok(()), |name| self.take(&name, lab));
+                let taken = from.map_or(Ok(()), |name| self.load(&name, lab));
                 tell(taken, lab);
             }
             (_, LessonKey::List) => self.open_list(lab),
@@ -178,7 +189,7 @@ impl Lessons {
                 lab.refuse("Enter opens the selected lesson, L goes back, Esc leaves the lessons");
             }
             (LessonDialog::Nothing, _) => lab.refuse("no lesson is open: L lists them"),
-            (LessonDialog::Lesson(taken), key) => scrolls = taken.act(key, lab),
+            (LessonDialog::Lesson(taken), key) => scrolls = taken.on_key(key, lab),
         }
         self.show(lab);
         if key == LessonKey::List {
@@ -193,10 +204,8 @@ impl Lessons {
         self.leave(lab);
         let folder = lab.files().confined().map(Confined::lessons);
         self.own = folder.map(files_in).unwrap_or_default();
-        let names = self.names();
-        let selected = here
-            .as_ref()
-            .and_then(|here| names.iter().position(|name| name == here));
+        let mut names = self.names().into_iter();
+        let selected = names.position(|name| Some(name) == here);
         self.shown = LessonDialog::List {
             selected: selected.unwrap_or(self.selected),
             from: here,
@@ -206,39 +215,44 @@ impl Lessons {
     /// The names of the list: the lessons of the lab's folder, those that come with the program, then the files that were
     /// opened.
     fn names(&self) -> Vec<String> {
-        let own = self.own.iter().cloned();
-        let shipped = shipped::LESSONS.iter().map(|lesson| lesson.name.to_owned());
-        let files = self.left.keys();
-        let files = files
-            .filter(|name| shipped::find(name).is_none() && !self.own.contains(name))
-            .cloned();
-        own.chain(shipped).chain(files).collect()
-    }
-
-    pub fn set_dress(&mut self, dress: ClassOverlay, lab: &mut Lab) {
-        if let LessonDialog::Lesson(taken) = &mut self.shown {
-            taken.was_asked |= dress.is_of_teacher;
-            taken.rounds.clone_from(&dress.rounds);
-            if !dress.is_followed {
-                taken.unfollow();
+        let mut names = self.own.clone();
+        names.extend(shipped::LESSONS.iter().map(|lesson| lesson.name.to_owned()));
+        for name in self.left.keys() {
+            if !names.contains(name) {
+                names.push(name.clone());
             }
         }
-        if self.dress != dress {
-            self.dress = dress;
+        names
+    }
+
+    pub fn set_overlay(&mut self, overlay: ClassOverlay, lab: &mut Lab) {
+        if let LessonDialog::Lesson(taken) = &mut self.shown {
+            taken.was_asked |= overlay.is_of_teacher;
+            taken.rounds.clone_from(&overlay.rounds);
+            if !overlay.is_followed {
+                taken.leave_class();
+            }
+        }
+        if self.overlay != overlay {
+            self.overlay = overlay;
             self.show(lab);
         }
     }
 
     /// Shows the page of `class`: the run is not touched, and the page's numbers are stated once the class has arrived.
-    pub fn follow(&mut self, class: &FollowedLesson<'_>, lab: &mut Lab) -> Result<(), String> {
+    pub fn show_class_page(
+        &mut self,
+        class: &FollowedLesson<'_>,
+        lab: &mut Lab,
+    ) -> Result<(), String> {
         if self
             .taken()
             .is_none_or(|taken| taken.lesson.name != class.lesson)
         {
-            self.take(class.lesson, lab)?;
+            self.load(class.lesson, lab)?;
         }
         if let LessonDialog::Lesson(taken) = &mut self.shown
-            && taken.follow(class)
+            && taken.show_class_page(class)
         {
             self.show(lab);
             lab.view_mut().turn_to_sheet();
@@ -255,7 +269,7 @@ impl Lessons {
     }
 
     /// Brings the page up to date with the lab and the file; `now` is the time since the lab was opened.
-    pub fn advance(&mut self, now: Duration, lab: &mut Lab) {
+    pub fn update(&mut self, now: Duration, lab: &mut Lab) {
         let second = now.as_secs() != self.now.as_secs();
         self.now = now;
         let LessonDialog::Lesson(taken) = &mut self.shown else {
@@ -264,7 +278,7 @@ impl Lessons {
             }
             return;
         };
-        let is_new = taken.advance(now, lab);
+        let is_new = taken.update(now, lab);
         if is_new || self.has_changed || lab.has_changed() || (second && taken.shows_notes) {
             self.show(lab);
         }
@@ -280,8 +294,7 @@ impl Lessons {
         self.has_changed = false;
         let sheet = self.sheet(lab);
         lab.set_sheet(sheet);
-        let kept = Table::try_from(self.kept()).unwrap_or_default();
-        lab.lessons = Some(kept).filter(|kept| !kept.is_empty());
+        self.kept = Table::try_from(self.to_keep()).unwrap_or_default();
     }
 
     fn sheet(&mut self, lab: &Lab) -> Option<Sheet> {
@@ -289,11 +302,11 @@ impl Lessons {
         match &mut self.shown {
             LessonDialog::Nothing => None,
             LessonDialog::List { selected, .. } => Some(page::list(&names, *selected, &self.left)),
-            LessonDialog::Lesson(taken) => Some(page::sheet(taken, &self.dress, self.now, lab)),
+            LessonDialog::Lesson(taken) => Some(page::sheet(taken, &self.overlay, self.now, lab)),
         }
     }
 
-    fn kept(&self) -> KeptLessons {
+    fn to_keep(&self) -> KeptLessons {
         let mut lessons = self.left.clone();
         let open = self.taken().map(|taken| {
             let name = taken.lesson.name.clone();

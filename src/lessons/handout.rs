@@ -40,22 +40,16 @@ pub fn handout(
         if paper == Paper::Worksheet && has_asked {
             parts.extend(blank_page(page, &walk, picture));
         } else {
-            let end = match page
-                .blocks
-                .iter()
-                .position(|block| matches!(block, LessonBlock::Predict(_)))
-            {
-                Some(asked) if paper == Paper::Worksheet => asked + 1,
-                _ => page.blocks.len(),
+            let mut all = page.blocks.iter();
+            let blocks = match all.position(|block| matches!(block, LessonBlock::Predict(_))) {
+                Some(asked) if paper == Paper::Worksheet => &page.blocks[..=asked],
+                _ => &page.blocks,
             };
-            parts.extend(on_pages(page, end, &walk, picture));
+            parts.extend(on_pages(page, blocks, &walk, picture));
             has_asked |= page.predicts().next().is_some();
-            parts.extend(
-                page.predicts()
-                    .skip(1)
-                    .filter(|_| end < page.blocks.len())
-                    .map(room_for_blank),
-            );
+            if blocks.len() < page.blocks.len() {
+                parts.extend(page.predicts().skip(1).map(room_for_blank));
+            }
         }
         if page.number < lesson.pages.len() {
             walk.leave(page, go_on)?;
@@ -72,10 +66,8 @@ fn blank_page(
 ) -> Vec<String> {
     let mut parts = vec![format!("## {}", page.heading)];
     let asks = page.predicts().next().is_some();
-    let is_command =
-        |block: &LessonBlock| matches!(block, LessonBlock::Shown(it) if it.language == "sh");
     // What is to be typed says what to do, unless the page compares it with a prediction.
-    let is_typed = page.blocks.iter().any(is_command) && page.compares().next().is_none();
+    let is_typed = page.blocks.iter().any(is_shell) && page.compares().next().is_none();
     let is_done = is_typed || page.task().is_some();
     let tells = !asks && !is_done && page.checks().next().is_none();
     let mut is_before = true;
@@ -83,10 +75,7 @@ fn blank_page(
         match block {
             LessonBlock::Lab(_) if asks => parts.push(fenced("text", &picture(&walk.lab))),
             LessonBlock::Lab(_) => is_before = false,
-            LessonBlock::Text(text) if is_before && (!tells || page.lab().is_some()) => {
-                parts.push(text.filled(|_, _| BLANK.to_owned()));
-            }
-            LessonBlock::Text(text) if is_done => {
+            LessonBlock::Text(text) if is_done || is_before && (!tells || page.lab().is_some()) => {
                 parts.push(text.filled(|_, _| BLANK.to_owned()));
             }
             LessonBlock::Predict(predict) => {
@@ -99,7 +88,7 @@ fn blank_page(
             LessonBlock::Check(check) => {
                 parts.extend(check.goals.iter().map(|goal| format!("- [ ] {goal}")));
             }
-            LessonBlock::Shown(CodeBlock { language, text }) if !tells || is_command(block) => {
+            LessonBlock::Shown(CodeBlock { language, text }) if !tells || is_shell(block) => {
                 parts.push(fenced(language, text));
             }
             _ => {}
@@ -111,6 +100,11 @@ fn blank_page(
     parts
 }
 
+/// Whether it is a command to be typed.
+fn is_shell(block: &LessonBlock) -> bool {
+    matches!(block, LessonBlock::Shown(code) if code.language == "sh")
+}
+
 /// A question of which no number is told.
 fn room_for_blank(predict: &Predict) -> String {
     asked(predict, &predict.ask.filled(|_, _| BLANK.to_owned()))
@@ -119,7 +113,7 @@ fn room_for_blank(predict: &Predict) -> String {
 /// One page, as in the handout, and with the picture even where the page itself makes the lab do nothing; `walk` stands on
 /// it.
 pub fn page(page: &LessonPage, walk: &LessonWalk<'_>, picture: &dyn Fn(&Lab) -> String) -> String {
-    let mut parts = on_pages(page, page.blocks.len(), walk, picture);
+    let mut parts = on_pages(page, &page.blocks, walk, picture);
     if page.lab().is_none() {
         parts.insert(1, fenced("text", &picture(&walk.lab)));
     }
@@ -132,31 +126,24 @@ fn joined(parts: &[String]) -> String {
 
 fn head(lesson: &Lesson, walk: &LessonWalk<'_>) -> Vec<String> {
     let mut parts = vec![format!("# {}", lesson.title)];
-    let minutes = lesson
-        .minutes
-        .map(|minutes| format!("About {minutes} minutes."));
-    let told = Some(lesson.about.clone()).filter(|about| !about.is_empty());
-    let told: Vec<_> = told.into_iter().chain(minutes).collect();
-    parts.push(told.join(" "));
-    parts.extend(
-        lesson
-            .introduction
-            .iter()
-            .filter_map(|block| on_paper(block, walk)),
-    );
+    let minutes = lesson.minutes.map(|it| format!("About {it} minutes."));
+    let about = format!("{} {}", lesson.about, minutes.unwrap_or_default());
+    parts.push(about.trim().to_owned());
+    let introduction = lesson.introduction.iter();
+    parts.extend(introduction.filter_map(|block| on_paper(block, walk)));
     parts.retain(|part| !part.is_empty());
     parts
 }
 
-/// The parts of a page up to its block `end`, with a blank line between each and the next.
+/// The parts of a page with these of its `blocks`, with a blank line between each and the next.
 fn on_pages(
     page: &LessonPage,
-    end: usize,
+    blocks: &[LessonBlock],
     walk: &LessonWalk<'_>,
     picture: &dyn Fn(&Lab) -> String,
 ) -> Vec<String> {
     let mut parts = vec![format!("## {}", page.heading)];
-    for block in &page.blocks[..end] {
+    for block in blocks {
         match block {
             LessonBlock::Lab(_) => parts.push(fenced("text", &picture(&walk.lab))),
             other => parts.extend(on_paper(other, walk)),
@@ -211,10 +198,10 @@ fn blanked(compare: &Compare, lab: &Lab, kept: &KeptNumbers) -> String {
 
 /// `text` between fences that do not occur in it.
 fn fenced(language: &str, text: &str) -> String {
-    let longest = text
+    let ticks = text
         .lines()
-        .map(|line| line.chars().take_while(|c| *c == '`').count());
-    let fence = "`".repeat(longest.max().unwrap_or(0).max(2) + 1);
+        .map(|line| line.len() - line.trim_start_matches('`').len());
+    let fence = "`".repeat(ticks.max().unwrap_or(0).max(2) + 1);
     format!(
         "{fence}{language}\n{}\n{fence}",
         text.trim_end_matches('\n')
@@ -259,11 +246,10 @@ fn answers_of(
     let mut parts: Vec<_> = told.collect();
     if page.task().is_some() {
         let tried = Tried::words(place.tasks.get(&page.heading));
-        let goals = page
-            .checks()
-            .flat_map(|check| check.goals.iter().map(String::as_str));
-        let goals = goals.collect::<Vec<_>>().join(", ");
-        parts.push(format!("**Task.** {goals}: {tried}").replace("** :", "**"));
+        let checks = page.checks();
+        let goals: Vec<_> = checks.flat_map(|check| check.goals.clone()).collect();
+        let task = format!("**Task.** {}: {tried}", goals.join(", "));
+        parts.push(task.replace("** :", "**"));
     }
     if !parts.is_empty() {
         parts.insert(0, format!("## {}", page.heading));
@@ -288,10 +274,12 @@ fn came_out(
     let predict = lesson.predict(&compare.prediction)?;
     place.predictions.to(predict).next()?;
     let text = compare.filled(lesson, &place.predictions, &walk.lab, &walk.kept);
-    let choice = match (&predict.asked, &predict.right) {
+    let right = match (&predict.asked, &predict.right) {
         (AnswerKind::Choice(choices), Some(Right::Choice(right))) => choices.get(right - 1),
         _ => None,
     };
-    let choice = choice.map_or(String::new(), |choice| format!("{choice}. "));
-    Some(format!("**Came out.** {choice}{text}"))
+    Some(match right {
+        Some(choice) => format!("**Came out.** {choice}. {text}"),
+        None => format!("**Came out.** {text}"),
+    })
 }

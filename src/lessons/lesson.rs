@@ -91,7 +91,7 @@ pub enum Right {
 
 impl Right {
     /// Whether `answer` is right: a number, or the number of a choice.
-    pub fn takes(&self, answer: f64) -> bool {
+    pub fn accepts(&self, answer: f64) -> bool {
         match self {
             Self::Choice(number) => answer == *number as f64,
             Self::Number { value, within } => (answer - value).abs() <= *within,
@@ -170,6 +170,16 @@ impl LessonBlock {
             _ => None,
         }
     }
+
+    /// The numbers that it states.
+    fn expressions(&self) -> impl Iterator<Item = &Expression> {
+        let with = match self {
+            Self::Compare(compare) => compare.with.as_ref(),
+            _ => None,
+        };
+        let numbers = self.text().into_iter().flat_map(LessonText::numbers);
+        numbers.map(|(_, expression)| expression).chain(with)
+    }
 }
 
 impl LessonPage {
@@ -223,21 +233,12 @@ impl LessonPage {
 
     /// Whether it states numbers of the run that a student has in hand: what `kept` names is known whatever that is.
     pub fn states_numbers(&self, kept: &KeptNumbers) -> bool {
-        let is_of_run = |expression: &Expression| {
-            let mut names = expression.names();
-            names.any(|name| !kept.contains_key(name) && ![PREDICTION, WITH].contains(&name))
-        };
-        let shown = self.blocks.iter();
-        let mut shown = shown.filter(|block| !matches!(block, LessonBlock::Notes(_)));
-        shown.any(|block| {
-            let numbers = block.text().into_iter().flat_map(LessonText::numbers);
-            let with = match block {
-                LessonBlock::Compare(compare) => compare.with.as_ref(),
-                _ => None,
-            };
-            let mut numbers = numbers.map(|(_, expression)| expression).chain(with);
-            numbers.any(is_of_run)
-        })
+        self.blocks
+            .iter()
+            .filter(|block| !matches!(block, LessonBlock::Notes(_)))
+            .flat_map(LessonBlock::expressions)
+            .flat_map(Expression::names)
+            .any(|name| !kept.contains_key(name) && ![PREDICTION, WITH].contains(&name))
     }
 
     pub fn notes(&self) -> impl Iterator<Item = &LessonText> {
@@ -251,22 +252,25 @@ impl LessonPage {
 impl Setup {
     /// Whether it opens a run: it then depends on nothing before it but kept numbers.
     pub fn opens(&self) -> bool {
-        let mut commands = self.commands.iter();
-        commands.any(|placed| matches!(placed.command, Command::Open(_)))
+        self.has_command(|command| matches!(command, Command::Open(_)))
     }
 
     /// Whether it ends with a run that is played until a condition holds.
     pub fn plays(&self) -> bool {
-        let mut commands = self.commands.iter();
-        commands.any(|placed| matches!(placed.command, Command::RunUntil(_)))
+        self.has_command(|command| matches!(command, Command::RunUntil(_)))
+    }
+
+    fn has_command(&self, is_meant: impl Fn(&Command) -> bool) -> bool {
+        self.commands.iter().any(|placed| is_meant(&placed.command))
     }
 
     /// The parts of the screen that its `hide` names.
     pub fn hides(&self) -> Vec<HideablePart> {
-        let mut commands = self.commands.iter();
-        let hidden = commands.find_map(|placed| placed.command.looked("hide"));
-        let hidden = hidden.and_then(|hidden| hidden.clone().try_into().ok());
-        hidden.unwrap_or_default()
+        self.commands
+            .iter()
+            .find_map(|placed| placed.command.looked("hide"))
+            .and_then(|hidden| hidden.clone().try_into().ok())
+            .unwrap_or_default()
     }
 }
 
@@ -282,7 +286,7 @@ impl AnswerKind {
         }
     }
 
-    pub fn takes(&self, answer: &PredictionAnswer) -> bool {
+    pub fn accepts(&self, answer: &PredictionAnswer) -> bool {
         self.number(answer).is_some_and(f64::is_finite)
     }
 }

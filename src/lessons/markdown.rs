@@ -15,7 +15,7 @@ pub fn paragraphs(source: &str, kind: &SheetLineKind) -> Vec<Paragraph> {
         block: None,
     };
     for event in Parser::new(source) {
-        pen.take(event);
+        pen.read_event(event);
     }
     pen.end();
     pen.done
@@ -36,7 +36,7 @@ struct MarkdownReader<'a> {
 }
 
 impl MarkdownReader<'_> {
-    fn take(&mut self, event: Event<'_>) {
+    fn read_event(&mut self, event: Event<'_>) {
         match event {
             Event::Start(tag) => self.start(&tag),
             Event::End(tag) => self.stop(tag),

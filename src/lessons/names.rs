@@ -23,7 +23,7 @@ pub(super) struct KeptNames {
     /// The first page on which a run is open, once a block that opens one was read.
     open_from: Option<usize>,
     /// Whether a block could not be read that may have kept more numbers.
-    are_lost: bool,
+    is_incomplete: bool,
 }
 
 impl KeptNames {
@@ -63,8 +63,8 @@ impl KeptNames {
     }
 
     /// Notes that a block could not be read: from now on a name that is not known may be one of its own, and is taken.
-    pub(super) fn lose(&mut self) {
-        self.are_lost = true;
+    pub(super) fn mark_incomplete(&mut self) {
+        self.is_incomplete = true;
     }
 
     /// Whether `name` stands for a number on the page `page`.
@@ -77,7 +77,7 @@ impl KeptNames {
             Some((_, from)) => return Err(format!("{name} is known from page {from} on")),
             None => {}
         }
-        if self.are_lost {
+        if self.is_incomplete {
             return Ok(());
         }
         let found = numbers::find(name, None).map(|_| ());

@@ -24,9 +24,10 @@ pub fn open(name: &str) -> Result<Lesson, Problems> {
     match shipped::find(name) {
         Some(lesson) => {
             let origin = format!("presets/lessons/{name}.md");
-            let read = read(&origin, lesson.text)?;
-            let name = name.to_owned();
-            Ok(Lesson { name, ..read })
+            Ok(Lesson {
+                name: name.to_owned(),
+                ..read(&origin, lesson.text)?
+            })
         }
         None => {
             let near = nearest(name, shipped::LESSONS.iter().map(|lesson| lesson.name));
@@ -39,8 +40,10 @@ pub fn open(name: &str) -> Result<Lesson, Problems> {
 
 /// As [`open`], where nothing may wait for a file.
 pub fn open_again(name: &str) -> Result<Lesson, Problems> {
-    let read = is_file_name(name).then(|| read_again(Path::new(name)));
-    read.unwrap_or_else(|| open(name))
+    if is_file_name(name) {
+        return read_again(Path::new(name));
+    }
+    open(name)
 }
 
 /// Whether NAME names a file: it holds a `/` or ends in `.md`.
@@ -50,10 +53,10 @@ pub fn is_file_name(name: &str) -> bool {
 
 /// The name by which a session keeps the lesson that NAME names: that of a shipped lesson, or the full path of its file.
 pub fn full_name(name: &str) -> String {
-    let path = is_file_name(name)
-        .then(|| std::path::absolute(name).ok())
-        .flatten();
-    path.map_or_else(|| name.to_owned(), |path| path.display().to_string())
+    match std::path::absolute(name) {
+        Ok(path) if is_file_name(name) => path.display().to_string(),
+        _ => name.to_owned(),
+    }
 }
 
 /// Reads the lesson in the file at `path`. The files that it opens are looked for in its folder.
@@ -79,16 +82,16 @@ pub fn read_again(path: &Path) -> Result<Lesson, Problems> {
 
 /// Makes the files that `lesson` opens files in `folder`, where they are not named from the root.
 fn look_in(folder: &Path, lesson: &mut Lesson) {
-    let blocks = lesson.pages.iter_mut().flat_map(|page| &mut page.blocks);
-    let setups = blocks.filter_map(|block| match block {
-        LessonBlock::Lab(setup) | LessonBlock::Task(setup) => Some(setup),
-        _ => None,
-    });
-    for placed in setups.flat_map(|setup| &mut setup.commands) {
-        if let Command::Open(name) = &mut placed.command
-            && presets::find(name).is_none()
-        {
-            *name = folder.join(&*name).display().to_string();
+    for block in lesson.pages.iter_mut().flat_map(|page| &mut page.blocks) {
+        let (LessonBlock::Lab(setup) | LessonBlock::Task(setup)) = block else {
+            continue;
+        };
+        for placed in &mut setup.commands {
+            if let Command::Open(name) = &mut placed.command
+                && presets::find(name).is_none()
+            {
+                *name = folder.join(&*name).display().to_string();
+            }
         }
     }
 }

@@ -48,27 +48,27 @@ pub(super) fn list(
     };
     for (index, name) in names.iter().enumerate() {
         let lesson = reading::open_again(name).ok();
-        let title = lesson.as_ref().map_or(name, |lesson| &lesson.title);
-        let minutes = lesson.as_ref().and_then(|lesson| lesson.minutes);
-        let minutes = minutes.map_or(String::new(), |minutes| format!(", {minutes} min"));
-        let pages = lesson.as_ref().map_or(0, |lesson| lesson.pages.len());
-        let place = left.get(name).map_or(String::new(), |place| {
-            format!(" (page {} of {pages})", place.page)
-        });
-        let kind = SheetLineKind::Choice {
+        let mut text = lesson.as_ref().map_or(name, |it| &it.title).clone();
+        if let Some(minutes) = lesson.as_ref().and_then(|lesson| lesson.minutes) {
+            text += &format!(", {minutes} min");
+        }
+        if let Some(place) = left.get(name) {
+            let pages = lesson.as_ref().map_or(0, |lesson| lesson.pages.len());
+            text += &format!(" (page {} of {pages})", place.page);
+        }
+        let choice = SheetLineKind::Choice {
             is_selected: index == selected,
             is_given: left.get(name).is_some_and(|place| place.has_ended),
         };
-        let text = format!("{title}{minutes}{place}");
-        sheet.paragraphs.push(Paragraph::new(kind, text));
+        sheet.paragraphs.push(Paragraph::new(choice, text));
         if index == selected {
-            let about = lesson.map_or(String::new(), |lesson| lesson.about);
-            let kind = SheetLineKind::Item {
-                mark: "     ".to_owned(),
-                depth: 1,
-            };
-            let about = Some(Paragraph::new(kind, about)).filter(|about| !about.text().is_empty());
-            sheet.paragraphs.extend(about);
+            if let Some(lesson) = lesson.filter(|lesson| !lesson.about.is_empty()) {
+                let item = SheetLineKind::Item {
+                    mark: "     ".to_owned(),
+                    depth: 1,
+                };
+                sheet.paragraphs.push(Paragraph::new(item, lesson.about));
+            }
             sheet.seen = Some((sheet.paragraphs.len() - 1, sheet.paragraphs.len() - 1));
         }
     }
@@ -80,41 +80,40 @@ pub(super) fn list(
 }
 
 /// The page that is open in `taken`; `now` is the time since the lab was opened.
-pub(super) fn sheet(taken: &OpenLesson, dress: &ClassOverlay, now: Duration, lab: &Lab) -> Sheet {
+pub(super) fn sheet(taken: &OpenLesson, overlay: &ClassOverlay, now: Duration, lab: &Lab) -> Sheet {
     let lesson = &taken.lesson;
     let (page, pages) = (taken.place.page, lesson.pages.len());
     let mut writer = Writer {
         taken,
-        dress,
+        overlay,
         lab,
         sheet: Sheet {
-            framed: dress.framed.clone(),
-            border: dress.border.clone(),
+            framed: overlay.framed.clone(),
+            border: overlay.border.clone(),
             title: format!("{page} of {pages} · {}", lesson.title),
-            has_next: page < pages && !dress.is_followed,
+            has_next: page < pages && !overlay.is_followed,
             plays: taken.plays(),
             ..Sheet::default()
         },
     };
-    if let Some(paragraphs) = &dress.instead {
+    if let Some(paragraphs) = &overlay.instead {
         writer.extend(paragraphs.clone());
         return writer.sheet;
     }
     writer.notes(now);
     writer.page();
-    writer.sheet.takes_digits |= dress.asks_digit;
+    writer.sheet.takes_digits |= overlay.asks_digit;
     writer.sheet
 }
 
 /// The page `number` in words for the one who teaches: its questions, each with what `after` says of it, its notes, and
 /// the next page.
 pub fn told(lesson: &Lesson, number: usize, after: impl Fn(&Predict) -> String) -> String {
-    let blank = |text: &LessonText| text.filled(|_, _| SOON.to_owned());
     let mut text = format!("\n== {number} of {} · {}", lesson.pages.len(), lesson.title);
     if let Some(page) = lesson.page(number) {
         text += &format!("\n{}\n", page.heading);
         for predict in page.predicts() {
-            text += &format!("\nasked: {}\n", blank(&predict.ask));
+            text += &format!("\nasked: {}\n", unfilled(&predict.ask));
             if let AnswerKind::Choice(choices) = &predict.asked {
                 for (number, choice) in (1..).zip(choices) {
                     text += &format!("  {number} {choice}\n");
@@ -123,7 +122,7 @@ pub fn told(lesson: &Lesson, number: usize, after: impl Fn(&Predict) -> String) 
             text += &after(predict);
         }
         for notes in page.notes() {
-            text += &format!("\n{}\n", blank(notes).trim());
+            text += &format!("\n{}\n", unfilled(notes).trim());
         }
     }
     text + &match lesson.page(number + 1) {
@@ -132,9 +131,14 @@ pub fn told(lesson: &Lesson, number: usize, after: impl Fn(&Predict) -> String) 
     }
 }
 
+/// `text` before its numbers are known.
+fn unfilled(text: &LessonText) -> String {
+    text.filled(|_, _| SOON.to_owned())
+}
+
 struct Writer<'a> {
     taken: &'a OpenLesson,
-    dress: &'a ClassOverlay,
+    overlay: &'a ClassOverlay,
     lab: &'a Lab,
     sheet: Sheet,
 }
@@ -148,14 +152,11 @@ impl Writer<'_> {
         if page.number == 1 {
             self.blocks(&self.taken.lesson.introduction);
         }
-        let blocks = match page
-            .blocks
-            .iter()
-            .position(|block| matches!(block, LessonBlock::Lab(_)))
-        {
-            Some(lab) if self.taken.plays() => &page.blocks[..lab],
-            _ => &page.blocks,
-        };
+        let mut blocks = page.blocks.as_slice();
+        if self.taken.plays() {
+            let mut parts = blocks.split(|block| matches!(block, LessonBlock::Lab(_)));
+            blocks = parts.next().unwrap_or_default();
+        }
         let is_open = self.blocks(blocks);
         if !is_open {
             self.next(page.number);
@@ -174,23 +175,21 @@ impl Writer<'_> {
         for block in blocks {
             match block {
                 LessonBlock::Text(text) => {
-                    let source = match self.taken.stated(text.line) {
+                    let mut source = match self.taken.stated(text.line) {
                         Some(source) => source.to_owned(),
-                        None if self.taken.is_under_way() => text.filled(|_, _| SOON.to_owned()),
+                        None if self.taken.is_under_way() => unfilled(text),
                         None => text.with_numbers(self.lab, &self.taken.place.kept),
                     };
-                    // Who follows is not told the keys that leave the class.
-                    let source = if self.dress.is_followed {
-                        without("`space`", &source)
-                    } else {
-                        source
-                    };
+                    if self.overlay.is_followed {
+                        // Who follows is not told the keys that leave the class.
+                        source = without("`space`", &source);
+                    }
                     self.extend(paragraphs(&source, &SheetLineKind::Text));
                 }
                 LessonBlock::Predict(predict) => {
                     let first = self.sheet.paragraphs.len();
                     self.question(predict);
-                    if let Some((name, votes)) = &self.dress.votes
+                    if let Some((name, votes)) = &self.overlay.votes
                         && *name == predict.name
                     {
                         self.extend(votes.clone());
@@ -226,18 +225,21 @@ impl Writer<'_> {
             } else {
                 "not yet"
             };
-            let all = [&[state.to_owned()][..], &[check.goals.join(", ")]];
-            let words = all.concat().into_iter().filter(|words| !words.is_empty());
-            let text = words.collect::<Vec<_>>().join(": ");
+            let goals = check.goals.join(", ");
+            let text = match goals.as_str() {
+                "" => state.to_owned(),
+                goals => format!("{state}: {goals}"),
+            };
             self.add(Paragraph::new(SheetLineKind::Goal { is_reached }, text));
         } else {
             let (lab, kept) = (self.lab, &self.taken.place.kept);
             let parts = check.that.conjuncts(|name| names::number(name, lab, kept));
             for (goal, part) in check.goals.iter().zip(parts) {
-                let now = part.left.filter(|_| !part.holds);
-                let now = now.map(|now| format!(" (now {})", number::significant(now, 4)));
                 let is_reached = part.holds;
-                let text = goal.clone() + &now.unwrap_or_default();
+                let mut text = goal.clone();
+                if let Some(now) = part.left.filter(|_| !is_reached) {
+                    text += &format!(" (now {})", number::significant(now, 4));
+                }
                 self.add(Paragraph::new(SheetLineKind::Goal { is_reached }, text));
             }
         }
@@ -264,7 +266,7 @@ impl Writer<'_> {
         self.extend(paragraphs(&source, &SheetLineKind::Result));
         let predict = lesson.predict(&compare.prediction);
         let is_missing = predict.is_some_and(|predict| !place.predictions.is_locked(predict));
-        if is_missing && !self.dress.is_of_teacher && !self.dress.is_followed {
+        if is_missing && !self.overlay.is_of_teacher && !self.overlay.is_followed {
             let pages = &mut lesson.pages.iter();
             if let Some(page) = pages.find(|page| page.asks(&compare.prediction)) {
                 let text = format!("You predicted nothing: page {} asks for it.", page.number);
@@ -281,8 +283,8 @@ impl Writer<'_> {
         let ask = predict.ask.with_numbers(self.lab, kept);
         self.extend(paragraphs(&ask, &SheetLineKind::Question));
         let is_open = self.taken.is_open(predict);
-        let given = place.predictions.to(predict).next_back();
-        let given = given.filter(|_| !is_open).map(|given| &given.answer);
+        let last = place.predictions.to(predict).next_back();
+        let given = last.filter(|_| !is_open).map(|given| &given.answer);
         let pointed = self.taken.pointed.get(&predict.name);
         let (at, is_marked) = pointed.filter(|_| is_open).copied().unzip();
         if let AnswerKind::Choice(choices) = &predict.asked {
@@ -311,17 +313,13 @@ impl Writer<'_> {
     /// Says what was locked, and whether a class asks for another answer.
     fn rounds_of(&mut self, predict: &Predict) {
         let said = self.taken.place.predictions.in_words(predict);
-        let round = self
-            .taken
-            .rounds
-            .get(&predict.name)
-            .map_or(1, |round| round.0);
-        let text = match (said, self.taken.is_open(predict)) {
-            (said, true) if round > 1 => {
-                let said = said.map_or(String::new(), |said| format!(" You said: {said}."));
-                format!("Round {round}: your teacher asks again.{said}")
+        let round = self.taken.rounds.get(&predict.name);
+        let text = match (said, round, self.taken.is_open(predict)) {
+            (said, Some((round @ 2.., _)), true) => {
+                let before = said.map_or(String::new(), |said| format!(" You said: {said}."));
+                format!("Round {round}: your teacher asks again.{before}")
             }
-            (Some(said), false) => format!("Locked: {said}."),
+            (Some(said), _, false) => format!("Locked: {said}."),
             _ => return,
         };
         self.add(Paragraph::new(SheetLineKind::Hint, text));
@@ -343,8 +341,8 @@ impl Writer<'_> {
         let has_task = self.taken.page().is_some_and(|page| page.task().is_some());
         let is_last = page == self.taken.lesson.pages.len();
         let text = match (self.taken.is_under_way(), has_task, is_last) {
-            (_, true, _) if self.dress.is_followed => "k steps aside to try it; h: a hint.",
-            _ if self.dress.is_followed => return,
+            (_, true, _) if self.overlay.is_followed => "k steps aside to try it; h: a hint.",
+            _ if self.overlay.is_followed => return,
             _ if self.taken.has_left() => "b: the page again; n goes on.",
             _ if self.taken.plays() => "The run plays: space stops it, n goes to its end.",
             (true, ..) => "The run is on its way; space pauses it.",
@@ -374,10 +372,10 @@ impl Writer<'_> {
             let source = notes.with_numbers(self.lab, &self.taken.place.kept);
             self.extend(paragraphs(&source, &SheetLineKind::Note));
         }
-        let next = lesson.page(self.taken.place.page + 1);
-        let next = next.map_or("This is the last page.".to_owned(), |page| {
-            format!("Next page: {}", page.heading)
-        });
+        let next = match lesson.page(self.taken.place.page + 1) {
+            Some(page) => format!("Next page: {}", page.heading),
+            None => "This is the last page.".to_owned(),
+        };
         self.add(Paragraph::new(SheetLineKind::Note, next));
     }
 

@@ -82,7 +82,6 @@ impl Sheets {
 
     fn put(&mut self, paragraph: &Paragraph, next: Option<&Paragraph>) {
         let is_first = self.y <= MARGIN_PT && self.done.len() == 1;
-        let is_item = |one: &Paragraph| matches!(one.kind, SheetLineKind::Item { .. });
         if !is_item(paragraph) && next.is_some_and(is_item) {
             self.turn_unless(BELOW_HEADING_PT);
         }
@@ -110,14 +109,12 @@ impl Sheets {
     /// The words of a paragraph in lines; `mark` stands before the first, and a box to be ticked where the words begin with
     /// `[ ]`.
     fn put_lines(&mut self, paragraph: &Paragraph, size: f64, indent: f64, mark: &str) {
-        let mut words = words(paragraph);
-        let is_box = words.len() > 2 && words[0] == "[" && words[1] == "]";
-        words.drain(..if is_box { 2 } else { 0 });
+        let all = words(paragraph);
+        let is_box = all.len() > 2 && all[0] == "[" && all[1] == "]";
+        let words = &all[if is_box { 2 } else { 0 }..];
         let left = MARGIN_PT + indent;
-        for (index, line) in lines(&words, size, SHEET_PT.0 - MARGIN_PT - left)
-            .iter()
-            .enumerate()
-        {
+        let lines = lines(words, size, SHEET_PT.0 - MARGIN_PT - left);
+        for (index, line) in lines.iter().enumerate() {
             let (sheet, top) = self.line(size * LEADING);
             let y = top + size;
             sheet.write(line, size, at(left, y), 0.0);
@@ -142,22 +139,26 @@ impl Sheets {
     }
 }
 
+fn is_item(paragraph: &Paragraph) -> bool {
+    matches!(paragraph.kind, SheetLineKind::Item { .. })
+}
+
 /// The words of a paragraph as markup, with the signs that the letters do not have in others.
 fn words(paragraph: &Paragraph) -> Vec<String> {
-    let marked = paragraph.words.iter().map(|part| {
+    let mut text = String::new();
+    for part in &paragraph.words {
         let slant = ["", "*"][usize::from(part.emphasis == Emphasis::Strong)];
-        let words: Vec<_> = part
-            .text
-            .split(' ')
-            .map(|word| match word {
-                "" => String::new(),
-                word => format!("{slant}{}{slant}", escape(&word.replace('═', "="))),
-            })
-            .collect();
-        words.join(" ").replace('ᵀ', "^{T}")
-    });
-    let text: String = marked.collect();
-    text.split_whitespace().map(str::to_owned).collect()
+        for (index, word) in part.text.split(' ').enumerate() {
+            if index > 0 {
+                text.push(' ');
+            }
+            if !word.is_empty() {
+                text += &format!("{slant}{}{slant}", escape(&word.replace('═', "=")));
+            }
+        }
+    }
+    let marked = text.replace('ᵀ', "^{T}");
+    marked.split_whitespace().map(str::to_owned).collect()
 }
 
 /// The room that code takes, at most half a sheet: what is longer goes on on the next; 0 for other paragraphs.

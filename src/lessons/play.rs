@@ -105,15 +105,13 @@ impl<'a> LessonWalk<'a> {
 
     /// The numbers in `expression` as they are now: `steps is 10, z_m is 0.8`.
     fn numbers_of(&self, expression: &Expression) -> String {
-        let all: Vec<_> = expression
-            .names()
-            .map(|name| {
-                let number = names::number(name, &self.lab, &self.kept);
-                let number =
-                    number.map_or(NOT_AVAILABLE.to_owned(), |number| significant(number, 6));
-                format!("{name} is {number}")
-            })
-            .collect();
+        let mut all = Vec::new();
+        for name in expression.names() {
+            all.push(match names::number(name, &self.lab, &self.kept) {
+                Some(number) => format!("{name} is {}", significant(number, 6)),
+                None => format!("{name} is {NOT_AVAILABLE}"),
+            });
+        }
         all.join(", ")
     }
 
@@ -188,6 +186,14 @@ impl<'a> LessonWalk<'a> {
         }
     }
 
+    /// Whether each check of `page` holds now, and its numbers.
+    fn states_of_checks(&self, page: &LessonPage) -> Vec<(bool, String)> {
+        let checks = page.checks();
+        checks
+            .map(|check| (self.holds(check), self.numbers_of(&check.that)))
+            .collect()
+    }
+
     fn check_page(
         &mut self,
         page: &'a LessonPage,
@@ -197,21 +203,17 @@ impl<'a> LessonWalk<'a> {
     ) -> Result<(), Problem> {
         let has_task = page.task().is_some();
         let block = if has_task { "task" } else { "lab block" };
-        let states = |walk: &Self| -> Vec<(bool, String)> {
-            page.checks()
-                .map(|check| (walk.holds(check), walk.numbers_of(&check.that)))
-                .collect()
-        };
-        let mut before = states(self);
+        let mut before = self.states_of_checks(page);
         self.enter(page, go_on)?;
         self.unstated_on(page, unstated);
         self.refuse_far(page, found);
         if has_task {
-            before = states(self);
+            before = self.states_of_checks(page);
         }
         self.leave(page, go_on)?;
-        for ((check, before), after) in page.checks().zip(before).zip(states(self)) {
-            let rule = match (before, after) {
+        let after = self.states_of_checks(page);
+        for (check, states) in page.checks().zip(before.into_iter().zip(after)) {
+            let rule = match states {
                 ((false, _), (true, _)) => continue,
                 (_, (false, numbers)) => {
                     format!("does not hold after the {block} of its page: {numbers}")
@@ -236,6 +238,6 @@ fn as_problem(origin: &str, line: usize, text: &str) -> Problem {
         .and_then(|rest| rest.strip_prefix(':'))
         .and_then(|rest| rest.split_once(": "))
         .and_then(|(line, rest)| Some((line.parse().ok()?, rest)));
-    let (line, rule) = told.unwrap_or((line, text));
-    on_line(line, Problem::at("", rule))
+    let (on, rule) = told.unwrap_or((line, text));
+    on_line(on, Problem::at("", rule))
 }

@@ -41,7 +41,7 @@ impl Predictions {
         if self.in_round(predict, given.round).is_some() {
             return Err("is locked already: a prediction is not changed".to_owned());
         }
-        if !predict.asked.takes(&given.answer) {
+        if !predict.asked.accepts(&given.answer) {
             return Err("is no answer to this question".to_owned());
         }
         let all = self.locked.entry(predict.name.clone()).or_default();
@@ -66,7 +66,7 @@ impl Predictions {
         predict: &'a Predict,
     ) -> impl DoubleEndedIterator<Item = &'a LockedAnswer> {
         let all = self.locked.get(&predict.name).into_iter().flatten();
-        all.filter(|given| predict.asked.takes(&given.answer))
+        all.filter(|given| predict.asked.accepts(&given.answer))
     }
 
     pub fn in_round<'a>(&'a self, predict: &'a Predict, round: u32) -> Option<&'a LockedAnswer> {
@@ -81,18 +81,16 @@ impl Predictions {
     /// The answers to `predict` in words, with their rounds where there are several; `None` where there is none.
     pub fn in_words(&self, predict: &Predict) -> Option<String> {
         let has_rounds = self.to(predict).any(|given| given.round > 1);
-        let said = |given: &LockedAnswer| {
-            let late = given.late.then(|| LATE.to_owned());
-            let round = has_rounds.then(|| format!("round {}", given.round));
-            let about: Vec<_> = round.into_iter().chain(late).collect();
+        let mut all = Vec::new();
+        for given in self.to(predict) {
             let words = given.answer.in_words(predict);
-            if about.is_empty() {
-                words
-            } else {
-                format!("{words} ({})", about.join(", "))
-            }
-        };
-        let all: Vec<_> = self.to(predict).map(said).collect();
+            all.push(match (has_rounds, given.late, given.round) {
+                (false, false, _) => words,
+                (false, true, _) => format!("{words} ({LATE})"),
+                (true, false, round) => format!("{words} (round {round})"),
+                (true, true, round) => format!("{words} (round {round}, {LATE})"),
+            });
+        }
         (!all.is_empty()).then(|| all.join(", "))
     }
 
@@ -177,20 +175,22 @@ pub(super) fn without(part: &str, text: &str) -> String {
         }
         rest = others;
     }
-    let kept = kept.trim_end();
-    if kept.is_empty() { text } else { kept }.to_owned()
+    match kept.trim_end() {
+        "" => text.to_owned(),
+        shorter => shorter.to_owned(),
+    }
 }
 
 /// Where the first sentence of `text` ends, the blanks after it counted in. An entry of a list counts as one.
 fn end_of_sentence(text: &str) -> usize {
     let stops = text.match_indices(['.', '!', '?']);
-    let mut after = stops.map(|(at, stop)| at + stop.len());
-    let end = after.find(|&after| text[after..].starts_with(char::is_whitespace));
+    let end = stops
+        .map(|(at, stop)| at + stop.len())
+        .find(|&after| text[after..].starts_with(char::is_whitespace))
+        .map_or(text.len(), |after| {
+            text.len() - text[after..].trim_start().len()
+        });
     let entry = text.find("\n- ").map(|line_end| line_end + 1);
-    let end = end.map_or(text.len(), |end| {
-        let blanks = text[end..].find(|c: char| !c.is_whitespace());
-        blanks.map_or(text.len(), |blanks| end + blanks)
-    });
     entry.map_or(end, |entry| entry.min(end))
 }
 

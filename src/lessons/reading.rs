@@ -25,17 +25,9 @@ const MOST_LESSON_BLOCKS: usize = 1000;
 
 /// Reads `text`, the content of the file `origin`, as a lesson.
 pub fn read(origin: &str, text: &str) -> Result<Lesson, Problems> {
-    let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
-    let text = text.replace('\t', "    ");
-    let one = |problem| Problems::one(origin, problem);
-    let lines = Lines::of(&text);
-    plain(&text, &lines).map_err(one)?;
-    let elements = structure(&text, &lines, &blocks::BLOCK_WORDS).map_err(one)?;
-    if elements.len() > MOST_LESSON_BLOCKS {
-        let rule =
-            format!("has more than {MOST_LESSON_BLOCKS} pages and blocks, the most of a lesson");
-        return Err(one(Problem::at("", rule)));
-    }
+    let plain = text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
+    let source = plain.replace('\t', "    ");
+    let elements = elements(&source).map_err(|problem| Problems::one(origin, problem))?;
     let mut assembly = Assembly::default();
     assembly.lesson.origin = origin.to_owned();
     assembly.lesson.name = origin.to_owned();
@@ -44,6 +36,19 @@ pub fn read(origin: &str, text: &str) -> Result<Lesson, Problems> {
         assembly.add(element);
     }
     assembly.finish()
+}
+
+/// The pages and blocks of a lesson's `text`.
+fn elements(text: &str) -> Result<Vec<Element<'_>>, Problem> {
+    let lines = Lines::index(text);
+    plain(text, &lines)?;
+    let elements = structure(text, &lines, &blocks::BLOCK_WORDS)?;
+    if elements.len() > MOST_LESSON_BLOCKS {
+        let rule =
+            format!("has more than {MOST_LESSON_BLOCKS} pages and blocks, the most of a lesson");
+        return Err(Problem::at("", rule));
+    }
+    Ok(elements)
 }
 
 /// Checks that `text` is short enough and has no character that could steer a terminal.
@@ -211,8 +216,7 @@ impl Assembly {
             return self.refuse(line, Problem::at(word, rule));
         }
         if word == "notes" {
-            let text = inside.trim_end();
-            if let Some(text) = self.text(text, line + 1) {
+            if let Some(text) = self.text(inside.trim_end(), line + 1) {
                 self.place(LessonBlock::Notes(text));
             }
             return;
@@ -230,36 +234,33 @@ impl Assembly {
         let read = match word {
             "lesson" => return self.add_head(&reader),
             "lab" | "task" => return self.add_setup(word, line),
-            _ => blocks::block(&reader, |name| self.names.find(name, page)),
+            _ => blocks::block(&reader, |name: &str| self.names.find(name, page)),
         };
-        match read {
-            Ok(block) => {
-                match &block {
-                    LessonBlock::Predict(predict)
-                        if !self.predictions.insert(predict.name.clone()) =>
-                    {
-                        let rule = "is the name of an earlier prediction: choose another";
-                        let name = toml::Value::from(predict.name.as_str());
-                        self.refuse(line, Problem::with_value("predict.name", &name, rule));
-                    }
-                    LessonBlock::Compare(compare) => self.compares.push(compare.clone()),
-                    _ => {}
-                }
-                self.place(block);
+        let block = match read {
+            Ok(block) => block,
+            Err(problems) => return self.refuse_all(problems),
+        };
+        match &block {
+            LessonBlock::Predict(predict) if !self.predictions.insert(predict.name.clone()) => {
+                let rule = "is the name of an earlier prediction: choose another";
+                let name = toml::Value::from(predict.name.as_str());
+                self.refuse(line, Problem::with_value("predict.name", &name, rule));
             }
-            Err(problems) => self.refuse_all(problems),
+            LessonBlock::Compare(compare) => self.compares.push(compare.clone()),
+            _ => {}
         }
+        self.place(block);
     }
 
     fn add_head(&mut self, reader: &BlockReader<'_>) {
         let line = reader.line;
-        let misplaced = match (self.has_head, self.lesson.pages.is_empty()) {
-            (true, _) => "stands twice: a lesson has one such block",
-            (false, false) => "stands on a page: its place is below the title",
-            (false, true) => "",
-        };
-        if !misplaced.is_empty() {
-            return self.refuse(line, Problem::at("lesson", misplaced));
+        if self.has_head {
+            let rule = "stands twice: a lesson has one such block";
+            return self.refuse(line, Problem::at("lesson", rule));
+        }
+        if !self.lesson.pages.is_empty() {
+            let rule = "stands on a page: its place is below the title";
+            return self.refuse(line, Problem::at("lesson", rule));
         }
         self.has_head = true;
         match blocks::head(reader) {
@@ -269,13 +270,12 @@ impl Assembly {
     }
 
     fn add_setup(&mut self, word: &str, line: usize) {
-        let is_same = |block: &LessonBlock| match block {
-            LessonBlock::Lab(_) => word == "lab",
-            LessonBlock::Task(_) => word == "task",
-            _ => false,
-        };
         let page = self.lesson.pages.last();
-        if page.is_some_and(|page| page.blocks.iter().any(is_same)) {
+        let same = page.and_then(|page| match word {
+            "lab" => page.lab(),
+            _ => page.task(),
+        });
+        if same.is_some() {
             let rule = "stands twice on this page, which has one: begin another page with ##";
             return self.refuse(line, Problem::at(word, rule));
         }
@@ -309,14 +309,9 @@ impl Assembly {
 
     /// Checks that the prediction of `compare` is asked for before it.
     fn check_compare(&mut self, compare: &Compare) {
-        let asked = self.lesson.pages.iter().find_map(|page| {
-            let mut asked = page.predicts();
-            let asked = asked.find(|predict| predict.name == compare.prediction)?;
-            Some(asked.line)
-        });
-        let rule = match asked {
-            Some(line) if line < compare.line => return,
-            Some(line) => format!("is asked for later, on line {line}"),
+        let rule = match self.lesson.predict(&compare.prediction) {
+            Some(asked) if asked.line < compare.line => return,
+            Some(asked) => format!("is asked for later, on line {}", asked.line),
             None if self.predictions.is_empty() => {
                 "is asked for nowhere: a predict block asks".to_owned()
             }
@@ -335,7 +330,9 @@ impl Assembly {
 }
 
 fn line_of(problem: &Problem) -> usize {
-    let place = problem.place.as_deref().unwrap_or_default();
-    let number = place.strip_prefix("line ").map(str::parse);
-    number.and_then(Result::ok).unwrap_or_default()
+    let line = problem
+        .place
+        .as_deref()
+        .and_then(|it| it.strip_prefix("line "));
+    line.and_then(|line| line.parse().ok()).unwrap_or_default()
 }

@@ -31,18 +31,19 @@ impl Lesson {
         kept: &KeptNumbers,
         predictions: &Predictions,
     ) -> Vec<Stage<'a>> {
-        let before = self.pages.iter().take(number.saturating_sub(1));
-        let earlier = before.flat_map(|page| {
-            let setups = page.lab().into_iter().chain(page.task());
-            setups.map(move |setup| Stage {
-                lesson: self,
-                page,
-                setup,
-                is_hiding: page.predicts().next().is_none(),
-            })
-        });
-        let stages = earlier.chain(self.stage_of(number, predictions));
-        needed(stages.collect(), kept)
+        let mut stages = Vec::new();
+        for page in self.pages.iter().take(number.saturating_sub(1)) {
+            for setup in page.lab().into_iter().chain(page.task()) {
+                stages.push(Stage {
+                    lesson: self,
+                    page,
+                    setup,
+                    is_hiding: page.predicts().next().is_none(),
+                });
+            }
+        }
+        stages.extend(self.stage_of(number, predictions));
+        needed(stages, kept)
     }
 
     /// What to carry out on turning to the page `number` from the page before: its own `lab` block, where it has one.
@@ -80,42 +81,38 @@ fn needed<'a>(stages: Vec<Stage<'a>>, kept: &KeptNumbers) -> Vec<Stage<'a>> {
             _ => runs.push(vec![stage]),
         }
     }
-    let last = runs.len().saturating_sub(1);
-    let mut needed = Vec::new();
-    for (index, mut run) in runs.into_iter().enumerate() {
-        if index < last {
-            let end = run
-                .iter()
-                .rposition(|stage| {
-                    let mut names = stage.setup.keep.iter();
-                    names.any(|keep| !kept.contains_key(&keep.name))
-                })
-                .map_or(0, |at| at + 1);
-            run.truncate(end);
-        }
-        needed.extend(run);
+    let last = runs.pop().unwrap_or_default();
+    for run in &mut runs {
+        let end = run.iter().rposition(|stage| stage.lacks(kept));
+        run.truncate(end.map_or(0, |at| at + 1));
     }
-    needed
+    runs.into_iter().flatten().chain(last).collect()
 }
 
 impl Stage<'_> {
+    /// Whether it keeps numbers that are not among the `kept` ones.
+    fn lacks(&self, kept: &KeptNumbers) -> bool {
+        let mut names = self.setup.keep.iter();
+        names.any(|keep| !kept.contains_key(&keep.name))
+    }
+
     /// The commands, for the lab as it stands. Where a run is opened, what the lab shows otherwise than at first is put
     /// back before, so that the page looks the same whatever was done before.
     pub fn commands(&self, lab: &Lab) -> Commands {
-        let put_back = if self.setup.opens() {
-            put_back(lab)
-        } else {
-            Vec::new()
-        };
-        let line = Some(self.setup.line);
-        let put_back = put_back
-            .into_iter()
-            .map(|command| LocatedCommand { command, line });
-        let own = self.setup.commands.iter();
-        let own = own.filter(|placed| self.is_hiding || placed.command.looked("hide").is_none());
+        let mut list = Vec::new();
+        if self.setup.opens() {
+            let line = Some(self.setup.line);
+            let before = put_back(lab).into_iter();
+            list.extend(before.map(|command| LocatedCommand { command, line }));
+        }
+        for placed in &self.setup.commands {
+            if self.is_hiding || placed.command.looked("hide").is_none() {
+                list.push(placed.clone());
+            }
+        }
         Commands {
             origin: self.lesson.origin.clone(),
-            list: put_back.chain(own.cloned()).collect(),
+            list,
         }
     }
 

@@ -26,7 +26,7 @@ pub(super) enum PieceKind<'a> {
 pub(super) struct Lines(Vec<usize>);
 
 impl Lines {
-    pub(super) fn of(text: &str) -> Self {
+    pub(super) fn index(text: &str) -> Self {
         Self(text.match_indices('\n').map(|(at, _)| at).collect())
     }
 
@@ -134,10 +134,9 @@ impl<'a> FileWalk<'a, '_> {
     }
 
     fn heading(&mut self, level: HeadingLevel, range: Range<usize>, words: &str) {
-        let words = words.trim().to_owned();
         match level {
-            HeadingLevel::H1 => self.add(PieceKind::Title(words), range),
-            HeadingLevel::H2 => self.add(PieceKind::Heading(words), range),
+            HeadingLevel::H1 => self.add(PieceKind::Title(words.trim().to_owned()), range),
+            HeadingLevel::H2 => self.add(PieceKind::Heading(words.trim().to_owned()), range),
             _ => {}
         }
     }
@@ -148,13 +147,12 @@ impl<'a> FileWalk<'a, '_> {
         let mut words = info.split_whitespace();
         let word = words.next().unwrap_or_default();
         let is_of_lessons = self.words.contains(&word);
-        if !is_alone {
+        if !is_alone && is_of_lessons {
             let rule = "stands in a list or a quotation: a block begins at the edge of the page";
-            return if is_of_lessons {
-                Err(on_line(line, Problem::at(word, rule)))
-            } else {
-                Ok(())
-            };
+            return Err(on_line(line, Problem::at(word, rule)));
+        }
+        if !is_alone {
+            return Ok(());
         }
         let text = self.text;
         let block = &text[range.clone()];
@@ -174,9 +172,9 @@ impl<'a> FileWalk<'a, '_> {
             );
             return Err(on_line(line, Problem::at(named(word), rule)));
         }
-        let word_at = block.find(word).unwrap_or_default();
-        let word = &block[word_at..word_at + word.len()];
-        self.add(PieceKind::Fenced(word, inside), range);
+        let at = block.find(word).unwrap_or_default();
+        let fenced = PieceKind::Fenced(&block[at..at + word.len()], inside);
+        self.add(fenced, range);
         Ok(())
     }
 }
@@ -191,22 +189,22 @@ fn named(word: &str) -> &str {
 
 /// The fence with which `block` begins.
 fn fence_of(block: &str) -> &str {
-    let block = block.trim_start();
-    let sign = block.chars().next().unwrap_or('`');
-    let rest = block.trim_start_matches(sign);
-    &block[..block.len() - rest.len()]
+    let begun = block.trim_start();
+    let sign = begun.chars().next().unwrap_or('`');
+    let rest = begun.trim_start_matches(sign);
+    &begun[..begun.len() - rest.len()]
 }
 
 /// What stands between the fences of `block`; `None` where the second is missing.
 fn between_fences(block: &str) -> Option<&str> {
     let fence = fence_of(block);
     let sign = fence.chars().next()?;
-    let block = block.trim_end_matches('\n');
-    let begin = block.find('\n')? + 1;
-    let last = block.rfind('\n')? + 1;
-    let closing = block[last..].trim();
+    let lines = block.trim_end_matches('\n');
+    let begin = lines.find('\n')? + 1;
+    let last = lines.rfind('\n')? + 1;
+    let closing = lines[last..].trim();
     let closes = closing.len() >= fence.len() && closing.chars().all(|c| c == sign);
-    (closes && last >= begin).then(|| &block[begin..last])
+    (closes && last >= begin).then(|| &lines[begin..last])
 }
 
 /// The line of `inside`, from 0, at which another block of a lesson begins: with a `fence` like the one around it, or longer.

@@ -120,23 +120,21 @@ impl OpenLesson {
 
     /// Whether an answer to the open question is marked, and not locked.
     fn has_marked(&self) -> bool {
-        self.asked()
-            .and_then(|asked| self.pointed.get(&asked.name))
-            .is_some_and(|it| it.1)
+        let pointed = self.asked().and_then(|it| self.pointed.get(&it.name));
+        pointed.is_some_and(|(_, is_marked)| *is_marked)
     }
 
     /// Whether an answer to `predict` is wanted: there is none, or none of the round that a class is at.
     pub fn is_open(&self, predict: &Predict) -> bool {
         let predictions = &self.place.predictions;
-        let is_wanted = |(round, is_closed): &(u32, bool)| {
-            !is_closed && predictions.in_round(predict, *round).is_none()
-        };
-        let round = self.rounds.get(&predict.name);
-        !predictions.is_locked(predict) || round.is_some_and(is_wanted)
+        match self.rounds.get(&predict.name) {
+            Some((round, false)) if predictions.in_round(predict, *round).is_none() => true,
+            _ => !predictions.is_locked(predict),
+        }
     }
 
     /// Shows the page of `class` without touching the run. Returns whether that is new.
-    pub(super) fn follow(&mut self, class: &FollowedLesson<'_>) -> bool {
+    pub(super) fn show_class_page(&mut self, class: &FollowedLesson<'_>) -> bool {
         let page = class.page.clamp(1, self.lesson.pages.len().max(1));
         let before = self.follows.replace(class.has_arrived);
         let is_new = self.place.page != page || before.is_none();
@@ -148,7 +146,7 @@ impl OpenLesson {
     }
 
     /// Goes on without the class. Where its run had not arrived, the page is left as if its own run had been.
-    pub(super) fn unfollow(&mut self) {
+    pub(super) fn leave_class(&mut self) {
         let is_left = self.follows.take() == Some(false) && self.is_under_way();
         self.under_way = is_left.then_some(PendingBlock::Left).or(self.under_way);
     }
@@ -218,26 +216,24 @@ impl OpenLesson {
     fn stand(&mut self, at_once: bool, lab: &mut Lab) -> Result<(), String> {
         let lesson = Arc::clone(&self.lesson);
         let page = self.place.page;
-        let stages = lesson.stages_to(page, &self.place.kept, &self.place.predictions);
-        let last = stages.last().filter(|last| last.page.number == page);
-        let last = last.filter(|_| !at_once);
+        let mut stages = lesson.stages_to(page, &self.place.kept, &self.place.predictions);
+        let last = stages.pop_if(|last| last.page.number == page && !at_once);
         let begin = Instant::now();
-        let is_late = || begin.elapsed() > LONGEST_PAGE_REPLAY;
         lab.set_undo_floor(false);
-        for stage in &stages[..stages.len() - usize::from(last.is_some())] {
+        for stage in &stages {
             stage.carry_out(lab, &mut self.place.kept, |_, _| {
-                if is_late() {
+                if begin.elapsed() > LONGEST_PAGE_REPLAY {
                     ControlFlow::Break(())
                 } else {
                     ControlFlow::Continue(())
                 }
             })?;
-            if is_late() {
+            if begin.elapsed() > LONGEST_PAGE_REPLAY {
                 return Err(REPLAY_TOO_LONG.to_owned());
             }
         }
         match last {
-            Some(stage) => self.begin(stage, PendingBlock::Lab(page), lab),
+            Some(stage) => self.begin(&stage, PendingBlock::Lab(page), lab),
             None => {
                 self.has_come(lab);
                 lab.view_mut().turn_to_sheet();
@@ -302,7 +298,7 @@ impl OpenLesson {
     }
 
     /// Takes note of what the lab has done, and of a file that has changed. Returns whether the page is another now.
-    pub(super) fn advance(&mut self, now: Duration, lab: &mut Lab) -> bool {
+    pub(super) fn update(&mut self, now: Duration, lab: &mut Lab) -> bool {
         let mut is_new = self.keep_if_done(lab);
         is_new |= self.state(lab);
         if !self.is_under_way() && lab.has_changed() {
@@ -334,13 +330,13 @@ impl OpenLesson {
             return false;
         }
         self.place.stated = Some(stated(&self.lesson, &self.place, lab));
-        let lesson = Arc::clone(&self.lesson);
-        let page = lesson.page(self.place.page);
-        let compares = page.into_iter().flat_map(LessonPage::compares);
-        // What the page itself asks for comes out once it is answered.
-        let names = compares.map(|compare| compare.prediction.clone());
-        let told = names.filter(|name| !page.is_some_and(|page| page.asks(name)));
-        self.place.seen.extend(told);
+        let page = self.lesson.page(self.place.page);
+        for compare in page.into_iter().flat_map(LessonPage::compares) {
+            // What the page itself asks for comes out once it is answered.
+            if !page.is_some_and(|page| page.asks(&compare.prediction)) {
+                self.place.seen.insert(compare.prediction.clone());
+            }
+        }
         true
     }
 
@@ -362,17 +358,14 @@ impl OpenLesson {
             return false;
         };
         let before = self.reached.len();
-        let held = page
-            .checks()
-            .filter(|check| holds(check, lab, &self.place.kept));
-        self.reached.extend(held.map(|check| check.line));
+        for check in page.checks() {
+            if holds(check, lab, &self.place.kept) {
+                self.reached.insert(check.line);
+            }
+        }
         let is_new = self.reached.len() > before;
         if is_new && self.reached.len() == page.checks().count() {
-            let goals: Vec<&str> = page
-                .checks()
-                .flat_map(|check| &check.goals)
-                .map(String::as_str)
-                .collect();
+            let goals: Vec<_> = page.checks().flat_map(|it| it.goals.clone()).collect();
             lab.tell(format!("done: {}", goals.join(", ")));
             if page.task().is_some() {
                 self.note_tried(if self.shows_hints {
@@ -390,11 +383,8 @@ impl OpenLesson {
         let Some(page) = self.lesson.page(self.place.page) else {
             return;
         };
-        let known = self
-            .place
-            .tasks
-            .entry(page.heading.clone())
-            .or_insert(tried);
+        let tasks = &mut self.place.tasks;
+        let known = tasks.entry(page.heading.clone()).or_insert(tried);
         if *known == Tried::Hint {
             *known = tried;
         }
@@ -413,14 +403,16 @@ fn holds(check: &super::Check, lab: &Lab, kept: &super::KeptNumbers) -> bool {
 /// The texts of the page at `place` that the student's own run does not change, by their lines in the file. What stands
 /// behind a task or a check is not among them.
 fn stated(lesson: &Lesson, place: &LessonProgress, lab: &Lab) -> BTreeMap<String, String> {
-    let texts = before_task(lesson, place).filter_map(|block| match block {
-        LessonBlock::Text(text) => Some((text.line, text.with_numbers(lab, &place.kept))),
-        LessonBlock::Compare(compare) => {
-            Some((compare.line, compared(compare, lesson, place, lab)))
-        }
-        _ => None,
-    });
-    texts.map(|(line, text)| (line.to_string(), text)).collect()
+    let mut texts = BTreeMap::new();
+    for block in before_task(lesson, place) {
+        let (line, text) = match block {
+            LessonBlock::Text(text) => (text.line, text.with_numbers(lab, &place.kept)),
+            LessonBlock::Compare(compare) => (compare.line, compared(compare, lesson, place, lab)),
+            _ => continue,
+        };
+        texts.insert(line.to_string(), text);
+    }
+    texts
 }
 
 /// The introduction's blocks, and those of the page up to its task or its first check.
@@ -430,9 +422,9 @@ fn before_task<'a>(
 ) -> impl Iterator<Item = &'a LessonBlock> {
     let page = lesson.page(place.page);
     let blocks = page.into_iter().flat_map(|page| &page.blocks);
-    lesson.introduction.iter().chain(
-        blocks.take_while(|block| !matches!(block, LessonBlock::Task(_) | LessonBlock::Check(_))),
-    )
+    let before =
+        blocks.take_while(|block| !matches!(block, LessonBlock::Task(_) | LessonBlock::Check(_)));
+    lesson.introduction.iter().chain(before)
 }
 
 fn compared(compare: &Compare, lesson: &Lesson, place: &LessonProgress, lab: &Lab) -> String {

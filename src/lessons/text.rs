@@ -57,21 +57,21 @@ impl TextFormat {
     }
 
     fn read(text: &str) -> Result<Self, String> {
-        let wrong = || {
+        Self::parse(text).ok_or_else(|| {
             format!(
                 "{text} is no way to write a number: there is .3 for three decimals, and .2e with an exponent"
             )
-        };
-        let digits = text.strip_prefix('.').ok_or_else(wrong)?;
-        let (digits, format): (_, fn(usize) -> Self) = match digits.strip_suffix('e') {
+        })
+    }
+
+    fn parse(text: &str) -> Option<Self> {
+        let decimals = text.strip_prefix('.')?;
+        let (digits, format): (_, fn(usize) -> Self) = match decimals.strip_suffix('e') {
             Some(digits) => (digits, Self::Exponent),
-            None => (digits, Self::Fixed),
+            None => (decimals, Self::Fixed),
         };
-        let digits = digits
-            .parse()
-            .ok()
-            .filter(|digits| *digits <= MOST_DECIMALS);
-        digits.map(format).ok_or_else(wrong)
+        let count = digits.parse().ok();
+        count.filter(|count| *count <= MOST_DECIMALS).map(format)
     }
 }
 
@@ -83,18 +83,13 @@ impl LessonText {
         find: impl Fn(&str) -> Result<(), String>,
     ) -> Result<Self, Vec<Problem>> {
         let code = code_in(source);
-        let is_code = |at: usize| {
-            let begun = code.partition_point(|range| range.start <= at);
-            code[..begun]
-                .last()
-                .is_some_and(|range| range.contains(&at))
-        };
         let (mut parts, mut problems) = (Vec::new(), Vec::new());
         let (mut plain, mut at) = (0, 0);
         while let Some(found) = source[at..].find('{') {
             let open = at + found;
             at = open + 1;
-            if is_code(open) || source[..open].ends_with('\\') {
+            let is_code = code.iter().any(|range| range.contains(&open));
+            if is_code || source[..open].ends_with('\\') {
                 continue;
             }
             match place(&source[at..], &find) {
@@ -141,11 +136,13 @@ impl LessonText {
 
     /// The text in Markdown, with what `written` makes of each place for a number.
     pub fn filled(&self, mut written: impl FnMut(&Expression, TextFormat) -> String) -> String {
-        let parts = self.parts.iter().map(|part| match part {
-            Piece::Plain(text) => text.clone(),
-            Piece::Number(expression, format) => written(expression, *format),
-        });
-        parts.collect()
+        let pieces = self.parts.iter();
+        pieces
+            .map(|piece| match piece {
+                Piece::Plain(text) => text.clone(),
+                Piece::Number(expression, format) => written(expression, *format),
+            })
+            .collect()
     }
 }
 
@@ -163,26 +160,35 @@ fn place(
         return Err((format!("{{{}", begin.trim_end()), rule.to_owned()));
     };
     let inside = &text[..end];
-    let told = |rule: String| (format!("{{{inside}}}"), rule);
-    let (written, format) = match inside.split_once(':') {
-        Some((written, format)) => (written, TextFormat::read(format.trim()).map_err(told)?),
-        None => (inside, TextFormat::Short),
-    };
-    let expression = Expression::parse(written.trim()).map_err(|fault| told(fault.to_string()))?;
-    expression
-        .bind(find)
-        .map_err(|fault| told(fault.to_string()))?;
-    if expression.is_condition() {
-        return Err(told("compares: a number must stand here".to_owned()));
+    match number_in(inside, find) {
+        Ok((expression, format)) => Ok((expression, format, end + 1)),
+        Err(rule) => Err((format!("{{{inside}}}"), rule)),
     }
-    Ok((expression, format, end + 1))
+}
+
+/// Reads the place `text`, without its braces.
+fn number_in(
+    text: &str,
+    find: &impl Fn(&str) -> Result<(), String>,
+) -> Result<(Expression, TextFormat), String> {
+    let (written, format) = match text.split_once(':') {
+        Some((written, format)) => (written, TextFormat::read(format.trim())?),
+        None => (text, TextFormat::Short),
+    };
+    let expression = Expression::parse(written.trim()).map_err(|fault| fault.to_string())?;
+    expression.bind(find).map_err(|fault| fault.to_string())?;
+    if expression.is_condition() {
+        return Err("compares: a number must stand here".to_owned());
+    }
+    Ok((expression, format))
 }
 
 fn code_in(source: &str) -> Vec<Range<usize>> {
     let events = Parser::new(source).into_offset_iter();
-    let code = events.filter_map(|(event, range)| match event {
-        Event::Code(_) | Event::Start(Tag::CodeBlock(_)) => Some(range),
-        _ => None,
-    });
-    code.collect()
+    events
+        .filter_map(|(event, range)| match event {
+            Event::Code(_) | Event::Start(Tag::CodeBlock(_)) => Some(range),
+            _ => None,
+        })
+        .collect()
 }

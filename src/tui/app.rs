@@ -45,7 +45,7 @@ pub fn run(
             if handle(event, lab, lessons, role, screen, pointer, session)?.is_break() {
                 return Ok(());
             }
-            role.acted(lab, lessons);
+            role.after_keys(lab, lessons);
         }
         #[cfg(debug_assertions)]
         panic_if_asked(begin.elapsed());
@@ -53,7 +53,7 @@ pub fn run(
         if lab.has_changed() {
             screen::refit(lab, screen.size()?);
         }
-        keep(lab, role, session);
+        keep(lab, lessons, role, session);
         if is_over {
             return Ok(());
         }
@@ -77,16 +77,16 @@ fn advance(
     lab.advance(&mut || begin.elapsed());
     let has_arrived = was_on_its_way && lab.player().playback.steps_to_go().is_none();
     let is_over = role.advance(begin.elapsed(), lab, lessons).is_break();
-    lessons.advance(begin.elapsed(), lab);
+    lessons.update(begin.elapsed(), lab);
     (has_arrived, is_over)
 }
 
 /// Saves the state of `lab` in `session`, and shows a message as long as saving fails.
-fn keep(lab: &mut Lab, role: &dyn ClassRole, session: Option<&Session>) {
+fn keep(lab: &mut Lab, lessons: &Lessons, role: &dyn ClassRole, session: Option<&Session>) {
     let Some(session) = session else {
         return;
     };
-    session.note(lab.content());
+    session.note(lab.content(lessons.kept()));
     lab.set_trouble(role.trouble().or_else(|| session.trouble()));
 }
 
@@ -140,11 +140,11 @@ fn handle(
     let is_signal = event == Event::Suspend;
     let request = request_of(event, lab, screen, pointer)?;
     if matches!(request, Some(LabRequest::Quit | LabRequest::Suspend)) {
-        keep(lab, role, session); // what was pressed just before it came with it
+        keep(lab, lessons, role, session); // what was pressed just before it came with it
     }
     let size = screen.size()?;
     let request = match request {
-        Some(LabRequest::Lesson(key)) if role.takes(key, lab, lessons) => None,
+        Some(LabRequest::Lesson(key)) if role.intercept(key, lab, lessons) => None,
         request => request.and_then(|request| do_in_class(request, lab, lessons, size)),
     };
     match request {
@@ -152,7 +152,7 @@ fn handle(
             return Ok(ControlFlow::Continue(()));
         }
         Some(LabRequest::Class) => {
-            role.act(lab, lessons);
+            role.on_class_key(lab, lessons);
             return Ok(ControlFlow::Continue(()));
         }
         Some(LabRequest::Quit) => return Ok(ControlFlow::Break(())),
@@ -200,7 +200,7 @@ pub fn do_in_class(
             screen::scroll_page(lab, Direction::PageDown, size);
         }
         LabRequest::Lesson(key) => {
-            if let Some(direction) = lessons.act(key, lab) {
+            if let Some(direction) = lessons.on_key(key, lab) {
                 screen::scroll_page(lab, direction, size);
             }
         }

@@ -135,7 +135,7 @@ fn a_longer_way_is_gone_in_parts_while_keys_are_answered() {
     assert!((100_000..stood).contains(&under_way), "{under_way}");
     stage.shows("playing the new run to the same time");
     // A session that is kept now is on its way there.
-    let kept = stage.lab.content().place;
+    let kept = stage.lab.content(&Default::default()).place;
     assert!(kept.contains(&format!("step = {stood}\n")), "{kept}");
     // One more nudge under way goes to the same time.
     stage.commands("nudge = { key = 'start.tilt_deg', times = 1 }");

@@ -2,9 +2,9 @@
 
 use gyrolab::class::board;
 use gyrolab::class::folder::{ClassState, VoteStage};
-use gyrolab::class::seat::{Presence, Record, all_seats};
+use gyrolab::class::seat::{Presence, SeatRecord, all_seats};
 use gyrolab::class::student::Student;
-use gyrolab::class::votes::{self, Tally, sittings};
+use gyrolab::class::votes::{self, Tally, seat_statuses};
 use gyrolab::class::{ClassFolder, ClassRole, Seat, login};
 use gyrolab::lessons::class::KeptLessons;
 use gyrolab::lessons::predictions::{LessonProgress, LockedAnswer};
@@ -29,7 +29,7 @@ fn mode(path: &Path) -> u32 {
 }
 
 fn new_seat(folder: &ClassFolder, name: &str) -> Seat {
-    let (seat, is_new) = login::take(folder, name, 0).unwrap();
+    let (seat, is_new) = login::claim(folder, name, 0).unwrap();
     assert!(is_new);
     seat
 }
@@ -56,9 +56,9 @@ fn keep(seat: &Seat, lesson: &Lesson, name: &str, votes: &[(u32, f64, bool)]) {
         open: None,
         lessons: [(LESSON.to_owned(), place)].into(),
     };
-    let record = Record {
+    let record = SeatRecord {
         lessons: toml::Table::try_from(kept).unwrap(),
-        ..Record::default()
+        ..SeatRecord::default()
     };
     seat.save(&record).unwrap();
 }
@@ -69,9 +69,9 @@ fn a_seat_is_found_by_its_word_alone_and_its_modes_are_set() {
     let seat = new_seat(&folder, " Anna\n");
     assert!(seat.word.starts_with("anna-") && seat.word.len() == 11);
     assert_ne!(new_seat(&folder, "anna").word, seat.word);
-    let (back, is_new) = login::take(&folder, &seat.word, 0).unwrap();
+    let (back, is_new) = login::claim(&folder, &seat.word, 0).unwrap();
     assert!((&back.word, is_new) == (&seat.word, false));
-    seat.save(&Record::default()).unwrap();
+    seat.save(&SeatRecord::default()).unwrap();
     seat.hold().unwrap();
     assert_eq!(seat.presence(), Presence::Here);
     folder.publish(&ClassState::default()).unwrap();
@@ -101,7 +101,7 @@ fn hostile_names_make_no_seat() {
         "../anna-471108",
         "a;b",
     ] {
-        let refused = login::take(&folder, name, 0).unwrap_err();
+        let refused = login::claim(&folder, name, 0).unwrap_err();
         assert!(
             refused.contains("letters, digits and hyphens"),
             "{name:?}: {refused}"
@@ -125,7 +125,7 @@ fn wrong_word(name: &str, seats: &[&Seat]) -> String {
 
 #[track_caller]
 fn refused(folder: &ClassFolder, word: &str, at_s: u64, reason: &str) -> String {
-    let refused = login::take(folder, word, at_s).unwrap_err();
+    let refused = login::claim(folder, word, at_s).unwrap_err();
     assert!(refused.contains(reason), "{word} at {at_s} s: {refused}");
     refused
 }
@@ -147,8 +147,8 @@ fn wrong_codes_make_the_seats_of_a_name_wait_longer_and_longer() {
         now_s += wait_s;
         refused(&folder, &wrong, now_s, NO_SEAT);
     }
-    login::take(&folder, &berta.word, 0).unwrap();
-    login::take(&folder, &anna.word, now_s + 3600).unwrap();
+    login::claim(&folder, &berta.word, 0).unwrap();
+    login::claim(&folder, &anna.word, now_s + 3600).unwrap();
     for _ in 0..5 {
         refused(&folder, &wrong, now_s + 3600, NO_SEAT);
     }
@@ -160,10 +160,10 @@ fn a_right_code_resets_the_count_of_its_own_seat_alone() {
     let (own, other) = (new_seat(&folder, "anna"), new_seat(&folder, "anna"));
     let wrong = wrong_word("anna", &[&own, &other]);
     for _ in 0..5 {
-        login::take(&folder, &own.word, 0).unwrap();
+        login::claim(&folder, &own.word, 0).unwrap();
         refused(&folder, &wrong, 0, NO_SEAT);
     }
-    login::take(&folder, &own.word, 1).unwrap();
+    login::claim(&folder, &own.word, 1).unwrap();
     let waiting = login::waiting(&folder, 1);
     let words: Vec<_> = waiting.iter().map(|seat| seat.word.as_str()).collect();
     assert_eq!(words, [&other.word]);
@@ -179,7 +179,7 @@ fn guesses_of_several_logins_are_counted_together() {
     let seat = new_seat(&folder, "anna");
     let wrong = wrong_word("anna", &[&seat]);
     let tried = || {
-        let answers = (0..20).map(|_| login::take(&folder, &wrong, 0).unwrap_err());
+        let answers = (0..20).map(|_| login::claim(&folder, &wrong, 0).unwrap_err());
         answers.filter(|answer| answer.contains(NO_SEAT)).count()
     };
     let compared: usize = std::thread::scope(|scope| {
@@ -226,7 +226,7 @@ fn nothing_in_place_of_a_count_holds_anybody_up() {
         assert_eq!(login::waiting(&folder, 0), []);
         board::lines(&folder, 80);
         refused(&folder, &wrong_word("anna", &[&seat]), 0, NO_SEAT);
-        login::take(&folder, &seat.word, 0).unwrap();
+        login::claim(&folder, &seat.word, 0).unwrap();
         assert!(fs::symlink_metadata(&count).is_err(), "it was replaced");
     }
 }
@@ -235,7 +235,7 @@ fn nothing_in_place_of_a_count_holds_anybody_up() {
 fn a_seat_of_an_older_version_keeps_its_four_digits() {
     let (_dir, folder) = class();
     fs::create_dir(folder.seats().join("anna-4711")).unwrap();
-    let (seat, is_new) = login::take(&folder, "anna-4711", 0).unwrap();
+    let (seat, is_new) = login::claim(&folder, "anna-4711", 0).unwrap();
     assert!((seat.word.as_str(), is_new) == ("anna-4711", false));
     // A code that lacks a digit is no name for a new seat.
     refused(&folder, "anna-47110", 0, NO_SEAT);
@@ -245,10 +245,10 @@ fn a_seat_of_an_older_version_keeps_its_four_digits() {
 fn a_seat_whose_file_is_damaged_is_named() {
     let (_dir, folder) = class();
     let (anna, berta) = (new_seat(&folder, "anna"), new_seat(&folder, "berta"));
-    berta.save(&Record::default()).unwrap();
+    berta.save(&SeatRecord::default()).unwrap();
     for damaged in ["format = ", "format = 2\n[lessons]\nlessons = 7\n", "\u{0}"] {
         fs::write(anna.file("seat"), damaged).unwrap();
-        let seats = sittings(&folder).unwrap();
+        let seats = seat_statuses(&folder).unwrap();
         let troubles: Vec<_> = seats
             .iter()
             .filter_map(|seat| seat.trouble.as_ref())
@@ -265,7 +265,7 @@ fn answers_that_the_disk_has_not_are_told_at_the_end() {
     let (_dir, folder) = class();
     let seat = new_seat(&folder, "anna");
     let holds = seat.hold().unwrap();
-    let mut student = Student::new(folder, seat.clone(), holds, Record::default());
+    let mut student = Student::new(folder, seat.clone(), holds, SeatRecord::default());
     fs::remove_dir_all(&seat.folder).unwrap();
     let told = student.leave().unwrap_err();
     assert!(told.contains("your answers cannot be kept"), "{told}");
@@ -278,7 +278,7 @@ fn a_class_has_two_hundred_seats() {
     for index in 0..login::MOST_SEATS {
         fs::create_dir(folder.seats().join(format!("s{index}-000000"))).unwrap();
     }
-    let refused = login::take(&folder, "anna", 0).unwrap_err();
+    let refused = login::claim(&folder, "anna", 0).unwrap_err();
     assert!(refused.contains("200 seats"), "{refused}");
 }
 
@@ -293,17 +293,17 @@ fn votes_are_counted_by_round_and_late_ones_apart() {
         let votes = [(1, first, late), (2, second, false)];
         keep(&seat, &lesson, "finer", &votes);
     }
-    let seats = sittings(&folder).unwrap();
+    let seats = seat_statuses(&folder).unwrap();
     let counts = |round| {
-        let tally = Tally::of(&seats, LESSON, predict, round);
+        let tally = Tally::count(&seats, LESSON, predict, round);
         let counts: Vec<_> = tally.bars.iter().map(|(_, count)| *count).collect();
         (counts[..2].to_vec(), tally.late)
     };
     assert_eq!(counts(1), (vec![1, 1], 1));
     assert_eq!(counts(2), (vec![1, 2], 0));
-    let drawn = Tally::of(&seats, LESSON, predict, 1).drawn().text();
+    let drawn = Tally::count(&seats, LESSON, predict, 1).drawn().text();
     assert!(drawn.contains("late:\n1 █"), "{drawn}");
-    let csv = votes::csv(&folder, &sittings(&folder).unwrap()).unwrap();
+    let csv = votes::csv(&folder, &seat_statuses(&folder).unwrap()).unwrap();
     assert!(
         csv.starts_with("lesson,question,round,seat,choice,late,page,time\n"),
         "{csv}"
@@ -341,7 +341,7 @@ fn what_is_right_leads_to_advice() {
             let seat = new_seat(&folder, &format!("seat{index}"));
             keep(&seat, &lesson, "a", &[(1, choice, false)]);
         }
-        let tally = Tally::of(&sittings(&folder).unwrap(), LESSON, predict, 1);
+        let tally = Tally::count(&seat_statuses(&folder).unwrap(), LESSON, predict, 1);
         assert_eq!(tally.advice.as_deref(), Some(advice));
     }
 }
@@ -369,16 +369,16 @@ fn another_versions_files_are_named_and_left() {
 fn what_cannot_be_written_leaves_the_old_file() {
     let (_dir, folder) = class();
     let seat = new_seat(&folder, "anna");
-    let record = Record {
+    let record = SeatRecord {
         is_aside: true,
-        ..Record::default()
+        ..SeatRecord::default()
     };
     seat.save(&record).unwrap();
-    let long = Record {
+    let long = SeatRecord {
         lessons: [("a".to_owned(), "x".repeat(2 << 20).into())]
             .into_iter()
             .collect(),
-        ..Record::default()
+        ..SeatRecord::default()
     };
     assert!(seat.save(&long).unwrap_err().contains("1 MB"));
     assert!(seat.record().unwrap().is_aside);
@@ -387,7 +387,7 @@ fn what_cannot_be_written_leaves_the_old_file() {
     }
     let inside = seat.file("");
     fs::set_permissions(&inside, Permissions::from_mode(0o500)).unwrap();
-    let refused = seat.save(&Record::default()).unwrap_err();
+    let refused = seat.save(&SeatRecord::default()).unwrap_err();
     assert!(refused.contains("cannot be kept"), "{refused}");
     fs::set_permissions(&inside, Permissions::from_mode(0o700)).unwrap();
     assert!(seat.record().unwrap().is_aside);

@@ -26,7 +26,7 @@ fn pushed_backwards(count: usize) -> Desk {
 #[test]
 fn any_number_of_acts_each_earlier_than_the_one_before_comes_back() {
     let mut desk = pushed_backwards(200);
-    let content = desk.lab.content();
+    let content = desk.lab.content(&Default::default());
     let mut back = resumed(&content);
     assert_eq!(back.step(), 400);
     for step in 402..=600 {
@@ -42,7 +42,13 @@ fn any_number_of_acts_each_earlier_than_the_one_before_comes_back() {
 
 #[test]
 fn what_is_kept_grows_with_the_number_of_acts() {
-    let length = |count| pushed_backwards(count).lab.content().work.len();
+    let length = |count| {
+        pushed_backwards(count)
+            .lab
+            .content(&Default::default())
+            .work
+            .len()
+    };
     let (few, more, most) = (length(50), length(100), length(200));
     let (first, second) = (more - few, most - more);
     let is_even = second.abs_diff(2 * first) < first / 10;
@@ -56,7 +62,7 @@ fn what_is_shown_and_hidden_comes_back() {
     desk.commands("look_at = 'the dip'\ncamera = { yaw_deg = 75, pitch_deg = -10 }");
     for fill in ["none", "3d"] {
         desk.commands(&format!("fill = '{fill}'"));
-        let mut back = resumed(&desk.lab.content());
+        let mut back = resumed(&desk.lab.content(&Default::default()));
         desk.press(&[Key::Esc]); // no message hides the line
         back.press(&[Key::Esc]);
         desk.commands(&format!("fill = '{fill}'"));
@@ -72,7 +78,8 @@ fn what_is_shown_and_hidden_comes_back() {
     let hiding = preset("loops", &["view.hide=['traces']"]);
     let mut desk = Desk::with("loops", hiding);
     desk.commands("hide = []");
-    assert_eq!(resumed(&desk.lab.content()).lab.view().look.hide, []);
+    let back = resumed(&desk.lab.content(&Default::default()));
+    assert_eq!(back.lab.view().look.hide, []);
 }
 
 /// Waits until the pictures of the pinned run are there.
@@ -94,14 +101,14 @@ fn the_pinned_run_comes_back_with_what_was_done_to_it() {
     desk.commands("go_to = '20 s'\npush = true\ngo_to = '40 s'\npin = true");
     desk.commands("set = { 'start.tilt_deg' = 30 }\ngo_to = '10 s'");
     let before = desk.lab.comparison().pinned().unwrap().clone();
-    let content = desk.lab.content();
+    let content = desk.lab.content(&Default::default());
     let mut back = resumed(&content);
     assert!(back.lab.comparison().is_pinned());
     let is_same = |now: SessionContent| now.place == content.place && **now.work == **content.work;
-    let made_again = back.lab.content();
+    let made_again = back.lab.content(&Default::default());
     assert!(is_same(made_again), "it is kept while it is made again");
     await_pinned(&mut back);
-    assert!(is_same(back.lab.content()));
+    assert!(is_same(back.lab.content(&Default::default())));
     let again = back.lab.comparison().pinned().unwrap();
     assert_eq!(again.furthest, before.furthest);
     assert_eq!(again.end_s(), before.end_s());
@@ -110,7 +117,7 @@ fn the_pinned_run_comes_back_with_what_was_done_to_it() {
     let dots = |ghost: &gyrolab::lab::playback::ghost::Ghost| ghost.path.dots().collect::<Vec<_>>();
     assert_eq!(dots(again), dots(&before), "the same numbers");
     back.press(&[Key::Char('i')]);
-    let none = resumed(&back.lab.content());
+    let none = resumed(&back.lab.content(&Default::default()));
     assert!(!none.lab.comparison().is_pinned());
 }
 
@@ -118,7 +125,7 @@ fn the_pinned_run_comes_back_with_what_was_done_to_it() {
 fn the_present_run_comes_back_pinned() {
     let mut desk = Desk::open("method-2");
     desk.commands("go_to = '40 s'\npin = true");
-    let mut back = resumed(&desk.lab.content());
+    let mut back = resumed(&desk.lab.content(&Default::default()));
     assert!(back.lab.comparison().is_pinned() && back.lab.comparison().pinned().is_none());
     back.commands("set = { 'start.tilt_deg' = 30 }");
     assert_eq!(back.lab.comparison().pinned().unwrap().end_s(), 40.0);

@@ -2,6 +2,7 @@
 
 use crate::support::scenarios::resumed;
 use crate::support::stage::{LARGE, SMALL, Stage};
+use gyrolab::lab::lessons_in;
 use gyrolab::lab::sheet::SheetLineKind;
 use gyrolab::lab::view::HideablePart;
 use gyrolab::lessons::predictions::Tried;
@@ -215,9 +216,8 @@ fn a_task_is_done_by_hand_or_shown() {
 fn the_session_keeps_page_and_predictions() {
     let (mut stage, _folder, _) = taken(1);
     stage.press("↓↓\n\n").press("nn").arrive();
-    let content = stage.lab.content();
-    let mut lab = resumed(&content);
-    let (class, taken) = Lessons::resumed(&mut lab);
+    let content = stage.lab.content(stage.class.kept());
+    let (class, taken) = Lessons::resumed(lessons_in(&content), &mut resumed(&content));
     taken.unwrap();
     let place = &class.taken().unwrap().place;
     assert_eq!(place.page, 2);
@@ -232,12 +232,11 @@ fn the_session_keeps_page_and_predictions() {
 fn a_lesson_that_is_gone_leaves_the_lab_and_what_was_predicted() {
     let (mut stage, folder, name) = taken(1);
     stage.press("↓↓\n\n");
-    let content = stage.lab.content();
+    let content = stage.lab.content(stage.class.kept());
     drop(folder);
-    let mut lab = resumed(&content);
-    let (_, taken) = Lessons::resumed(&mut lab);
+    let (lessons, taken) = Lessons::resumed(lessons_in(&content), &mut resumed(&content));
     assert!(taken.unwrap_err().contains("swing.md"));
-    let kept = lab.lessons.as_ref().unwrap();
+    let kept = lessons.kept();
     let place = &kept["lessons"][name.as_str()];
     let answer = &place["predictions"]["finer"][0]["answer"];
     assert_eq!(answer.as_str(), Some("grows"));

@@ -187,7 +187,7 @@ fn a_session_keeps_them_by_name() {
         "measured = '{}'\nresiduals = true\ngo_to = 200",
         path.display()
     ));
-    let content = desk.lab.content();
+    let content = desk.lab.content(&Default::default());
     let mut again = Desk::of(resumed(&content));
     again.wait(3);
     assert_eq!(sum(&again.lab).compared, 20);

@@ -379,7 +379,7 @@ fn it_comes_back_with_the_session() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.commands("pause = true\nstep = 4").press("v....");
     stage.commands("phase = 'torque'\nsum_to = 3");
-    let content = stage.lab.content();
+    let content = stage.lab.content(&Default::default());
     let mut lab = resumed(&content);
     screen::fit(&mut lab, SMALL);
     lab.take_changed();

@@ -109,7 +109,7 @@ impl Stage {
             };
             // Somebody always waits for an answer here.
             self.lab.advance(&mut clock);
-            self.class.advance(now, &mut self.lab);
+            self.class.update(now, &mut self.lab);
             screen::refit(&mut self.lab, self.size);
             self.now += FRAME;
         }

@@ -49,25 +49,24 @@ impl Drop for Registered {
 /// Registers `hook`, which is called on a thread of its own before the terminal is given back. It may be called more than
 /// once, and while the lab is still running. It should give up after [`Release::patience`].
 pub fn hook(hook: impl Fn(Release) + Send + Sync + 'static) -> Registered {
-    let mut hooks = hooks();
-    let number = hooks.last().map_or(0, |(last, _)| last + 1);
-    hooks.push((number, Arc::new(hook)));
+    let mut registered = hooks();
+    let number = registered.last().map_or(0, |(last, _)| last + 1);
+    registered.push((number, Arc::new(hook)));
     Registered(number)
 }
 
 /// Calls every hook and waits until all have returned, but no longer than [`Release::patience`].
 pub fn run_hooks(release: Release) {
     let (done, all_done) = mpsc::channel::<()>();
-    let hooks = hooks().clone();
-    for (_, hook) in hooks {
-        let done = done.clone();
-        let of_thread = Arc::clone(&hook);
+    let registered = hooks().clone();
+    for (_, hook) in registered {
+        let (thread_hook, thread_done) = (Arc::clone(&hook), done.clone());
         // Each on its own thread, so that one that hangs or panics does not affect the others.
-        let run = move || {
-            call(&of_thread, release);
-            drop(done);
-        };
-        if thread::Builder::new().spawn(run).is_err() {
+        let spawned = thread::Builder::new().spawn(move || {
+            call(&thread_hook, release);
+            drop(thread_done);
+        });
+        if spawned.is_err() {
             call(&hook, release); // the system gives no thread: run it here
         }
     }

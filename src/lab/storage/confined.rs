@@ -78,14 +78,14 @@ impl Confined {
 
     /// Checks that the file `path` may be read: it lies in the folder, or in that of the class. Its full path is allowed.
     pub fn check_reading(&self, path: &Path) -> Result<(), String> {
-        for root in [&self.root, self.class.as_ref().unwrap_or(&self.root)] {
+        for root in [Some(&self.root), self.class.as_ref()]
+            .into_iter()
+            .flatten()
+        {
             if let Ok(rest) = path.strip_prefix(root) {
-                let root = root.clone();
-                return Self {
-                    root,
-                    ..self.clone()
-                }
-                .check(rest);
+                let mut there = self.clone();
+                there.root.clone_from(root);
+                return there.check(rest);
             }
         }
         self.check(path)
@@ -123,14 +123,11 @@ impl Confined {
             }
         }
         self.check_full(&full)?;
-        match fs::symlink_metadata(&full) {
-            Ok(there) if there.is_symlink() => {
-                self.check_full(&fs::canonicalize(&full).map_err(|_| leads_out(&full))?)
-            }
-            _ => Ok(()),
-        }?;
-        let folder = full.parent().unwrap_or(&self.root);
-        if let Ok(folder) = fs::canonicalize(folder) {
+        if fs::symlink_metadata(&full).is_ok_and(|there| there.is_symlink()) {
+            let target = fs::canonicalize(&full).map_err(|_| leads_out(&full))?;
+            self.check_full(&target)?;
+        }
+        if let Ok(folder) = fs::canonicalize(full.parent().unwrap_or(&self.root)) {
             self.check_full(&folder)?;
         }
         match fs::metadata(&full) {
@@ -144,27 +141,24 @@ impl Confined {
     /// Checks an absolute path, without following links in it.
     fn check_full(&self, path: &Path) -> Result<(), String> {
         let inside = path.strip_prefix(&self.root).map_err(|_| leads_out(path))?;
-        let is_hidden = |part: Component<'_>| part.as_os_str().as_encoded_bytes().starts_with(b".");
-        if inside.components().any(is_hidden) {
-            Err("names that begin with a dot are the lab's own".to_owned())
-        } else {
-            Ok(())
+        for name in inside {
+            if name.as_encoded_bytes().starts_with(b".") {
+                return Err("names that begin with a dot are the lab's own".to_owned());
+            }
         }
+        Ok(())
     }
 }
 
 /// What the files in `folder` take together, bytes.
 fn size_of(folder: &Path) -> u64 {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-    let there = entries.filter_map(|entry| Some((entry.path(), entry.metadata().ok()?)));
-    let size = |(path, there): (PathBuf, fs::Metadata)| {
-        if there.is_dir() {
-            size_of(&path)
-        } else {
-            there.len()
-        }
-    };
-    there.map(size).sum()
+    entries
+        .map(|entry| match entry.metadata() {
+            Ok(there) if there.is_dir() => size_of(&entry.path()),
+            there => there.map_or(0, |there| there.len()),
+        })
+        .sum()
 }
 
 fn leads_out(path: &Path) -> String {

@@ -18,6 +18,7 @@ use std::ffi::OsStr;
 use std::io;
 use std::num::NonZeroU64;
 use std::ops::ControlFlow;
+use std::os::unix::ffi::OsStrExt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -71,16 +72,16 @@ impl Exporting {
         layout: CsvLayout,
         replace: bool,
     ) -> Result<Self, DestinationError> {
-        let refused = |error| DestinationError::refused(path, error);
         let destination = Destination::open_file(path, replace)?;
-        let csv = CsvWriter::with_layout(destination, &scenario, layout).map_err(refused)?;
-        let path = std::path::absolute(path).map_err(refused)?;
-        let steps = scenario.steps;
-        let written = path.clone();
-        Self::spawn(path, steps, move |shared| {
-            write(scenario, csv, written, shared)
-        })
-        .map_err(refused)
+        let begin = || {
+            let csv = CsvWriter::with_layout(destination, &scenario, layout)?;
+            let full = std::path::absolute(path)?;
+            let (steps, written) = (scenario.steps, full.clone());
+            Self::spawn(full, steps, move |shared| {
+                write(scenario, csv, written, shared)
+            })
+        };
+        begin().map_err(|error| DestinationError::refused(path, error))
     }
 
     /// Starts drawing a figure of the run of `scenario`, a column of a page wide, to the file `path`. It writes the same bytes
@@ -91,14 +92,15 @@ impl Exporting {
         drawn: FigureInput,
         replace: bool,
     ) -> Result<Self, DestinationError> {
-        let refused = |error| DestinationError::refused(path, error);
         let output = Destination::open_file(path, replace)?;
-        let path = std::path::absolute(path).map_err(refused)?;
-        let (steps, drawn_to) = (scenario.steps, path.clone());
-        Self::spawn(path, steps, move |shared| {
-            draw(scenario, output, drawn_to, drawn, shared)
-        })
-        .map_err(refused)
+        let begin = || {
+            let full = std::path::absolute(path)?;
+            let (steps, written) = (scenario.steps, full.clone());
+            Self::spawn(full, steps, move |shared| {
+                draw(scenario, output, written, drawn, shared)
+            })
+        };
+        begin().map_err(|error| DestinationError::refused(path, error))
     }
 
     fn spawn(
@@ -147,11 +149,8 @@ impl Exporting {
             return None;
         }
         let worker = self.worker.take_if(|worker| worker.is_finished())?;
-        Some(
-            worker.join().unwrap_or_else(|_| {
-                Err("the export broke off, and nothing was written".to_owned())
-            }),
-        )
+        let broken = Err("the export broke off, and nothing was written".to_owned());
+        Some(worker.join().unwrap_or(broken))
     }
 }
 
@@ -205,14 +204,14 @@ fn write(
 ) -> Result<Written, String> {
     let mut simulation = Simulation::new(scenario);
     let cannot_write = |error| DestinationError::refused(&path, error).fact();
-    let played = stream::play(
+    let (ended, _) = stream::play(
         &mut simulation,
         shared.steps,
         Some(&mut csv),
         |_| {},
         |step, _| shared.reach(step),
-    );
-    let (ended, _) = played.map_err(cannot_write)?;
+    )
+    .map_err(cannot_write)?;
     let rows = csv.count();
     let destination = csv.finish().map_err(cannot_write)?;
     if ended == Ended::Stopped || shared.reach(simulation.step_number()).is_break() {
@@ -250,11 +249,13 @@ fn draw(
         measured: drawn.measured,
         table: None,
     };
-    let figure = source.draw(|step, _| shared.reach(step))?;
-    let figure = figure.filter(|_| shared.reach(shared.steps).is_continue());
-    let figure = figure.ok_or("the figure was stopped, and nothing was written")?;
-    let bytes = source.write(&figure.scene, drawn.format);
-    let bytes = bytes.map_err(|error| error.to_string())?;
+    let figure = source
+        .draw(|step, _| shared.reach(step))?
+        .filter(|_| shared.reach(shared.steps).is_continue())
+        .ok_or("the figure was stopped, and nothing was written")?;
+    let bytes = source
+        .write(&figure.scene, drawn.format)
+        .map_err(|error| error.to_string())?;
     output
         .write_and_keep(&bytes)
         .map_err(|error| error.fact())?;
@@ -282,18 +283,18 @@ pub struct Estimate {
 /// 64 rows with the numbers of the run's beginning and with steps and times spread over the whole run.
 pub fn estimate(scenario: &Arc<Scenario>, every: NonZeroU64) -> Estimate {
     let rows = rows(scenario.steps, every.get());
-    let text = sample_rows(scenario, every.get()).unwrap_or_default(); // writing to memory does not fail
-    let text = String::from_utf8_lossy(&text);
-    let lines = text
-        .lines()
-        .rev()
-        .take_while(|line| !line.starts_with(COLUMNS[0].name));
-    let lengths: Vec<_> = lines.map(|line| line.len() + 1).collect();
-    let few: usize = lengths.iter().sum();
-    let row = few as f64 / lengths.len().max(1) as f64;
+    let csv = sample_rows(scenario, every.get()).unwrap_or_default(); // writing to memory does not fail
+    let (mut few, mut bytes) = (0, 0);
+    for line in csv.split_inclusive(|&byte| byte == b'\n').rev() {
+        if line.starts_with(COLUMNS[0].name.as_bytes()) {
+            break;
+        }
+        (few, bytes) = (few + 1, bytes + line.len());
+    }
+    let row = bytes as f64 / f64::from(few.max(1));
     Estimate {
         rows,
-        bytes: ((row * rows as f64).round() as u64).saturating_add((text.len() - few) as u64),
+        bytes: ((row * rows as f64).round() as u64).saturating_add((csv.len() - bytes) as u64),
     }
 }
 
@@ -308,8 +309,11 @@ fn sample_rows(scenario: &Arc<Scenario>, every: u64) -> io::Result<Vec<u8>> {
     const MOST_INTEGRATION: u64 = 50_000_000; // about 0.1 s
     let mut left = MOST_INTEGRATION;
     let points = scenario.body.mechanics.points().len() as u64;
-    let apart = ((1 << 15) / points).clamp(4, 32); // steps between rows; a step of a larger body takes longer
-    let apart = apart.min(scenario.steps / ROWS_PER_SLICE).max(1);
+    // Steps between rows; a step of a larger body takes longer.
+    let apart = ((1 << 15) / points)
+        .clamp(4, 32)
+        .min(scenario.steps / ROWS_PER_SLICE)
+        .max(1);
     let mut simulation = Simulation::new(Arc::clone(scenario));
     let mut csv = CsvWriter::new(Vec::new(), scenario)?;
     for row in 0..ROWS_PER_SLICE {
@@ -337,12 +341,11 @@ fn sample_rows(scenario: &Arc<Scenario>, every: u64) -> io::Result<Vec<u8>> {
 pub fn scp_line(path: &Path) -> Option<String> {
     // ssh sets it to "CLIENT CLIENT_PORT SERVER SERVER_PORT".
     let connection = std::env::var("SSH_CONNECTION").ok()?;
-    let user = ["USER", "LOGNAME"]
-        .into_iter()
-        .find_map(std::env::var_os)
-        .unwrap_or_default();
+    let user = std::env::var_os("USER").or_else(|| std::env::var_os("LOGNAME"));
     let port = connection.split(' ').nth(3).unwrap_or_default();
-    let made = scp_line_from(port, &user, &gethostname::gethostname(), path.as_os_str());
+    let system = rustix::system::uname();
+    let host = OsStr::from_bytes(system.nodename().to_bytes());
+    let made = scp_line_from(port, &user.unwrap_or_default(), host, path.as_os_str());
     Some(made.unwrap_or_else(|what| {
         format!("no scp line: {what} holds characters that cannot be typed in a shell")
     }))
@@ -355,20 +358,19 @@ fn scp_line_from(
     host: &OsStr,
     path: &OsStr,
 ) -> Result<String, &'static str> {
-    let port = match port.parse::<u16>() {
+    let option = match port.parse::<u16>() {
         Ok(22) | Err(_) => String::new(),
         Ok(port) => format!("-P {port} "),
     };
-    let user = if user.is_empty() {
-        String::new()
-    } else {
-        format!("{}@", name(user).ok_or("the user's name")?)
-    };
-    let host = name(host).ok_or("this machine's name")?;
-    let path = path.to_str().filter(|path| printable(path) == *path);
-    let place = format!("{user}{host}:{}", path.ok_or("its name")?);
+    let mut place = String::new();
+    if !user.is_empty() {
+        place += &format!("{}@", name(user).ok_or("the user's name")?);
+    }
+    place += name(host).ok_or("this machine's name")?;
+    let path_text = path.to_str().filter(|text| printable(text) == *text);
+    place += &format!(":{}", path_text.ok_or("its name")?);
     let quoted = shlex::try_quote(&place).map_err(|_| "its name")?;
-    Ok(format!("scp {port}{quoted} ."))
+    Ok(format!("scp {option}{quoted} ."))
 }
 
 /// `text` if it is a name of a user or a machine that scp does not mistake for an option or a path.

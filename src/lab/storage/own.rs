@@ -22,14 +22,11 @@ pub(super) fn open(path: &Path, options: &mut OpenOptions) -> io::Result<File> {
 pub(super) fn open_regular(path: &Path, options: &mut OpenOptions) -> io::Result<File> {
     let flags = OFlags::NOFOLLOW | OFlags::NONBLOCK;
     let opened = options.custom_flags(flags.bits() as i32).open(path);
-    let file =
-        opened.map_err(
-            |error| match error.raw_os_error().map(Errno::from_raw_os_error) {
-                Some(Errno::LOOP) => refused("it is a symbolic link"),
-                Some(Errno::NXIO | Errno::ISDIR) => refused("it is not a file"),
-                _ => error,
-            },
-        )?;
+    let file = opened.map_err(|error| match Errno::from_io_error(&error) {
+        Some(Errno::LOOP) => refused("it is a symbolic link"),
+        Some(Errno::NXIO | Errno::ISDIR) => refused("it is not a file"),
+        _ => error,
+    })?;
     if !file.metadata()?.is_file() {
         return Err(refused("it is not a file"));
     }
@@ -63,10 +60,10 @@ pub(super) fn replace(path: &Path, text: &str) -> io::Result<()> {
 
 /// The same with this mode, whatever the umask is.
 pub(super) fn replace_with_mode(path: &Path, text: &str, mode: u32) -> io::Result<()> {
-    let mode = Permissions::from_mode(mode);
+    let permissions = Permissions::from_mode(mode);
     let folder = path.parent().unwrap_or(Path::new("."));
-    let mut file = temporary::file_in(folder, &mode)?;
-    file.as_file().set_permissions(mode)?;
+    let mut file = temporary::file_in(folder, &permissions)?;
+    file.as_file().set_permissions(permissions)?;
     file.as_file_mut().write_all(text.as_bytes())?; // whose errors do not speak of the temporary name
     file.persist(path)?;
     Ok(())

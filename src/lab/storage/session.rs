@@ -24,7 +24,7 @@ const SAVE_INTERVAL: Duration = Duration::from_millis(500);
 
 /// What is left of a session that has ended.
 #[derive(Debug)]
-pub struct Closed {
+pub struct ClosedSession {
     /// The content that was saved last; `None` if none was.
     pub kept: Option<SessionContent>,
     /// Why that is not the content that was noted last.
@@ -74,7 +74,7 @@ pub struct LeftAlone {
 }
 
 #[derive(Debug)]
-pub struct Listed {
+pub struct ListedSession {
     pub name: String,
     /// When it was saved last.
     pub written: SystemTime,
@@ -89,11 +89,13 @@ pub struct Listed {
 /// The folder for sessions: `$XDG_STATE_HOME/gyrolab`, by default `~/.local/state/gyrolab`.
 pub fn folder() -> Result<PathBuf, String> {
     let state = Xdg::new().ok().and_then(|places| places.state_dir());
-    let folder = state.filter(|folder| folder.is_absolute());
-    folder.map(|folder| folder.join("gyrolab")).ok_or_else(|| {
-        "sessions cannot be kept: there is no home folder; set HOME or XDG_STATE_HOME to the full path of a folder"
-            .to_owned()
-    })
+    match state.filter(|folder| folder.is_absolute()) {
+        Some(folder) => Ok(folder.join("gyrolab")),
+        None => Err(
+            "sessions cannot be kept: there is no home folder; set HOME or XDG_STATE_HOME to the full path of a folder"
+                .to_owned(),
+        ),
+    }
 }
 
 /// Resumes the newest session in `folder` that no running process holds and that `read` accepts; with a `name` only that
@@ -117,43 +119,46 @@ pub fn resume<T>(
         in_use_by: Vec::new(),
     };
     for name in names {
-        let taken = || -> Result<_, String> {
-            let slot = Slot::take(folder, &name).map_err(|error| error.to_string())?;
-            let Some(slot) = slot else { return Ok(None) };
-            let content = slot::stored(folder, &name)?;
-            let what = read(&content)?;
-            Ok(Some((slot, content, what)))
-        };
-        match taken() {
-            Ok(Some((slot, content, what))) => {
-                found.resumed = Some((Session::start(slot, Some(content))?, what));
-                break;
+        let reason = match Slot::take(folder, &name) {
+            Ok(None) => {
+                found.in_use_by.extend(slot::owner(folder, &name));
+                continue;
             }
-            Ok(None) => found.in_use_by.extend(slot::owner(folder, &name)),
-            Err(reason) => found.left_alone.push(LeftAlone {
-                path: slot::file(folder, &name, "session"),
-                reason,
-            }),
-        }
+            Ok(Some(slot)) => {
+                let stored = slot::stored(folder, &name);
+                match stored.and_then(|content| Ok((read(&content)?, content))) {
+                    Ok((what, content)) => {
+                        found.resumed = Some((Session::start(slot, Some(content))?, what));
+                        break;
+                    }
+                    Err(reason) => reason,
+                }
+            }
+            Err(error) => error.to_string(),
+        };
+        let path = slot::file(folder, &name, "session");
+        found.left_alone.push(LeftAlone { path, reason });
     }
     Ok(found)
 }
 
 /// Lists the sessions in `folder`, the one saved last first. It changes nothing.
-pub fn list(folder: &Path) -> io::Result<Vec<Listed>> {
+pub fn list(folder: &Path) -> io::Result<Vec<ListedSession>> {
     let names = sessions(folder)?.into_iter();
     Ok(names.map(|name| listed(folder, name)).collect())
 }
 
 /// The session called `name` in `folder`, as [`list`] has it; `None` if there is none.
-pub fn look_at(folder: &Path, name: &str) -> Option<Listed> {
-    let mut names = sessions(folder).ok()?.into_iter();
-    Some(listed(folder, names.find(|other| other == name)?))
+pub fn look_at(folder: &Path, name: &str) -> Option<ListedSession> {
+    let names = sessions(folder).ok()?;
+    names
+        .contains(&name.to_owned())
+        .then(|| listed(folder, name.to_owned()))
 }
 
-fn listed(folder: &Path, name: String) -> Listed {
+fn listed(folder: &Path, name: String) -> ListedSession {
     let is_in_use = slot::is_in_use(folder, &name);
-    Listed {
+    ListedSession {
         written: slot::written_at(folder, &name),
         is_in_use,
         owner: slot::owner(folder, &name).filter(|_| is_in_use),
@@ -179,12 +184,14 @@ impl Session {
     /// Begins a new session in `folder`, which is created if it does not exist, and removes the oldest unused sessions.
     /// Nothing is saved before the first [`note`](Self::note).
     pub fn begin(folder: &Path) -> io::Result<Self> {
-        let slot = make_folder(folder).and_then(|()| {
+        let begun = make_folder(folder).and_then(|()| {
             slot::prune(folder);
             Slot::new(folder)
         });
-        let slot = slot.map_err(|error| told(&error, "sessions cannot be kept in", folder))?;
-        Self::start(slot, None)
+        match begun {
+            Ok(slot) => Self::start(slot, None),
+            Err(error) => Err(told(&error, "sessions cannot be kept in", folder)),
+        }
     }
 
     /// The session of `slot`, of which the disk holds `kept`.
@@ -213,8 +220,11 @@ impl Session {
     /// Makes `content` the content to save. It is quick, and may be called in every round of the loop.
     pub fn note(&self, content: SessionContent) {
         let mut state = locked(&self.state);
-        let noted = state.noted.as_ref();
-        if !noted.is_some_and(|noted| noted.is_same(&content)) {
+        if !state
+            .noted
+            .as_ref()
+            .is_some_and(|noted| noted.is_same(&content))
+        {
             state.noted = Some(content);
             state.is_news = true;
         }
@@ -236,15 +246,17 @@ impl Session {
     }
 
     /// Saves and ends the session. It waits at most `patience` for the disk.
-    pub fn close(mut self, patience: Duration) -> Closed {
+    pub fn close(mut self, patience: Duration) -> ClosedSession {
         let is_in_time = self.end(patience);
         let state = locked(&self.state);
-        Closed {
+        let mut trouble = state.trouble.clone();
+        if !is_in_time {
+            let slow = "the session cannot be kept: the disk takes too long";
+            trouble.get_or_insert_with(|| slow.to_owned());
+        }
+        ClosedSession {
             kept: state.kept.clone(),
-            trouble: state.trouble.clone().or_else(|| {
-                (!is_in_time)
-                    .then(|| "the session cannot be kept: the disk takes too long".to_owned())
-            }),
+            trouble,
         }
     }
 

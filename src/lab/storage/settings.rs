@@ -15,9 +15,9 @@ use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
-pub const FILE: &str = "settings.toml";
+pub const SETTINGS_FILE: &str = "settings.toml";
 /// The longest file of settings, bytes.
-const LONGEST: usize = 1 << 20;
+const LONGEST_SETTINGS: usize = 1 << 20;
 
 const SETTINGS_HEADER: &str = "# What was chosen in the lab. gyrolab writes this file; config.toml in the configuration folder is yours, and wins.\n";
 
@@ -45,18 +45,18 @@ const SETTINGS: Schema = Schema(&[SETTINGS_KEYS]);
 
 /// The settings of one file, and what is wrong with it.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Read {
+pub struct SettingsFile {
     /// Those of its settings that break no rule, by the keys of [`SETTINGS_KEYS`].
     pub settings: Table,
     pub problems: Option<Problems>,
 }
 
 /// The settings of the file `path` whose bytes are `read`; where there is no such file, there are no settings.
-fn checked(path: &Path, read: io::Result<Vec<u8>>) -> Read {
+fn checked(path: &Path, read: io::Result<Vec<u8>>) -> SettingsFile {
     let origin = path.display().to_string();
     let document = match read {
         Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
-            return Read::default();
+            return SettingsFile::default();
         }
         Ok(bytes) => Document::read_from(&origin, &*bytes),
         Err(error) => {
@@ -68,12 +68,12 @@ fn checked(path: &Path, read: io::Result<Vec<u8>>) -> Read {
         Ok(document) => {
             let (settings, found) = sifted(document.table());
             let placed = found.or(()).map_err(|found| document.placed(found));
-            Read {
+            SettingsFile {
                 settings,
                 problems: placed.err(),
             }
         }
-        Err(problems) => Read {
+        Err(problems) => SettingsFile {
             settings: Table::new(),
             problems: Some(problems),
         },
@@ -101,32 +101,33 @@ fn sifted(table: &Table) -> (Table, Problems) {
 /// user has no home.
 pub fn config() -> Option<PathBuf> {
     let folder = Xdg::new().ok()?.config_dir();
-    let folder = folder.is_absolute().then_some(folder)?;
-    Some(folder.join("gyrolab").join("config.toml"))
+    folder
+        .is_absolute()
+        .then(|| folder.join("gyrolab").join("config.toml"))
 }
 
 /// Reads the user's file at `path`, which may be a symbolic link.
-pub fn read_config(path: &Path) -> Read {
+pub fn read_config(path: &Path) -> SettingsFile {
     let bytes = match fs::metadata(path) {
         Ok(there) if !there.is_file() => Err(io::Error::other("it is not a file")),
-        _ => File::open(path).and_then(|file| own::read_at_most(file, LONGEST)),
+        _ => File::open(path).and_then(|file| own::read_at_most(file, LONGEST_SETTINGS)),
     };
     checked(path, bytes)
 }
 
 /// Reads the file that the program has written in `folder`, if it is the user's own; no symbolic link is followed.
-pub fn read(folder: &Path) -> Read {
-    let path = folder.join(FILE);
-    checked(&path, own::read(&path, LONGEST))
+pub fn read(folder: &Path) -> SettingsFile {
+    let path = folder.join(SETTINGS_FILE);
+    checked(&path, own::read(&path, LONGEST_SETTINGS))
 }
 
 /// Replaces the setting `key` in the file of `folder`, which is created if it does not exist. What is wrong in the file is
 /// left out.
 pub fn remember(folder: &Path, key: &str, value: Value) -> Result<(), String> {
-    let path = folder.join(FILE);
+    let path = folder.join(SETTINGS_FILE);
     let remembered = || -> io::Result<()> {
         own::make_folder(folder)?;
-        let mut table = match own::read(&path, LONGEST) {
+        let mut table = match own::read(&path, LONGEST_SETTINGS) {
             // What is no TOML was reported when the lab was opened.
             Ok(bytes) => sifted(&toml::from_slice(&bytes).unwrap_or_default()).0,
             Err(error) if error.kind() == ErrorKind::NotFound => Table::new(),
@@ -151,7 +152,7 @@ mod tests {
         let home = tempfile::tempdir().unwrap();
         let target = home.path().join("target");
         fs::write(&target, "marker = 'dot'\n").unwrap();
-        symlink(&target, home.path().join(FILE)).unwrap();
+        symlink(&target, home.path().join(SETTINGS_FILE)).unwrap();
         let found = read(home.path());
         assert!(found.settings.is_empty());
         let told = found.problems.unwrap().to_string();

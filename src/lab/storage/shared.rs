@@ -14,10 +14,11 @@ pub fn make_folder(path: &Path, mode: u32) -> io::Result<bool> {
     match fs::create_dir(path) {
         Ok(()) => fs::set_permissions(path, Permissions::from_mode(mode)).map(|()| true),
         Err(error) if error.kind() == ErrorKind::AlreadyExists => {
-            let is_folder = fs::symlink_metadata(path)?.is_dir();
-            is_folder
-                .then_some(false)
-                .ok_or(refused("it is not a folder"))
+            if fs::symlink_metadata(path)?.is_dir() {
+                Ok(false)
+            } else {
+                Err(refused("it is not a folder"))
+            }
         }
         Err(error) => Err(error),
     }

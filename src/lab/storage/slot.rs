@@ -17,7 +17,7 @@
 //! disk: sessions must survive the death of the process, not of the machine.
 
 use super::confined::SESSIONS;
-use super::own;
+use super::{own, shared};
 use rustix::io::Errno;
 use rustix::process::{Pid, test_kill_process};
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -31,9 +31,9 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 const SESSION_FORMAT: &str = "gyrolab session 4";
 /// The most sessions that are kept, of a user and of a login that several share.
 const MOST_KEPT_SESSIONS: usize = 20;
-const MOST_SHARED: usize = 200;
+const MOST_SHARED_SESSIONS: usize = 200;
 /// The longest file of a session, bytes.
-const LONGEST: usize = 64 << 20;
+const LONGEST_SESSION: usize = 64 << 20;
 /// The longest lock file, bytes: the number of a process.
 const LONGEST_LOCK: usize = 100;
 /// A lock that is held for a shorter time belongs to a process that only looks at the session.
@@ -76,13 +76,13 @@ pub(super) fn file(folder: &Path, name: &str, kind: &str) -> PathBuf {
 
 /// The names of the files in `folder` that end in `kind`, without that.
 fn names(folder: &Path, kind: &str) -> io::Result<Vec<String>> {
-    let files = match fs::read_dir(folder) {
+    let entries = match fs::read_dir(folder) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
-        files => files?,
+        entries => entries?,
     };
-    let files = files.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
-    Ok(files
-        .filter_map(|file| Some(file.strip_suffix(kind)?.strip_suffix('.')?.to_owned()))
+    let name = |file: String| Some(file.strip_suffix(kind)?.strip_suffix('.')?.to_owned());
+    Ok(entries
+        .filter_map(|entry| name(entry.ok()?.file_name().into_string().ok()?))
         .collect())
 }
 
@@ -96,9 +96,7 @@ pub(super) fn sessions(folder: &Path) -> io::Result<Vec<String>> {
 
 /// When the session was written last; the beginning of 1970 if it is not there.
 pub(super) fn written_at(folder: &Path, name: &str) -> SystemTime {
-    let there = fs::symlink_metadata(file(folder, name, "session"));
-    let modified = there.and_then(|there| there.modified());
-    modified.unwrap_or(UNIX_EPOCH)
+    shared::modified(&file(folder, name, "session")).unwrap_or(UNIX_EPOCH)
 }
 
 pub(super) fn is_in_use(folder: &Path, name: &str) -> bool {
@@ -119,15 +117,17 @@ fn is_running(process: u32) -> bool {
 
 /// Reads the session, whether or not a process holds it.
 pub(super) fn stored(folder: &Path, name: &str) -> Result<SessionContent, String> {
-    let bytes = own::read(&file(folder, name, "session"), LONGEST);
-    let bytes = bytes.map_err(|error| error.to_string())?;
+    let bytes = own::read(&file(folder, name, "session"), LONGEST_SESSION)
+        .map_err(|error| error.to_string())?;
     let text = String::from_utf8(bytes).unwrap_or_default();
     let (format, rest) = text.split_once('\n').unwrap_or_default();
     if format != SESSION_FORMAT && format.starts_with("gyrolab session ") {
         return Err("another version of gyrolab wrote it".to_owned());
     }
-    let content = content(rest).filter(|_| format == SESSION_FORMAT);
-    content.ok_or_else(|| "it has been cut off or changed".to_owned())
+    match content(rest) {
+        Some(content) if format == SESSION_FORMAT => Ok(content),
+        _ => Err("it has been cut off or changed".to_owned()),
+    }
 }
 
 /// The content from the text of a session behind its first line; `None` if it is incomplete or changed.
@@ -136,12 +136,13 @@ fn content(text: &str) -> Option<SessionContent> {
     if sum != sum_of(summed) {
         return None;
     }
-    let (length, texts) = summed.split_once('\n')?;
-    let length = length.strip_prefix("place ")?.parse().ok()?;
-    let (place, work) = texts.split_at_checked(length)?;
-    let work = work.to_owned();
+    let (length, texts) = summed.strip_prefix("place ")?.split_once('\n')?;
+    let (place, work) = texts.split_at_checked(length.parse().ok()?)?;
     Some(SessionContent {
-        work: later(move || work),
+        work: later({
+            let work = work.to_owned();
+            move || work
+        }),
         place: place.to_owned(),
     })
 }
@@ -152,24 +153,30 @@ fn sum_of(text: &str) -> String {
 
 /// Removes all but the newest unused sessions, and lock files without a session. What is another user's stays.
 pub(super) fn prune(folder: &Path) {
-    let take = |name: &String| Slot::take(folder, name).ok()?;
-    let old = sessions(folder).unwrap_or_default();
-    let free = old.iter().filter(|name| {
-        let path = file(folder, name, "session");
-        own::open(&path, OpenOptions::new().read(true)).is_ok()
-    });
     let is_shared = folder.ends_with(SESSIONS);
-    let most = if is_shared {
-        MOST_SHARED
+    let mut left = if is_shared {
+        MOST_SHARED_SESSIONS
     } else {
         MOST_KEPT_SESSIONS
     };
-    free.filter_map(take).skip(most).for_each(Slot::remove);
-    let locks = names(folder, "lock").unwrap_or_default();
-    let alone = locks
-        .iter()
-        .filter(|name| !exists(&file(folder, name, "session")));
-    alone.filter_map(take).for_each(Slot::remove);
+    for name in sessions(folder).unwrap_or_default() {
+        let path = file(folder, &name, "session");
+        if own::open(&path, OpenOptions::new().read(true)).is_ok()
+            && let Ok(Some(slot)) = Slot::take(folder, &name)
+        {
+            match left.checked_sub(1) {
+                Some(less) => left = less,
+                None => slot.remove(),
+            }
+        }
+    }
+    for name in names(folder, "lock").unwrap_or_default() {
+        if !exists(&file(folder, &name, "session"))
+            && let Ok(Some(slot)) = Slot::take(folder, &name)
+        {
+            slot.remove();
+        }
+    }
 }
 
 /// Whether there is anything at `path`; a symbolic link to nothing counts too.
@@ -236,9 +243,9 @@ impl Slot {
         let texts = format!("place {}\n{place}{}", place.len(), work.as_str());
         let path = file(&self.folder, &self.name, "session");
         let text = format!("{SESSION_FORMAT}\n{}\n{texts}", sum_of(&texts));
-        if text.len() > LONGEST {
+        if text.len() > LONGEST_SESSION {
             return Err(io::Error::other(format!(
-                "it would be longer than {LONGEST} bytes, the most that is read of a session"
+                "it would be longer than {LONGEST_SESSION} bytes, the most that is read of a session"
             )));
         }
         own::replace(&path, &text)

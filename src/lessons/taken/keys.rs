@@ -5,7 +5,7 @@ use crate::lab::Lab;
 use crate::lab::action::{Direction, LessonKey};
 use crate::lab::command::Command;
 use crate::lessons::clock;
-use crate::lessons::lesson::{AnswerKind, LessonBlock, Predict, PredictionAnswer};
+use crate::lessons::lesson::{AnswerKind, LessonBlock, LessonPage, Predict, PredictionAnswer};
 use crate::lessons::predictions::{LockedAnswer, Predictions, Tried};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -14,7 +14,11 @@ const MARKED: &str = "Enter locks it: a prediction is not changed";
 const LOCKED: &str = "your answer is locked: a prediction is not changed";
 
 impl OpenLesson {
-    pub(in crate::lessons) fn act(&mut self, key: LessonKey, lab: &mut Lab) -> Option<Direction> {
+    pub(in crate::lessons) fn on_key(
+        &mut self,
+        key: LessonKey,
+        lab: &mut Lab,
+    ) -> Option<Direction> {
         match key {
             LessonKey::Next => self.next(lab),
             LessonKey::Before => self.before(lab),
@@ -29,8 +33,8 @@ impl OpenLesson {
                 return self.select(direction);
             }
             LessonKey::Move(direction) => return Some(direction),
-            LessonKey::Take => self.take(lab),
-            LessonKey::Digit(digit) => self.digit(digit, lab),
+            LessonKey::Take => self.confirm_answer(lab),
+            LessonKey::Digit(digit) => self.answer_by_digit(digit, lab),
             LessonKey::List | LessonKey::Leave => {}
         }
         None
@@ -80,13 +84,17 @@ impl OpenLesson {
     /// Where the student has done the task of the page, its numbers are those of the student's run.
     fn keep_own_task(&mut self, lab: &Lab) {
         let lesson = Arc::clone(&self.lesson);
-        let page = self.place.page;
-        let is_done = lesson.page(page).is_some_and(|page| {
-            let mut checks = page.checks();
-            page.checks().next().is_some()
-                && checks.all(|check| holds(check, lab, &self.place.kept))
-        });
-        if let (true, Some(stage)) = (is_done, lesson.task_of(page, &self.place.predictions)) {
+        let number = self.place.page;
+        let checks: Vec<_> = lesson
+            .page(number)
+            .map_or(vec![], |page| page.checks().collect());
+        let is_done = checks
+            .iter()
+            .all(|check| holds(check, lab, &self.place.kept));
+        if !checks.is_empty()
+            && is_done
+            && let Some(stage) = lesson.task_of(number, &self.place.predictions)
+        {
             stage.keep(lab, &mut self.place.kept);
         }
     }
@@ -104,10 +112,8 @@ impl OpenLesson {
 
     /// Shows the hints of the page and scrolls down to them, or does its task where they are shown already or there are none.
     fn show_task(&mut self, lab: &mut Lab) -> Option<Direction> {
-        let has_hint = self.page().is_some_and(|page| {
-            let mut checks = page.checks();
-            checks.any(|check| !check.hint.is_empty())
-        });
+        let has_hint = (self.page().into_iter().flat_map(LessonPage::checks))
+            .any(|check| !check.hint.is_empty());
         if has_hint && !std::mem::replace(&mut self.shows_hints, true) {
             self.note_tried(Tried::Hint);
             return Some(Direction::PageDown);
@@ -144,15 +150,12 @@ impl OpenLesson {
     }
 
     /// Marks the answer that the keys point at, or locks it where it is marked; or asks for a number.
-    fn take(&mut self, lab: &mut Lab) {
+    fn confirm_answer(&mut self, lab: &mut Lab) {
         let Some(predict) = self.asked().cloned() else {
-            let asks = self
-                .page()
-                .is_some_and(|page| page.predicts().next().is_some());
-            return lab.refuse(if asks {
-                LOCKED
-            } else {
-                "nothing is asked here"
+            let mut asked = self.page().into_iter().flat_map(LessonPage::predicts);
+            return lab.refuse(match asked.next() {
+                Some(_) => LOCKED,
+                None => "nothing is asked here",
             });
         };
         let AnswerKind::Choice(choices) = &predict.asked else {
@@ -172,7 +175,7 @@ impl OpenLesson {
     }
 
     /// Marks the answer with this number, or begins to type one with this digit.
-    fn digit(&mut self, digit: u8, lab: &mut Lab) {
+    fn answer_by_digit(&mut self, digit: u8, lab: &mut Lab) {
         let Some(predict) = self.asked().cloned() else {
             return;
         };
@@ -206,8 +209,8 @@ impl OpenLesson {
 
     /// Locks `answer`. Once nothing on the page is open, what it hides is shown.
     fn lock(&mut self, predict: &Predict, answer: PredictionAnswer, lab: &mut Lab) {
-        let round = self.rounds.get(&predict.name);
-        let (round, is_closed) = round.copied().unwrap_or((1, false));
+        let class_round = self.rounds.get(&predict.name).copied();
+        let (round, is_closed) = class_round.unwrap_or((1, false));
         let given = LockedAnswer {
             round,
             answer,
@@ -225,8 +228,7 @@ impl OpenLesson {
             return;
         };
         if self.place.predictions.are_locked_on(page) {
-            let hidden = lab.view().look.hide.clone();
-            let hidden = Predictions::hidden_after_lock(page, &hidden);
+            let hidden = Predictions::hidden_after_lock(page, &lab.view().look.hide);
             if hidden != lab.view().look.hide {
                 lab.carry_out_now(&Command::look("hide", hidden));
             }
@@ -237,18 +239,19 @@ impl OpenLesson {
 impl OpenLesson {
     /// Puts the prediction called `name`, which has just been locked, into what the page states about it.
     fn state_again(&mut self, name: &str, lab: &Lab) {
-        let about = before_task(&self.lesson, &self.place).filter_map(|block| match block {
-            LessonBlock::Compare(compare) if compare.prediction == name => Some(compare),
-            _ => None,
-        });
-        let texts = about.map(|compare| {
-            let text = compared(compare, &self.lesson, &self.place, lab);
-            (compare.line.to_string(), text)
-        });
-        let texts: Vec<_> = texts.collect();
-        if let Some(stated) = &mut self.place.stated {
-            let told = (!texts.is_empty()).then(|| name.to_owned());
-            self.place.seen.extend(told);
+        let mut texts = Vec::new();
+        for block in before_task(&self.lesson, &self.place) {
+            if let LessonBlock::Compare(compare) = block
+                && compare.prediction == name
+            {
+                let text = compared(compare, &self.lesson, &self.place, lab);
+                texts.push((compare.line.to_string(), text));
+            }
+        }
+        if let Some(stated) = &mut self.place.stated
+            && !texts.is_empty()
+        {
+            self.place.seen.insert(name.to_owned());
             stated.extend(texts);
         }
     }
