@@ -7,10 +7,10 @@
 
 use gyrolab::engine::run::Simulation;
 use gyrolab::engine::scenario::{Document, Scenario};
-use gyrolab::lab::playback::Playback;
+use gyrolab::lab::{Player, SeekPurpose};
 use std::hint::black_box;
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// Shares of the run to go to, one after the other: far back, a little back, forward, and near the end.
 const SHARES: [f64; 7] = [0.5, 0.499, 0.93, 0.07, 0.999, 1.0, 0.0];
@@ -54,19 +54,18 @@ fn scenario(points: u64, scheme: &str, steps: u64) -> Arc<Scenario> {
 
 fn travel(steps: u64, points: u64, scheme: &str) {
     let scenario = scenario(points, scheme, steps);
-    let seconds = |playback: &mut Playback, step: u64| {
+    let seconds = |player: &mut Player, step: u64| {
         let begin = Instant::now();
-        playback.go_to(step);
-        assert_eq!(playback.step_number(), step);
-        playback.read();
+        player.seek(step, SeekPurpose::Command);
+        assert_eq!(player.step_number(), step);
         begin.elapsed().as_secs_f64()
     };
-    let mut playback = Playback::new(Arc::clone(&scenario), false);
+    let mut player = Player::new(Arc::clone(&scenario), false);
     let (mut play, mut bare) = (f64::INFINITY, f64::INFINITY);
     for _ in 0..ROUNDS {
         let begin = Instant::now();
-        playback = Playback::new(Arc::clone(&scenario), false);
-        playback.begin_at(steps).unwrap();
+        player = Player::new(Arc::clone(&scenario), false);
+        player.step_to(steps, Duration::MAX).unwrap();
         play = play.min(begin.elapsed().as_secs_f64());
         let begin = Instant::now();
         black_box(Simulation::new(Arc::clone(&scenario)))
@@ -77,11 +76,11 @@ fn travel(steps: u64, points: u64, scheme: &str) {
     let mut worst: f64 = 0.0;
     for share in SHARES {
         let step = (share * steps as f64) as u64;
-        worst = worst.max(seconds(&mut playback, step));
+        worst = worst.max(seconds(&mut player, step));
     }
-    playback.go_to(steps / 3);
+    player.seek(steps / 3, SeekPurpose::Command);
     let back = (1..100)
-        .map(|back| seconds(&mut playback, steps / 3 - back))
+        .map(|back| seconds(&mut player, steps / 3 - back))
         .fold(0.0, f64::max);
     println!(
         "{steps:<12} {points:>9} {scheme:<9} {play:>9.3} {bare:>9.3} {:>6.2} {worst:>9.4} {back:>9.4} {:>9.1}",

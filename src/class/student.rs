@@ -6,11 +6,10 @@ use super::{CLASS_POLL_INTERVAL, ClassRole, LEAST_WAIT, unix_ms, votes};
 use crate::engine::scenario::Scenario;
 use crate::lab::action::LessonKey;
 use crate::lab::command::{Command, SeekTarget};
-use crate::lab::playback::Playback;
 use crate::lab::playback::pace::Speed;
 use crate::lab::storage::shared;
 use crate::lab::view::HideablePart;
-use crate::lab::{Lab, Snapshot};
+use crate::lab::{Lab, Player, Snapshot};
 use crate::lessons::page::ClassOverlay;
 use crate::lessons::predictions::Predictions;
 use crate::lessons::taken::OpenLesson;
@@ -70,14 +69,14 @@ type PlaybackSnapshot = (
 );
 
 fn playback_snapshot(lab: &Lab, lessons: &Lessons) -> PlaybackSnapshot {
-    let playback = &lab.player().playback;
+    let player = lab.player();
     let open = lessons.taken();
     (
         lab.runs().depth(),
-        playback.step_number(),
-        playback.steps_to_go(),
-        playback.is_running() || !lab.script().is_done(),
-        playback.speed(),
+        player.step_number(),
+        player.steps_to_go(),
+        player.is_running() || !lab.script().is_done(),
+        player.speed(),
         open.map(|open| (open.lesson.name.clone(), open.place.page)),
     )
 }
@@ -294,7 +293,7 @@ impl Student {
         let own = player.run().scenario().to_toml();
         let shown = self.state.as_ref().and_then(|state| state.shown.as_ref());
         let is_own = lab.runs().is_above_floor()
-            && player.playback.step_number() > 0
+            && player.step_number() > 0
             && shown.is_some_and(|shown| shown.snapshot.run != own);
         if is_own && lab.carry_out(&Command::Pin(true)).is_ok() {
             self.has_pinned = true;
@@ -417,7 +416,7 @@ fn hidden(presented: &[HideablePart], taken: Option<&OpenLesson>) -> Vec<Hideabl
 }
 
 /// The step at which `run` is by now, and how many steps it may be off.
-fn expected_step(run: &PresentedRun, playback: &Playback, time_step_s: f64) -> (u64, f64) {
+fn expected_step(run: &PresentedRun, player: &Player, time_step_s: f64) -> (u64, f64) {
     let since_s = unix_ms().saturating_sub(run.at_ms) as f64 / 1000.0;
     let (ahead, off) = match run.snapshot.speed {
         _ if !run.is_running => (0.0, 0.0),
@@ -428,26 +427,26 @@ fn expected_step(run: &PresentedRun, playback: &Playback, time_step_s: f64) -> (
         ),
     };
     let step = run.snapshot.step.saturating_add(ahead as u64);
-    (step.min(playback.end_step()), off)
+    (step.min(player.end_step()), off)
 }
 
 /// Brings the run of `lab` to where `run` is by now. Returns whether it stands or plays there. A command that is refused
 /// leaves it where it is.
 fn sync_to_presenter(run: &PresentedRun, lab: &mut Lab) -> bool {
-    let playback = &lab.player().playback;
-    if playback.steps_to_go().is_some() {
+    let player = lab.player();
+    if player.steps_to_go().is_some() {
         return false;
     }
-    let (step, off) = expected_step(run, playback, lab.player().motion().time_step_s);
-    let is_off = step.abs_diff(playback.step_number()) as f64 > off;
+    let (step, off) = expected_step(run, player, player.motion().time_step_s);
+    let is_off = step.abs_diff(player.step_number()) as f64 > off;
     let speed = run.snapshot.speed;
-    if playback.speed() != speed {
+    if player.speed() != speed {
         let _ = lab.carry_out(&Command::Speed(speed));
     }
     if is_off {
         let _ = lab.carry_out(&Command::GoTo(SeekTarget::Step(step)));
     }
-    let there = &lab.player().playback;
+    let there = lab.player();
     if there.steps_to_go().is_some() {
         return false;
     }

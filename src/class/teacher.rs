@@ -111,8 +111,8 @@ impl Teacher {
 
     /// The run in `lab`, as the class follows it.
     fn shown(&mut self, lab: &Lab) -> Option<PresentedRun> {
-        let playback = &lab.player().playback;
-        let scenario = playback.run().scenario();
+        let player = lab.player();
+        let scenario = player.run().scenario();
         let is_known = |(known, _): &(_, _)| Arc::ptr_eq(known, scenario);
         if !self.run.as_ref().is_some_and(is_known) {
             self.run = Some((Arc::clone(scenario), published(scenario)));
@@ -123,7 +123,7 @@ impl Teacher {
             self.trouble = Some(rule.to_owned());
             return None;
         }
-        let (step, is_running) = (playback.step_number(), playback.is_running());
+        let (step, is_running) = (player.step_number(), player.is_running());
         let before = self.state.shown.as_ref();
         let still = before.filter(|before| !is_running && before.snapshot.step == step);
         Some(PresentedRun {

@@ -38,7 +38,7 @@ impl Adviser {
         // Not while the user waits for a step to be reached: the search would take a processor from the stepping.
         if self.is_on
             && self.search.is_none()
-            && player.playback.steps_to_go().is_none()
+            && player.steps_to_go().is_none()
             && is_believed(player) == Some(false)
         {
             self.search = Some(background::advice(to_be_mended(player)));
@@ -117,7 +117,7 @@ fn is_believed(player: &Player) -> Option<bool> {
 /// of the time step at step 0 the scenario has as many steps as before, but the lab plays as many seconds.
 fn to_be_mended(player: &Player) -> Arc<Scenario> {
     let scenario = player.run().scenario();
-    let end_s = player.playback.end_s().max(player.run().now().time_s);
+    let end_s = player.end_s.max(player.run().now().time_s);
     let steps = Simulation::step_at(scenario, end_s).max(1);
     if steps == scenario.steps {
         return Arc::clone(scenario);
@@ -137,7 +137,7 @@ fn offered(advice: &Advice, player: &Player) -> Option<Offer> {
         } => (time_step_s, Some(name)),
         Advice::Holds | Advice::Nothing | Advice::BoundToItsTimeStep => return None,
     };
-    let end_s = player.playback.end_s();
+    let end_s = player.end_s;
     let scenario = as_advised(player.run().scenario(), time_step_s, scheme, end_s).ok()?;
     let motion = player.motion();
     let is_in_force =
@@ -155,6 +155,7 @@ fn offered(advice: &Advice, player: &Player) -> Option<Offer> {
 mod tests {
     use super::*;
     use crate::lab::for_tests::{scenario, view};
+    use crate::lab::player::SeekPurpose;
     use std::time::Duration;
 
     #[test]
@@ -166,9 +167,7 @@ mod tests {
             ..Adviser::default()
         };
         player.step(1000).unwrap();
-        player
-            .destination
-            .return_to(100_000_000, &mut player.playback);
+        player.seek(100_000_000, SeekPurpose::Resume);
         player.read(Duration::ZERO, &view);
         adviser.look(&player);
         assert!(adviser.search.is_none());

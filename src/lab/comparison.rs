@@ -54,7 +54,7 @@ impl Comparison {
             RunChange::ContinuesAt(0) => self.leave_ghost(run, false),
             RunChange::ContinuesAt(_) => self.keep_pinned(run),
             RunChange::BeginsAnew { is_again, .. } => {
-                self.leave_ghost(run, is_again && player.destination.is_of_edit());
+                self.leave_ghost(run, is_again && player.has_just_restarted());
             }
             _ if change.is_of_other_name() => {
                 self.keep_pinned(run);
@@ -72,7 +72,7 @@ impl Comparison {
         if let Some(data) = &mut self.data {
             match change {
                 RunChange::Described => {}
-                RunChange::GoesOn => data.go_on_in(scenario, player.playback.step_number()),
+                RunChange::GoesOn => data.go_on_in(scenario, player.step_number()),
                 RunChange::ContinuesAt(step) => data.go_on_in(scenario, step),
                 _ if is_ghost => data.begin_after_ghost(scenario),
                 _ => data.begin(scenario),
@@ -211,7 +211,7 @@ impl Comparison {
     }
 
     fn follow(&mut self, player: &Player, clock: &mut dyn FnMut() -> Duration) -> bool {
-        let (step, is_moving) = (player.playback.step_number(), player.is_moving());
+        let (step, is_moving) = (player.step_number(), player.is_moving());
         let share = if is_moving {
             MEASURED_BUDGET
         } else {
@@ -274,13 +274,13 @@ impl Comparison {
     /// Reads the run on to the present step, however long that takes.
     pub(super) fn catch_up(&mut self, player: &Player) {
         if let Some(data) = &mut self.data {
-            data.follow(player.playback.step_number(), || false);
+            data.follow(player.step_number(), || false);
         }
     }
 
     /// Compares the data with the run as far as it has come.
     pub(super) fn compare(&mut self, player: &Player) {
-        let step = player.playback.step_number();
+        let step = player.step_number();
         if let Some(data) = &mut self.data {
             if !data.is_behind(step) {
                 data.follow(step, || true);
@@ -358,7 +358,7 @@ impl Comparison {
 /// Draws the exact motion beside the run, or takes it away.
 pub(super) fn show_exact(shown: bool, player: &mut Player) -> Done {
     if shown != player.run().shows_exact() {
-        player.playback.set_exact(shown);
+        player.run.set_overlay(shown);
     }
     if !shown {
         return Done::saying("without the exact motion");
@@ -380,7 +380,7 @@ mod tests {
         let mut go_over = |player: &mut Player, change| {
             let scenario = scenario();
             comparison.leave(player, change, &scenario);
-            player.follow(change, &scenario, None);
+            player.change_run(change, &scenario, None);
             comparison.ghost().map(Ghost::end_s)
         };
         let anew = RunChange::BeginsAnew {
@@ -394,8 +394,8 @@ mod tests {
         step(&mut player, 100);
         let end_s = go_over(&mut player, anew);
         assert!(end_s.is_some_and(|end_s| (end_s - 10.0).abs() < 1e-9));
-        assert_eq!(player.playback.step_number(), 100, "to the same time");
-        player.playback.begin(scenario()); // a run that was stopped on its way there
+        assert_eq!(player.step_number(), 100, "to the same time");
+        player.restart(&scenario()); // a run that was stopped on its way there
         step(&mut player, 1);
         assert_eq!(go_over(&mut player, anew), end_s, "one step is no run");
         assert_eq!(go_over(&mut player, RunChange::Opens), None);

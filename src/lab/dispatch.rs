@@ -37,7 +37,10 @@ impl Lab {
             Command::Step(steps) => player.step(*steps),
             Command::GoTo(target) => player.go_to(*target),
             Command::RunUntil(condition) => player.run_until(condition),
-            Command::Run => Ok(player.play()),
+            Command::Run => {
+                player.set_running(true);
+                Ok(Done::SILENT)
+            }
             Command::Pause => Ok(player.pause()),
             Command::Speed(speed) => Ok(player.set_speed(*speed)),
             Command::Exact(is_shown) => Ok(comparison::show_exact(*is_shown, player)),
@@ -120,7 +123,7 @@ impl Lab {
             self.view.fit(scenario);
         }
         self.comparison.leave(&self.player, change, scenario);
-        self.player.follow(change, scenario, edit.end_s);
+        self.player.change_run(change, scenario, edit.end_s);
         self.view.keep_cursor(&self.player);
         self.edits.follow(&self.player);
         let named = |of: &Scenario| of.file.viewed_text("measured").map(str::to_owned);

@@ -182,7 +182,7 @@ impl Edits {
 
     /// Whether `choice` is a push at the step at which the last one was given, and the run was played on since.
     pub(super) fn is_push_tried_again(&self, choice: &PushChoice, player: &Player) -> bool {
-        let here = player.playback.step_number();
+        let here = player.step_number();
         self.given(choice, player).is_ok()
             && player.run().furthest() > here
             && self.runs.journal().ends_with_push_at(here)
@@ -214,7 +214,7 @@ impl Edits {
         is_again: bool,
         player: &Player,
     ) -> Result<ScenarioEdit, Refusal> {
-        let left_at = player.destination.step_to_leave_at(&player.playback);
+        let left_at = player.step_to_leave_at();
         self.runs.leave_at(left_at, &self.values.next_push);
         let scenario = self.runs.begin_with(set, acts, is_again)?;
         self.values.suit(&scenario);
@@ -237,7 +237,7 @@ impl Edits {
 
     /// Begins the run anew as the advice says.
     pub(super) fn take_offer(&mut self, offer: Offer, player: &Player) -> ScenarioEdit {
-        let left_at = player.destination.step_to_leave_at(&player.playback);
+        let left_at = player.step_to_leave_at();
         let replaced = replaced(player.run().scenario());
         let replaced = replaced.map_or(String::new(), |edits| format!(", in place of {edits}"));
         let Offer { what, scenario, .. } = offer;
@@ -268,11 +268,9 @@ impl Edits {
         player: &Player,
     ) -> Edited {
         let is_edited = acts.iter().any(|act| matches!(act, Act::Edit(_)));
-        let (destination, playback) = (&player.destination, &player.playback);
-        let acts_at_start_again = is_again && destination.acts_at_start_again();
-        let from_start =
-            is_edited && (acts_at_start_again || destination.stands_at_start(playback));
-        let here = playback.step_number();
+        let nudges_at_start = is_again && player.nudges_at_start();
+        let from_start = is_edited && (nudges_at_start || player.restarts_on_edit());
+        let here = player.step_number();
         let step = if from_start { 0 } else { here };
         let steps = player.run().scenario().steps;
         let is_described = acts.iter().all(|act| matches!(act, Act::Describe(_)));
@@ -377,7 +375,7 @@ impl Edits {
 
     /// Lists the values again if others are in force.
     pub(super) fn read(&mut self, player: &Player) {
-        let step = player.playback.step_number();
+        let step = player.step_number();
         if self.values.is_outdated(step, self.runs.journal()) {
             self.list_values(player);
         }
@@ -390,7 +388,7 @@ impl Edits {
             EditMessage::Text(text) => Some(text),
             EditMessage::Value(key) => Some(self.value_in_words(&key, player)),
         };
-        let is_replaying = player.destination.is_replaying(&player.playback);
+        let is_replaying = player.is_replaying();
         Done {
             said,
             under_way: edit
@@ -409,7 +407,7 @@ impl Edits {
                 and g goes to before it"
                     .to_owned()
             }
-            _ if player.destination.acts_at_start_again() => {
+            _ if player.nudges_at_start() => {
                 format!("{value}, from the start; the run before is dotted, u takes it back")
             }
             _ => format!("{value}, from the next step on; u takes it back"),

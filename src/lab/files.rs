@@ -265,7 +265,7 @@ pub(super) fn run_up_to(
     runs: &Runs,
     player: &Player,
 ) -> Result<Arc<Scenario>, String> {
-    let here = player.playback.step_number();
+    let here = player.step_number();
     runs.run_up_to(to_step.unwrap_or(here), to)
 }
 

@@ -2,12 +2,11 @@
 //! line about what there is to see; and what to try next.
 
 use super::answer::{ActionResult, Done};
-use super::player::Player;
+use super::player::{Halt, MOST_UNTIL, Player};
 use super::runs::Runs;
 use super::view::{HideablePart, View};
 use crate::engine::journal::changed;
 use crate::engine::scenario::presets;
-use crate::lab::playback::Halt;
 use indicatif::HumanCount;
 use std::borrow::Cow;
 use std::time::Duration;
@@ -149,10 +148,10 @@ impl Messages {
 /// The message about a run that has stopped by itself, if it needs one. `next` is what to try next.
 pub(super) fn halt_in_words(halt: Halt, next: Option<&str>) -> Option<String> {
     match (halt, next) {
-        (Halt::StepsTaken | Halt::Fulfilled, _) => None,
-        (Halt::NotFulfilled(steps), _) => Some(format!(
+        (Halt::Arrived | Halt::ConditionMet, _) => None,
+        (Halt::GaveUp, _) => Some(format!(
             "what the run was played to did not come true in {} steps",
-            HumanCount(steps)
+            HumanCount(MOST_UNTIL)
         )),
         (Halt::EndOfRun, Some(next)) => Some(format!("{END_OF_RUN}. Next: {next}")),
         (Halt::EndOfRun, None) => {
@@ -188,8 +187,7 @@ pub(super) fn note<'a>(view: &'a View, runs: &'a Runs, player: &'a Player) -> Co
     }
     let file = || changed::look_at(player.run().scenario());
     let set = view.look.look_at.as_deref();
-    let playback = &player.playback;
-    let is_over = playback.is_endless() && playback.step_number() >= playback.end_step();
+    let is_over = player.is_endless && player.step_number() >= player.end_step();
     if let Some(next) = next(view, runs, player).filter(|_| is_over) {
         return next;
     }

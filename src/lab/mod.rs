@@ -63,7 +63,7 @@ pub use edits::Edits;
 pub use files::Files;
 pub use messages::{Cleared, Messages};
 pub use pasted::MOST_PASTED;
-pub use player::Player;
+pub use player::{Player, SeekPurpose};
 pub use popups::{MOST_COUNTED, Mode, Popups};
 pub use runs::Runs;
 pub use script::CommandScript;
@@ -142,7 +142,7 @@ impl Lab {
 
     /// From now on the run goes on at the scenario's end, until another is opened.
     pub fn play_on(&mut self) {
-        self.player.playback.play_on();
+        self.player.is_endless = true;
     }
 
     /// Reads the numbers of the run, and whatever depends on them.

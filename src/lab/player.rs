@@ -1,7 +1,11 @@
-//! Playback of the run on the screen: its step, its speed, the cursor on its traces, and the numbers read from it.
+//! The player of the run on the screen: its step, its speed, the cursor on its traces, and the numbers read from it.
+//!
+//! `seek` moves the run: to a step, or on as time passes. `replay` plays a run that an edit restarted to the time at which
+//! the previous run was.
 
-mod destination;
 mod fast_strip;
+mod replay;
+mod seek;
 
 use super::answer::{ActionResult, Done, PendingAction};
 use super::command::{Command, SeekTarget};
@@ -9,19 +13,22 @@ use super::numbers::{self, NumberSource, RunNumbers};
 use super::view::View;
 use crate::engine::journal::expression::Expression;
 use crate::engine::journal::restart::{in_force, scenario_from};
-use crate::engine::run::{Sample, Simulation};
+use crate::engine::run::{Clock, Sample, Simulation};
 use crate::engine::scenario::{Motion, Scenario};
 use crate::lab::playback::detail::Detail;
 use crate::lab::playback::live::LiveRun;
 use crate::lab::playback::lookup;
-use crate::lab::playback::pace::Speed;
-use crate::lab::playback::reading::{self, Reading};
-use crate::lab::playback::{Halt, Playback};
-pub(super) use destination::{Destination, furthest_s};
+use crate::lab::playback::pace::{Pace, Speed};
+use crate::lab::playback::reading::{READING_INTERVAL, Reading};
 use fast_strip::FastStrip;
 use indicatif::HumanCount;
+use replay::Replay;
+pub(super) use replay::furthest_s;
+use seek::Goal;
+pub use seek::SeekPurpose;
+pub(super) use seek::{Halt, MOST_UNTIL};
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// The share of the traces' window that may pass between two readings; a faster run is read for every frame.
 const FAST: f64 = 0.1;
@@ -61,10 +68,19 @@ impl RunChange {
     }
 }
 
-/// The run, its latest reading, and the step that it is on its way to.
+/// The run, its pace and its goal, and its latest reading.
 pub struct Player {
-    pub playback: Playback,
-    pub(super) destination: Destination,
+    pub(super) run: LiveRun,
+    pace: Pace,
+    goal: Option<Goal>,
+    /// The time at which the run ends, s.
+    pub end_s: f64,
+    /// Whether the run goes on at its end.
+    pub(super) is_endless: bool,
+    /// Returns the present time, for the steps that are taken before returning.
+    clock: fn() -> Instant,
+    /// The replay after the last edit that restarted the run; `None` if another edit came after it.
+    replay: Option<Replay>,
     pub reading: Reading,
     read_at: Duration,
     strip: FastStrip,
@@ -75,99 +91,123 @@ pub struct Player {
 }
 
 impl Player {
-    /// The run of `scenario` at step 0, with the exact motion where its `[view]` says so.
-    pub(super) fn new(scenario: Arc<Scenario>, running: bool) -> Self {
+    /// Creates a player of the run of `scenario` at step 0, with the exact motion where its `[view]` says so.
+    pub fn new(scenario: Arc<Scenario>, running: bool) -> Self {
+        let pace = Pace::of_scenario(&scenario, running);
+        let end_s = Clock::end_s(&scenario);
         let exact = begins_with_exact(&scenario).unwrap_or(false);
-        let mut playback = Playback::new(scenario, running);
-        playback.set_exact(exact);
-        let reading = playback.read();
+        let mut run = LiveRun::new(scenario);
+        run.set_overlay(exact);
+        let reading = Reading::new(&mut run, &pace);
         Self {
-            strip: FastStrip::of(&playback, &reading),
-            destination: Destination::default(),
-            at_cursor: None,
+            strip: FastStrip::new(&run, &reading),
+            run,
+            pace,
+            goal: None,
+            end_s,
+            is_endless: false,
+            clock: Instant::now,
+            replay: None,
             reading,
             read_at: Duration::ZERO,
-            playback,
+            at_cursor: None,
             keeps_workings: false,
         }
     }
 
-    /// Goes over to the run of `scenario`, which ends at `end_s` where that is given.
-    pub(super) fn follow(
+    /// Changes to the run of `scenario`, which ends at `end_s` if that is given.
+    pub(super) fn change_run(
         &mut self,
         change: RunChange,
         scenario: &Arc<Scenario>,
         end_s: Option<f64>,
     ) {
-        let playback = &mut self.playback;
         if !matches!(change, RunChange::Described | RunChange::BeginsAnew { .. }) {
-            self.destination = Destination::default();
+            self.replay = None;
         }
         match change {
-            RunChange::Described => playback.describe_as(scenario),
-            RunChange::GoesOn => playback.go_on_in(scenario),
-            RunChange::ContinuesAt(step) => playback.continue_at(step, scenario),
-            RunChange::BeginsAnew { is_act, is_again } => {
-                let to = self.destination.replay_of(playback, is_act, is_again);
-                if is_act {
-                    playback.continue_at(0, scenario);
-                } else {
-                    playback.begin(Arc::clone(scenario));
+            RunChange::Described => self.run.replace_metadata(scenario),
+            RunChange::GoesOn => {
+                let running = self.is_running();
+                self.branch_at(self.step_number(), scenario);
+                if self.goal.is_none() {
+                    self.set_running(running);
                 }
-                let time_step_s = self.motion().time_step_s;
-                self.destination
-                    .replay(to, is_again, time_step_s, &mut self.playback);
             }
-            _ if change.is_of_other_name() => {
-                let shown = playback.run().shows_exact();
-                *playback = Playback::new(Arc::clone(scenario), false);
-                playback.set_exact(begins_with_exact(scenario).unwrap_or(shown));
-                self.strip.forget();
+            RunChange::ContinuesAt(step) => self.branch_at(step, scenario),
+            RunChange::BeginsAnew { is_act, is_again } => {
+                let replay = self.next_replay(is_act, is_again);
+                if is_act {
+                    self.branch_at(0, scenario);
+                } else {
+                    self.restart(scenario);
+                }
+                self.begin_replay(replay, is_again);
             }
-            RunChange::Returns { .. } | RunChange::Opens => playback.begin(Arc::clone(scenario)),
+            _ if change.is_of_other_name() => self.open(scenario),
+            RunChange::Returns { .. } | RunChange::Opens => self.restart(scenario),
         }
-        if let Some(end_s) = end_s {
-            self.playback.set_end(end_s);
-        }
+        self.end_s = end_s.unwrap_or(self.end_s);
         if let RunChange::Returns { left_at, .. } = change {
-            self.destination.return_to(left_at, &mut self.playback);
+            self.seek(left_at, SeekPurpose::Resume);
         }
+    }
+
+    /// Begins the run of another `scenario`. The speed, whether the run plays, and whether the exact motion is shown stay
+    /// as they are.
+    pub(super) fn restart(&mut self, scenario: &Arc<Scenario>) {
+        let shows_exact = self.run.shows_exact();
+        self.run = LiveRun::new(Arc::clone(scenario));
+        self.run.set_overlay(shows_exact);
+        self.goal = None;
+        self.end_s = Clock::end_s(scenario);
+    }
+
+    /// Begins the run of `scenario`, paused, as its `[view]` says.
+    fn open(&mut self, scenario: &Arc<Scenario>) {
+        self.pace = Pace::of_scenario(scenario, false);
+        self.is_endless = false;
+        self.restart(scenario);
+        if let Some(exact) = begins_with_exact(scenario) {
+            self.run.set_overlay(exact);
+        }
+        self.strip.forget();
     }
 
     /// Goes to `step`, at which a session has left the run, with its speed and its end, and with the exact motion or not.
     pub(super) fn resume(&mut self, step: u64, speed: Speed, shows_exact: bool, end_s: f64) {
-        self.playback.set_end(end_s);
-        self.playback.set_speed(speed);
-        self.playback.set_exact(shows_exact);
-        self.destination.return_to(step, &mut self.playback);
+        self.end_s = end_s;
+        self.pace.set_speed(speed);
+        self.run.set_overlay(shows_exact);
+        self.seek(step, SeekPurpose::Resume);
     }
 
     pub(super) fn step(&mut self, steps: i64) -> ActionResult {
-        let here = self.playback.step_number();
-        self.destination.heading = None;
+        let here = self.step_number();
         match steps {
-            1 => {
+            0.. => {
                 // A step that is taken apart need not be taken a second time.
-                self.playback.keep_workings(self.keeps_workings);
-                self.playback.take_steps(1);
+                if steps == 1 {
+                    self.run.keep_workings(self.keeps_workings);
+                }
+                self.take_steps(steps.unsigned_abs(), SeekPurpose::Command);
             }
-            0.. => self.playback.take_steps(steps.unsigned_abs()),
             _ if here == 0 => return Err("the run begins here".into()),
-            _ => self
-                .playback
-                .go_to(here.saturating_sub(steps.unsigned_abs())),
+            _ => self.seek(
+                here.saturating_sub(steps.unsigned_abs()),
+                SeekPurpose::Command,
+            ),
         }
         Ok(Done::SILENT.going_on(PendingAction::Going))
     }
 
     pub(super) fn go_to(&mut self, place: SeekTarget) -> ActionResult {
         let step = self.step_of(place)?;
-        self.destination.heading = None;
-        let end = self.playback.end_step();
-        let is_beyond = step > end && step > self.run().furthest();
-        self.playback.go_to(step);
-        let (step, end) = (HumanCount(step), HumanCount(end));
+        let end = self.end_step();
+        let is_beyond = step > end && step > self.run.furthest();
+        self.seek(step, SeekPurpose::Command);
         let said = is_beyond.then(|| {
+            let (step, end) = (HumanCount(step), HumanCount(end));
             format!(
                 "step {step} is beyond the end of the run, step {end}: it is played on to there"
             )
@@ -180,7 +220,7 @@ impl Player {
             SeekTarget::Step(step) => Ok(step),
             SeekTarget::Time(time_s) => self.step_at(time_s),
             SeekTarget::Start => Ok(0),
-            SeekTarget::End => Ok(self.playback.end_step()),
+            SeekTarget::End => Ok(self.end_step()),
         }
     }
 
@@ -195,7 +235,7 @@ impl Player {
     /// The step that `text` means, seen from the present step.
     pub(super) fn step_meant(&self, text: &str) -> Result<u64, String> {
         let text = text.trim();
-        let (here, here_s) = (self.playback.step_number(), self.run().now().time_s);
+        let (here, here_s) = (self.step_number(), self.run().now().time_s);
         let sign = text.chars().next().filter(|sign| "+-".contains(*sign));
         let size = SeekTarget::parse(&text[sign.map_or(0, char::len_utf8)..]);
         // With a sign it counts from here.
@@ -218,49 +258,39 @@ impl Player {
             .bind(|name| numbers::find(name, Some(run)))
             .map_err(|fault| fault.to_string())?;
         let condition = condition.clone();
-        self.destination.heading = None;
         let mut numbers = RunNumbers::default();
         let holds = move |run: &mut LiveRun| {
             let mut now = numbers.at(run);
             let value = condition.value_at(|index| now.value(&sources[index]));
             value.is_some_and(|value| value != 0.0)
         };
-        Ok(if self.playback.run_until(Box::new(holds)) {
+        Ok(if self.play_until(Box::new(holds)) {
             Done::SILENT.going_on(PendingAction::Playing)
         } else {
             Done::saying("it holds already, at this step")
         })
     }
 
-    pub(super) fn play(&mut self) -> Done {
-        self.destination.heading = None;
-        self.playback.set_running(true);
-        Done::SILENT
-    }
-
     pub(super) fn pause(&mut self) -> Done {
-        let to_go = self.playback.steps_to_go();
-        self.destination.heading = None;
-        self.playback.set_running(false);
-        let to_go = to_go.map(HumanCount);
+        let to_go = self.steps_to_go().map(HumanCount);
+        self.set_running(false);
         Done::saying_any(to_go.map(|left| format!("stopped with {left} steps to go")))
     }
 
     pub(super) fn set_speed(&mut self, speed: Speed) -> Done {
-        self.playback.set_speed(speed);
+        self.pace.set_speed(speed);
         let Speed::Times(speed) = speed else {
             return Done::SILENT;
         };
         let wall_s = self.run().simulation().motion().time_step_s / speed;
         let is_long = wall_s > LONG_STEP_S;
-        Done::saying_any(
-            is_long.then(|| format!("a step takes {wall_s:.0} s at this speed; . takes one now")),
-        )
+        let said = || format!("a step takes {wall_s:.0} s at this speed; . takes one now");
+        Done::saying_any(is_long.then(said))
     }
 
     /// The speed `notches` places higher, or lower, in the list of speeds.
     pub fn other_speed(&self, notches: i32) -> Result<Command, String> {
-        let now = self.playback.speed();
+        let now = self.speed();
         match now.shifted(notches) {
             next if next != now => Ok(Command::Speed(next)),
             Speed::Times(_) if notches <= 0 => {
@@ -270,17 +300,20 @@ impl Player {
         }
     }
 
-    /// Whether it plays, or takes steps that were asked for.
-    pub fn is_moving(&self) -> bool {
-        self.playback.is_running() || self.playback.steps_to_go().is_some()
+    pub fn speed(&self) -> Speed {
+        self.pace.speed
     }
 
-    /// The present step, or the step to which the run is on its way by itself.
-    pub(super) fn step_to_keep(&self) -> u64 {
-        let heading = self.destination.heading(&self.playback);
-        let destination = self.run().destination();
-        let destination = destination.or(heading.map(|heading| heading.step));
-        destination.unwrap_or(self.playback.step_number())
+    pub fn is_running(&self) -> bool {
+        self.pace.is_running
+    }
+
+    pub fn step_number(&self) -> u64 {
+        self.run.simulation().step_number()
+    }
+
+    pub fn end_step(&self) -> u64 {
+        Simulation::step_at(self.run.scenario(), self.end_s)
     }
 
     /// The scenario that starts from the present state, as TOML.
@@ -291,54 +324,34 @@ impl Player {
         toml::to_string(&scenario.file).map_err(|error| error.to_string())
     }
 
-    /// Advances the run and the exact motion by `wall`, the time up to `now`; `clock` returns the present time. Returns why
-    /// the run stopped by itself, if it did, and whether the picture has changed.
-    pub(super) fn advance(
-        &mut self,
-        now: Duration,
-        wall: Duration,
-        clock: &mut dyn FnMut() -> Duration,
-    ) -> (Option<Halt>, bool) {
-        let before = self.playback.step_number();
-        let halt = self.playback.advance(now, wall, clock);
-        let mut is_new = halt.is_some() || self.playback.step_number() != before;
-        if self.run().overlay_is_behind() {
-            self.playback.follow_exact(clock);
-            is_new = true;
-        }
-        (halt, is_new)
-    }
-
     /// Whether the numbers must be read again at `now`, if the traces show `window_s`.
     pub(super) fn is_due(&self, now: Duration, window_s: f64) -> bool {
         // Of so fast a run, numbers read a few times a second would not belong to the picture of each frame.
-        let passes_s = reading::READING_INTERVAL.as_secs_f64();
-        self.playback.is_flat_out()
-            || matches!(self.playback.speed(), Speed::Times(speed) if speed * passes_s > FAST * window_s)
-            || now >= self.read_at + reading::READING_INTERVAL
+        let passes_s = READING_INTERVAL.as_secs_f64();
+        self.is_flat_out()
+            || matches!(self.speed(), Speed::Times(speed) if speed * passes_s > FAST * window_s)
+            || now >= self.read_at + READING_INTERVAL
     }
 
     /// Reads the numbers. Returns a message where the strip of the fast motion now shows another curve of the same run.
     pub(super) fn read(&mut self, now: Duration, view: &View) -> Option<&'static str> {
-        self.reading = self.playback.read();
+        self.reading = Reading::new(&mut self.run, &self.pace);
         self.read_at = now;
-        self.read_off(view.cursor);
-        let cursor_s = self.cursor().map(|cursor| cursor.time_s);
-        let (playback, readouts) = (&self.playback, &self.reading.readouts);
-        self.strip.choose(now, view, playback, readouts, cursor_s)
+        self.look_up_cursor(view.cursor);
+        self.choose_strip(now, view)
     }
 
     /// Looks up the numbers at the cursor, unless they are known.
-    fn read_off(&mut self, cursor: Option<u64>) {
-        let run = self.playback.run();
-        let is_known = |(of, sample): &(Arc<Scenario>, Sample)| {
-            Some(sample.step) == cursor && Arc::ptr_eq(of, run.scenario())
-        };
-        if self.at_cursor.as_ref().is_some_and(is_known) {
+    fn look_up_cursor(&mut self, cursor: Option<u64>) {
+        let scenario = self.run.scenario();
+        if let Some((known, sample)) = &self.at_cursor
+            && Some(sample.step) == cursor
+            && Arc::ptr_eq(known, scenario)
+        {
             return;
         }
-        let found = cursor.and_then(|step| lookup::sample(run, step).ok());
-        self.at_cursor = found.map(|sample| (Arc::clone(run.scenario()), sample));
+        let found = cursor.and_then(|step| lookup::sample(&self.run, step).ok());
+        self.at_cursor = found.map(|sample| (Arc::clone(scenario), sample));
     }
 
     pub fn cursor(&self) -> Option<&Sample> {
@@ -351,7 +364,7 @@ impl Player {
     }
 
     pub fn run(&self) -> &LiveRun {
-        self.playback.run()
+        &self.run
     }
 
     /// Gravity, scheme and time step of the step to come.
@@ -377,8 +390,8 @@ impl Player {
 
     /// The message while steps are taken.
     pub(super) fn in_words(&self) -> Option<String> {
-        let left = HumanCount(self.playback.steps_to_go()?);
-        Some(if self.destination.is_replaying(&self.playback) {
+        let left = HumanCount(self.steps_to_go()?);
+        Some(if self.is_replaying() {
             format!("playing the new run to the same time: {left} steps to go, Esc stops")
         } else {
             format!("stepping: {left} to go, Esc stops")

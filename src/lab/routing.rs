@@ -8,16 +8,16 @@ use super::command::{Command, Commands, CursorTo, SeekTarget};
 use super::dialog::{Dialog, DialogKind};
 use super::form::{edit_line, type_into};
 use super::messages::{self, halt_in_words};
+use super::player::Halt;
 use super::popups::Mode;
 use super::view::Pane;
 use super::{Cleared, CommandScript, Lab, Snapshot, pasted};
 use crate::engine::run::NotFinite;
 use crate::engine::scenario::{Document, Problems};
-use crate::lab::playback::Halt;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// How often to look whether an export is complete while there is nothing else to do.
 const EXPORT_POLL: Duration = Duration::from_millis(2);
@@ -288,7 +288,7 @@ impl Lab {
             let left_out = self.script.drop_all();
             self.carry_out_all(&[Command::Pause]);
             self.say(left_out);
-        } else if self.player.playback.steps_to_go().is_some() {
+        } else if self.player.steps_to_go().is_some() {
             self.carry_out_all(&[Command::Pause]);
         } else {
             return false;
@@ -380,13 +380,18 @@ impl Lab {
     ) -> Result<(), NotFinite> {
         let mut part = 1_u64;
         loop {
-            let playback = &mut self.player.playback;
-            let next = playback.step_number().saturating_add(part).min(step);
-            let arrived = playback.begin_at_while(next, |reached, _| go_on(reached, step));
+            let next = self.player.step_number().saturating_add(part).min(step);
+            let mut stepped = Ok(());
+            while stepped.is_ok()
+                && self.player.step_number() < next
+                && go_on(self.player.step_number(), step).is_continue()
+            {
+                stepped = self.player.step_to(next, STEPPING_BUDGET);
+            }
             self.arrive();
-            let reached = self.player.playback.step_number();
-            if arrived.is_err() || reached >= step || reached < next {
-                return arrived;
+            let reached = self.player.step_number();
+            if stepped.is_err() || reached >= step || reached < next {
+                return stepped;
             }
             part = part.saturating_mul(2);
         }
@@ -394,14 +399,12 @@ impl Lab {
 
     /// Brings exact motion, measured data and numbers up to the present step.
     fn arrive(&mut self) {
-        self.player.playback.catch_up_exact();
+        self.player.run.follow_exact(|| false);
         self.comparison.catch_up(&self.player);
         self.read_now();
     }
 
     fn halted(&mut self, halt: Halt) {
-        let player = &mut self.player;
-        player.destination.has_halted(halt, &mut player.playback);
         self.read_now();
         let next = messages::next(&self.view, &self.edits.runs, &self.player);
         let Some(text) = halt_in_words(halt, next.as_deref()) else {
@@ -409,7 +412,7 @@ impl Lab {
         };
         if let Halt::NotFinite(_) = halt {
             let edits = self.edits.runs.journal();
-            let is_edited = edits.count_by(self.player.playback.step_number()) > 0;
+            let is_edited = edits.count_by(self.player.step_number()) > 0;
             let mends = self.adviser.offer(&self.player).map(|[_, short]| short);
             self.messages.tell_of_break(&text, mends, is_edited);
             self.changed = true;
@@ -491,14 +494,12 @@ impl Lab {
     ) -> Result<(), String> {
         let mut steps = 0;
         while !self.script.is_done() {
-            let begin = Instant::now();
-            let playback = &mut self.player.playback;
-            let from = playback.step_number();
-            let halt = playback.finish_part(|| begin.elapsed() > STEPPING_BUDGET);
-            steps += playback.step_number().abs_diff(from);
+            let from = self.player.step_number();
+            let halt = self.player.advance_to_goal(STEPPING_BUDGET);
+            steps += self.player.step_number().abs_diff(from);
             if let Some(halt) = halt {
                 self.halted(halt);
-            } else if go_on(playback.step_number(), playback.stops_at()).is_break() {
+            } else if go_on(self.player.step_number(), self.player.stop()).is_break() {
                 self.files.drop_export();
                 self.script.drop_all();
                 break;

@@ -4,8 +4,7 @@
 use super::answer::{ActionResult, Done, PendingAction};
 use super::command::{Command, Commands, LocatedCommand, SeekTarget};
 use super::files::Files;
-use super::player::Player;
-use crate::lab::playback::{Halt, MOST_UNTIL};
+use super::player::{Halt, MOST_UNTIL, Player};
 use indicatif::HumanCount;
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -121,10 +120,10 @@ impl CommandScript {
     /// The command under way as it is carried out again: a run goes to the same step or until the same condition holds, a
     /// wait lasts for what is left of it at `now`.
     fn under_way_again(&self, player: &Player, now: Duration) -> Option<LocatedCommand> {
-        let (playback, (placed, under_way)) = (&player.playback, self.under_way.as_ref()?);
+        let (placed, under_way) = self.under_way.as_ref()?;
         let command = match under_way {
             PendingAction::Going => {
-                let (here, to_go) = (playback.step_number(), playback.steps_to_go()?);
+                let (here, to_go) = (player.step_number(), player.steps_to_go()?);
                 Command::GoTo(SeekTarget::Step(here.saturating_add(to_go)))
             }
             PendingAction::Waiting(until) => {
@@ -139,8 +138,7 @@ impl CommandScript {
     /// Pauses the script at `now`. When it goes on, the command under way is carried out again. An export goes on meanwhile.
     pub(super) fn pause(&mut self, player: &Player, now: Duration) {
         self.waits = true;
-        let playback = &player.playback;
-        self.plays_again = playback.is_running() && !playback.is_running_until();
+        self.plays_again = player.is_running() && !player.seeks_condition();
         if let Some((_, PendingAction::Exporting)) = self.under_way {
             return;
         }
@@ -153,7 +151,7 @@ impl CommandScript {
     /// Lets a waiting script go on.
     pub(super) fn release(&mut self, player: &mut Player) {
         if std::mem::take(&mut self.plays_again) {
-            player.play();
+            player.set_running(true);
         }
         self.waits = false;
     }
@@ -196,7 +194,7 @@ impl CommandScript {
         answer: ActionResult,
         player: &mut Player,
     ) -> Result<Done, String> {
-        let to_go = player.playback.steps_to_go();
+        let to_go = player.steps_to_go();
         if to_go.is_some_and(|to_go| to_go > MOST_UNTIL) {
             player.pause();
             let most = HumanCount(MOST_UNTIL);
@@ -255,8 +253,8 @@ fn is_complete(
     files: &mut Files,
 ) -> Result<bool, String> {
     let is_on = match under_way {
-        PendingAction::Going => player.playback.steps_to_go().is_some(),
-        PendingAction::Playing => player.playback.is_running_until(),
+        PendingAction::Going => player.steps_to_go().is_some(),
+        PendingAction::Playing => player.seeks_condition(),
         PendingAction::Waiting(until) => return Ok(now >= until),
         PendingAction::Exporting if files.is_exporting() => return Ok(false),
         PendingAction::Exporting => return files.take_failure().map_or(Ok(true), Err),
@@ -264,9 +262,9 @@ fn is_complete(
     match (is_on, halt, under_way) {
         (true, ..) => Ok(false),
         (false, Some(Halt::NotFinite(error)), _) => Err(error.to_string()),
-        (false, Some(Halt::NotFulfilled(steps)), _) => Err(format!(
+        (false, Some(Halt::GaveUp), _) => Err(format!(
             "did not hold on any of {} steps",
-            HumanCount(steps)
+            HumanCount(MOST_UNTIL)
         )),
         (false, None, PendingAction::Playing) => Err(STOPPED_TEXT.to_owned()),
         (false, ..) => Ok(true),

@@ -32,7 +32,7 @@ impl Lab {
             run: String::new(),
             end_s: None,
             step: self.player.step_to_keep(),
-            speed: self.player.playback.speed(),
+            speed: self.player.speed(),
             shows_exact: self.player.run().shows_exact(),
             look: self.view.look.clone(),
         }

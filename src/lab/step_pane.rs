@@ -39,7 +39,7 @@ impl StepWorkings {
         Some(Self {
             step,
             states,
-            workings: player.playback.workings()?,
+            workings: player.run.workings()?,
             scenario,
             sums: None,
             dip: None,
@@ -111,7 +111,7 @@ impl StepPane {
             self.shown = StepWorkings::of(player);
         }
         if player.keeps_workings {
-            player.playback.keep_workings(false);
+            player.run.keep_workings(false);
         }
         if let Some(shown) = &mut self.shown {
             shown.complete(view);
@@ -147,7 +147,7 @@ impl StepPane {
         if player.is_moving() {
             return Ok(vec![Command::Pause]);
         }
-        let here = player.playback.step_number();
+        let here = player.step_number();
         let Some(shown) = &self.shown else {
             return if times > 0 {
                 Ok(vec![Command::Step(1), first])

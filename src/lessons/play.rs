@@ -174,7 +174,7 @@ impl<'a> LessonWalk<'a> {
     /// Refuses a page that states numbers of a run which it does not open, where that is too long to be played again
     /// each time somebody turns to the page from elsewhere.
     fn refuse_far(&self, page: &LessonPage, found: &mut Problems) {
-        let steps = self.lab.player().playback.step_number();
+        let steps = self.lab.player().step_number();
         let opens = page.lab().is_some_and(Setup::opens);
         if !opens && steps > MOST_BEFORE && page.states_numbers(&self.kept) {
             let (steps, most) = (HumanCount(steps), HumanCount(MOST_BEFORE));

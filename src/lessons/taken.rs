@@ -325,7 +325,7 @@ impl OpenLesson {
         let has_arrived = self.follows.unwrap_or(true)
             && self.under_way.is_none()
             && lab.script().is_done()
-            && lab.player().playback.steps_to_go().is_none();
+            && lab.player().steps_to_go().is_none();
         if !self.is_under_way() || !has_arrived {
             return false;
         }
@@ -393,7 +393,7 @@ impl OpenLesson {
 
 /// Where the lab stands: the depth of its history, and the step.
 fn place_of(lab: &Lab) -> ((usize, usize), u64) {
-    (lab.runs().depth(), lab.player().playback.step_number())
+    (lab.runs().depth(), lab.player().step_number())
 }
 
 fn holds(check: &super::Check, lab: &Lab, kept: &super::KeptNumbers) -> bool {

@@ -73,9 +73,9 @@ fn advance(
     role: &mut dyn ClassRole,
     begin: Instant,
 ) -> (bool, bool) {
-    let was_on_its_way = lab.player().playback.steps_to_go().is_some();
+    let was_on_its_way = lab.player().steps_to_go().is_some();
     lab.advance(&mut || begin.elapsed());
-    let has_arrived = was_on_its_way && lab.player().playback.steps_to_go().is_none();
+    let has_arrived = was_on_its_way && lab.player().steps_to_go().is_none();
     let is_over = role.advance(begin.elapsed(), lab, lessons).is_break();
     lessons.update(begin.elapsed(), lab);
     (has_arrived, is_over)
@@ -110,9 +110,9 @@ fn panic_if_asked(elapsed: Duration) {
 
 /// How long to wait for events, if the next frame is due in `to_frame`.
 fn wait(lab: &Lab, lessons: &Lessons, to_frame: Duration) -> Duration {
-    if lab.player().playback.is_flat_out() {
+    if lab.player().is_flat_out() {
         Duration::ZERO
-    } else if lab.player().playback.is_busy() || lab.has_changed() {
+    } else if lab.player().is_busy() || lab.has_changed() {
         // Wait at least a little: a run too slow to change anything by the next frame must not keep the processor busy.
         to_frame.max(Duration::from_millis(1))
     } else {

@@ -143,7 +143,7 @@ fn stepped(count: Option<u64>, sign: i64) -> KeyCommands {
 }
 
 fn restarted(lab: &TheLab, _: Option<u64>) -> KeyCommands {
-    let run = lab.player().playback.is_running().then_some(Command::Run);
+    let run = lab.player().is_running().then_some(Command::Run);
     let start = Command::GoTo(SeekTarget::Start);
     Ok([start].into_iter().chain(run).collect())
 }

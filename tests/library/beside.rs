@@ -101,7 +101,7 @@ fn nudges_of_a_running_lab_come_back_to_the_first_ones_time_and_go_on() {
     for _ in 0..3 {
         stage.commands("nudge = { key = 'start.tilt_deg', times = 1 }");
         assert_eq!(stage.step(), stood);
-        assert!(stage.lab.player().playback.is_running());
+        assert!(stage.lab.player().is_running());
         stage.wait(0.3);
         assert!(stage.step() > stood);
     }
@@ -125,7 +125,7 @@ fn a_hundred_thousand_steps_are_played_before_the_next_frame() {
 fn a_longer_way_is_gone_in_parts_while_keys_are_answered() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.commands("speed = 'top'\ngo_to = 600000").wait(1.0);
-    while stage.lab.player().playback.steps_to_go().is_some() {
+    while stage.lab.player().steps_to_go().is_some() {
         stage.wait(1.0);
     }
     stage.commands("run = true");
@@ -140,10 +140,10 @@ fn a_longer_way_is_gone_in_parts_while_keys_are_answered() {
     // One more nudge under way goes to the same time.
     stage.commands("nudge = { key = 'start.tilt_deg', times = 1 }");
     assert_eq!(ghost_s(&stage.lab), Some(stood as f64 * 0.1));
-    while stage.lab.player().playback.steps_to_go().is_some() {
+    while stage.lab.player().steps_to_go().is_some() {
         stage.wait(0.0);
     }
-    assert!(stage.lab.player().playback.is_running());
+    assert!(stage.lab.player().is_running());
     assert!((stood..stood + 200_000).contains(&stage.step()));
     // Esc stops on the way.
     stage.commands("pause = true\nset = { 'start.tilt_deg' = 20 }");
@@ -153,7 +153,7 @@ fn a_longer_way_is_gone_in_parts_while_keys_are_answered() {
     assert_eq!(stage.step(), stopped);
     // The run that was left on its way is one undo away.
     stage.commands("undo = 1");
-    let bound_for = stage.step() + stage.lab.player().playback.steps_to_go().unwrap_or(0);
+    let bound_for = stage.step() + stage.lab.player().steps_to_go().unwrap_or(0);
     assert!(bound_for >= stood);
 }
 

@@ -441,8 +441,8 @@ fn set_beside_open_holds_the_seconds_of_the_run_and_its_pushes() {
         whole.step().unwrap();
     }
     let (played, known) = (walk.lab.player().run().now(), whole.sample());
-    assert_eq!(walk.lab.player().playback.step_number(), steps);
-    assert_eq!(walk.lab.player().playback.end_s(), end_s);
+    assert_eq!(walk.lab.player().step_number(), steps);
+    assert_eq!(walk.lab.player().end_s, end_s);
     assert!((played.time_s - known.time_s).abs() < 1e-9);
     assert!((played.position - known.position).norm() < 1e-9);
 }
@@ -450,17 +450,17 @@ fn set_beside_open_holds_the_seconds_of_the_run_and_its_pushes() {
 #[test]
 fn start_and_time_step_set_together_hold_the_seconds_too() {
     let mut desk = Desk::open("method-2");
-    let end_s = desk.lab.player().playback.end_s();
+    let end_s = desk.lab.player().end_s;
     desk.commands("set = { 'start.tilt_deg' = 30, 'motion.time_step_s' = 0.01 }");
-    assert_eq!(desk.lab.player().playback.end_s(), end_s);
+    assert_eq!(desk.lab.player().end_s, end_s);
     desk.commands("go_to = 100\nset = { 'motion.time_step_s' = 0.05, 'start.tilt_deg' = 20 }");
-    assert_eq!(desk.lab.player().playback.end_s(), end_s);
+    assert_eq!(desk.lab.player().end_s, end_s);
     desk.commands(
         "set = { 'start.tilt_deg' = 30, 'motion.time_step_s' = 0.1, 'motion.steps' = 40 }",
     );
-    assert_eq!(desk.lab.player().playback.end_s(), 4.0);
+    assert_eq!(desk.lab.player().end_s, 4.0);
     desk.commands("undo = 1");
-    assert_eq!(desk.lab.player().playback.end_s(), end_s);
+    assert_eq!(desk.lab.player().end_s, end_s);
 }
 
 #[test]

@@ -3,13 +3,10 @@
 use crate::support::scenarios::preset;
 use crate::support::words::has;
 use gyrolab::engine::scenario::{Document, Problems, Scenario};
-use gyrolab::lab::playback::Playback;
 use gyrolab::lab::playback::live::LiveRun;
-use std::cell::Cell;
 use std::fmt::Write as _;
 use std::fs;
 use std::sync::Arc;
-use std::time::Duration;
 
 /// A good scenario of three points.
 const GOOD: &str = "title = 'x'\n[[body.point]]\nname = 'top'\nat_m = [0, 0, 1]\nmass_kg = 1\n[[body.point]]\n\
@@ -187,41 +184,6 @@ fn what_would_take_too_much_memory_is_refused_before_it_is_read() {
 
 /// A push that makes every step dear from 0.07 s on. Nothing before that says so.
 const HARD_PUSH: &str = "push.0={point='camera',force_N=[0,0,-1e9],from_s=0.07,for_s=1}";
-
-thread_local! {
-    static LOOKS: Cell<u64> = const { Cell::new(0) };
-}
-
-/// A clock on which every look at it takes a second.
-fn slow_clock() -> Duration {
-    LOOKS.set(LOOKS.get() + 1);
-    Duration::from_secs(LOOKS.get())
-}
-
-#[test]
-fn steps_that_are_integrated_are_taken_one_by_one_until_the_time_is_up() {
-    let phone = Arc::new(preset("phone", &[HARD_PUSH]));
-    let mut playback = Playback::with_clock(Arc::clone(&phone), false, slow_clock);
-    playback.take_steps(100); // few, by the cost of the first
-    assert_eq!(
-        (playback.step_number(), playback.steps_to_go()),
-        (1, Some(99))
-    );
-    playback.take_steps(1);
-    assert_eq!((playback.step_number(), playback.steps_to_go()), (2, None));
-    assert!(!playback.catch_up(50, false));
-    assert_eq!(
-        (playback.step_number(), playback.steps_to_go()),
-        (3, Some(47))
-    );
-    // Back to a step before, from the start of the run.
-    playback.begin_at(60).unwrap();
-    playback.go_to(40);
-    assert_eq!(
-        (playback.step_number(), playback.steps_to_go()),
-        (1, Some(39))
-    );
-}
 
 #[test]
 fn the_clock_is_looked_at_after_every_step_that_may_be_integrated() {

@@ -6,10 +6,12 @@ use crate::support::scenarios::preset;
 use gyrolab::engine::recording::RecordedCurve;
 use gyrolab::engine::run::Simulation;
 use gyrolab::engine::scenario::Scenario;
-use gyrolab::lab::playback::Playback;
+use gyrolab::lab::playback::live::LiveRun;
+use gyrolab::lab::{Player, SeekPurpose};
 use proptest::prelude::*;
 use std::collections::HashMap;
 use std::sync::Arc;
+use std::time::Duration;
 
 /// What a user may do.
 const DEEDS: &[&str] = &[
@@ -126,13 +128,13 @@ proptest! {
             let (recording, path) = (desk.lab.player().run().recording(), desk.lab.player().run().path());
             prop_assert_eq!(recording.moments(), reached + 1);
             prop_assert_eq!(recording.coarse_since(), None);
-            let mut straight = Playback::new(Arc::clone(desk.lab.player().run().scenario()), false);
-            let _ = straight.begin_at(reached);
-            let (whole, known) = (recording.whole().unwrap(), straight.run().recording().whole().unwrap());
+            let mut straight = LiveRun::new(Arc::clone(desk.lab.player().run().scenario()));
+            let _ = straight.step_to(reached, || false);
+            let (whole, known) = (recording.whole().unwrap(), straight.recording().whole().unwrap());
             for curve in RecordedCurve::ALL {
                 prop_assert_eq!(whole.extent(curve), known.extent(curve), "{:?} at step {}", curve, reached);
             }
-            let (radius, known) = (path.radius, straight.run().path().radius);
+            let (radius, known) = (path.radius, straight.path().radius);
             prop_assert!((radius - known).abs() <= 0.02 * known + 1e-9, "{} for {}", radius, known);
         }
         for (step, there) in seen {
@@ -175,18 +177,18 @@ fn the_traces_of_a_long_run_are_whole_and_fine_after_every_seek() {
     let motion = ["motion.time_step_s=0.001", "motion.steps=400000"];
     let set = [&motion[..], &["push.0.steps=150000"]].concat();
     let scenario = Arc::new(preset("wobble-push", &set));
-    let mut playback = Playback::new(Arc::clone(&scenario), false);
-    playback.begin_at(400_000).unwrap();
+    let mut player = Player::new(Arc::clone(&scenario), false);
+    player.step_to(400_000, Duration::MAX).unwrap();
     for step in [
         399_990, 200_000, 199_999, 350_123, 17, 60_000, 400_000, 150_001,
     ] {
-        playback.go_to(step);
-        assert_eq!(playback.step_number(), step);
-        assert_eq!(playback.steps_to_go(), None);
-        let now_s = playback.run().now().time_s;
+        player.seek(step, SeekPurpose::Command);
+        assert_eq!(player.step_number(), step);
+        assert_eq!(player.steps_to_go(), None);
+        let now_s = player.run().now().time_s;
         for share in [0.003, 0.05, 0.6, 1.0] {
             let since_s = now_s * (1.0 - share);
-            let blocks: Vec<_> = playback.run().recording().since(since_s).collect();
+            let blocks: Vec<_> = player.run().recording().since(since_s).collect();
             let steps = |a: f64, b: f64| ((b - a) / 0.001).round();
             assert!(blocks[0].begin_s <= since_s + 0.001);
             assert_eq!(steps(blocks[blocks.len() - 1].end_s, now_s), 0.0);
@@ -200,6 +202,6 @@ fn the_traces_of_a_long_run_are_whole_and_fine_after_every_seek() {
         }
         let mut straight = Simulation::new(Arc::clone(&scenario));
         straight.step_to(step).unwrap();
-        assert_eq!(bits(playback.run().simulation()), bits(&straight));
+        assert_eq!(bits(player.run().simulation()), bits(&straight));
     }
 }

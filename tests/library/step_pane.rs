@@ -150,7 +150,7 @@ fn the_keys_go_by_phase_and_on_to_the_next_step() {
     // While the run goes on they stop it first.
     stage.press("\t ");
     stage.wait(1.0).press(".");
-    assert!(!stage.lab.player().playback.is_running());
+    assert!(!stage.lab.player().is_running());
     assert_eq!(place(&stage).1, 1);
 }
 

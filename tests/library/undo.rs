@@ -12,7 +12,7 @@ use std::time::Duration;
 #[test]
 fn a_length_taken_back_is_in_seconds_what_it_was() {
     let mut desk = Desk::open("method-2");
-    let end = |desk: &Desk| desk.lab.player().playback.end_step();
+    let end = |desk: &Desk| desk.lab.player().end_step();
     desk.commands("go_to = 1000\nset = { 'motion.time_step_s' = 0.05 }");
     let before = end(&desk);
     desk.commands("set = { 'motion.steps' = 4000 }");

@@ -429,8 +429,8 @@ fn a_watched_run_gives_the_workings_of_any_step_kept_or_not() {
             assert_eq!(&run.workings(), known, "{} step {step}", scheme.name);
         }
         run.keep_workings(true);
-        run.set_out_for(25);
-        while run.destination().is_some() {
+        run.begin_seek(25);
+        while run.seek_target().is_some() {
             run.step().unwrap();
         }
         assert_eq!(run.workings(), known[25], "{}", scheme.name);

@@ -58,7 +58,7 @@ impl Desk {
         for _ in 0..frames {
             self.pass(Duration::from_millis(70));
         }
-        while self.lab.player().playback.steps_to_go().is_some() {
+        while self.lab.player().steps_to_go().is_some() {
             self.pass(Duration::ZERO);
         }
     }
@@ -88,7 +88,7 @@ impl Desk {
     }
 
     pub fn step(&self) -> u64 {
-        self.lab.player().playback.step_number()
+        self.lab.player().step_number()
     }
 
     pub fn simulation(&self) -> &Simulation {

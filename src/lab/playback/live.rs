@@ -8,7 +8,7 @@ mod pictures;
 use super::path::PathFromAbove;
 use crate::engine::analysis::cost::{has_closed_form, integration_rad_per_s, is_affordable};
 use crate::engine::analysis::readouts::ReadoutSource;
-use crate::engine::analysis::{Health, Monitor, Readouts};
+use crate::engine::analysis::{Monitor, Readouts};
 use crate::engine::journal::restart::in_force;
 use crate::engine::recording::{Moment, Recording};
 use crate::engine::run::{NotFinite, Simulation};
@@ -77,52 +77,61 @@ impl LiveRun {
     pub fn step(&mut self) -> Result<(), NotFinite> {
         let step = self.simulation.step()?;
         self.monitor.follow(step);
-        self.pictures.follow(step);
+        self.pictures.record(step);
         self.checkpoints.offer(&self.simulation, &self.monitor);
         Ok(())
     }
 
-    /// Steps until the run stands at `step`, or until `enough` returns true: see [`play`](Self::play).
+    /// Steps until the run is at `step`, or until `is_over` returns true: see [`play`](Self::play).
     ///
     /// # Errors
-    /// When the numbers stop being finite; the run then stays at the step before.
-    pub fn step_to(&mut self, step: u64, enough: impl FnMut() -> bool) -> Result<(), NotFinite> {
-        match self.play(f64::INFINITY, step, enough, |_| false) {
+    /// If the numbers stop being finite; the run then stays at the step before.
+    pub fn step_to(&mut self, step: u64, is_over: impl FnMut() -> bool) -> Result<(), NotFinite> {
+        match self.play(f64::INFINITY, step, is_over, |_| false) {
             PlayEnd::NotFinite(error) => Err(error),
             _ => Ok(()),
         }
     }
 
+    /// Returns the latest step that the run has reached.
     pub fn furthest(&self) -> u64 {
         self.pictures.furthest()
     }
 
-    /// The step for which it has set out, if it has not arrived. Calling [`step`](Self::step) repeatedly leads there.
-    pub fn destination(&self) -> Option<u64> {
-        let (step, to) = (self.simulation.step_number(), self.pictures.followed_to);
-        (step < to).then_some(to)
-    }
-
-    /// Sets out for `step`, or for the furthest step that it has reached if that is earlier. It then stands at that step, or
-    /// at an earlier one with the step as its [`destination`](Self::destination).
-    pub fn set_out_for(&mut self, step: u64) {
-        self.stay();
+    /// Begins to go to `step`, or to the furthest step that the run has reached if that is earlier. The run is then at that
+    /// step, or at an earlier one with the step as its [`seek_target`](Self::seek_target).
+    pub fn begin_seek(&mut self, step: u64) {
+        self.cancel_seek();
         let here = self.simulation.step_number();
-        let step = step.min(self.furthest());
-        if step == here {
+        let target = step.min(self.furthest());
+        if target == here {
             return;
         }
-        if step < here {
+        if target < here {
             self.set_overlay(self.shows_exact);
         }
-        let latest = self.pictures.go_to(step, here);
-        self.stand_before(latest);
+        let latest = self.pictures.begin_seek(target, here);
+        self.load_checkpoint(latest);
         self.pictures.keep(self.simulation.step_number());
     }
 
-    /// A copy of the run at the last stored state that is at `step` or before, to step through what it has been through.
+    /// Returns the step that the run seeks; `None` if it has arrived. Calling [`step`](Self::step) repeatedly leads there.
+    pub fn seek_target(&self) -> Option<u64> {
+        let (step, target) = (self.simulation.step_number(), self.pictures.followed_to);
+        (step < target).then_some(target)
+    }
+
+    /// Stays at the present step instead of going to the seek target. Where the recording lacks steps, it is filled with the
+    /// present sample.
+    pub fn cancel_seek(&mut self) {
+        if self.seek_target().is_some() {
+            self.pictures.cancel_seek(self.simulation.step_number());
+        }
+    }
+
+    /// Returns a copy of the run at the last stored state that is at `step` or before, to step through its past.
     pub(super) fn again_before(&self, step: u64) -> Simulation {
-        let Some(stored) = self.stored_before(step) else {
+        let Some(stored) = self.checkpoint_before(step) else {
             return self.simulation.clone();
         };
         let mut again = stored.simulation.clone();
@@ -132,68 +141,61 @@ impl LiveRun {
         again
     }
 
-    /// The last checkpoint that is at `step` or before; `None` where the present state is the later one.
-    fn stored_before(&self, step: u64) -> Option<&Checkpoint> {
+    /// Returns the last checkpoint that is at `step` or before; `None` where the present state is the later one.
+    fn checkpoint_before(&self, step: u64) -> Option<&Checkpoint> {
         let stored = self.checkpoints.before(step);
         let here = self.simulation.step_number();
         let is_nearer = (stored.simulation.step_number()..=step).contains(&here);
         (!is_nearer || self.simulation.has_ended()).then_some(stored)
     }
 
-    /// Puts the run at the latest stored state that is not later than `latest`: a checkpoint, or the present one.
-    fn stand_before(&mut self, latest: u64) {
-        let Some(stored) = self.stored_before(latest) else {
+    /// Moves the run to the latest stored state that is not later than `latest`: a checkpoint, or the present one.
+    fn load_checkpoint(&mut self, latest: u64) {
+        let Some(stored) = self.checkpoint_before(latest) else {
             return;
         };
         let scenario = Arc::clone(self.simulation.scenario());
         (self.simulation, self.monitor) = (stored.simulation.clone(), stored.monitor.clone());
         self.simulation.keep_workings(self.keeps_workings);
-        self.pictures.stand_at(self.simulation.now());
-        self.adopt(&scenario);
+        self.pictures.return_to(self.simulation.now());
+        self.replace_metadata(&scenario);
     }
 
     /// Makes `scenario`, which has the same past, the one that the simulation and its measurements follow from the present
-    /// step on. The pictures stay: where it leads to other numbers, [`go_on_in`](Self::go_on_in) is to be called.
-    pub fn adopt(&mut self, scenario: &Arc<Scenario>) {
+    /// step on. The pictures stay: where it leads to other numbers, call [`branch`](Self::branch).
+    pub fn replace_metadata(&mut self, scenario: &Arc<Scenario>) {
         if !Arc::ptr_eq(self.simulation.scenario(), scenario) {
             self.simulation.go_on_in(Arc::clone(scenario));
             self.monitor.beside.go_on_in(scenario);
         }
     }
 
-    /// Cancels its way to the destination and stays at the present step. Where the recording lacks steps, it is filled with
-    /// the present moment.
-    pub fn stay(&mut self) {
-        if self.destination().is_some() {
-            self.pictures.stay(self.simulation.step_number());
-        }
-    }
-
-    /// Continues with `scenario`, which has the same motion up to the present step and up to the destination. The pictures
-    /// of later steps are dropped.
-    pub fn go_on_in(&mut self, scenario: &Arc<Scenario>) {
+    /// Continues with `scenario`, which has the same motion up to the present step and up to the seek target. Drops the
+    /// pictures of later steps.
+    pub fn branch(&mut self, scenario: &Arc<Scenario>) {
         self.pictures.ahead = None;
         self.explained = None;
         self.checkpoints.cut_back(self.pictures.followed_to);
         if self.simulation.has_ended() {
-            self.stand_before(self.simulation.step_number());
+            self.load_checkpoint(self.simulation.step_number());
         }
-        self.adopt(scenario);
+        self.replace_metadata(scenario);
         let now_s = self.now().time_s;
-        let can_be_had = is_affordable(scenario);
         match &mut self.overlay {
-            Some(overlay) if can_be_had && overlay.goes_on_at(now_s) => overlay.go_on_in(scenario),
+            Some(overlay) if is_affordable(scenario) && overlay.can_continue_at(now_s) => {
+                overlay.branch(scenario);
+            }
             _ => self.set_overlay(self.shows_exact),
         }
     }
 
     /// Plays for `time_s` simulated seconds, in whole steps. It ends earlier at the step `stop`, at a step where
-    /// `is_fulfilled` returns true, or when `enough` returns true because the time for computing is used up.
+    /// `is_fulfilled` returns true, or when `is_over` returns true because the time for computing is used up.
     pub fn play(
         &mut self,
         time_s: f64,
         stop: u64,
-        mut enough: impl FnMut() -> bool,
+        mut is_over: impl FnMut() -> bool,
         mut is_fulfilled: impl FnMut(&mut Self) -> bool,
     ) -> PlayEnd {
         let begin_s = self.now().time_s;
@@ -201,12 +203,12 @@ impl LiveRun {
         let mut until_look = look_every;
         loop {
             let time_step_s = self.simulation.motion().time_step_s;
+            if self.simulation.step_number() >= stop {
+                break PlayEnd::AtStop;
+            }
             if self.now().time_s + time_step_s - begin_s > time_s + DUE_TIME_ROUNDING * time_step_s
             {
                 break PlayEnd::InTime;
-            }
-            if self.simulation.step_number() >= stop {
-                break PlayEnd::AtStop;
             }
             if let Err(error) = self.step() {
                 break PlayEnd::NotFinite(error);
@@ -216,7 +218,7 @@ impl LiveRun {
             }
             until_look -= 1;
             if until_look == 0 {
-                if enough() {
+                if is_over() {
                     break PlayEnd::CutShort;
                 }
                 until_look = look_every;
@@ -236,12 +238,8 @@ impl LiveRun {
     /// What a step costs, in points of a body: its points, a constant share, and the integration of the exact motion.
     pub fn cost_of_a_step(&self) -> u64 {
         let points = self.scenario().body.mechanics.points().len() as u64;
-        (points + COST_OF_A_STEP).saturating_add(self.integration_cost())
-    }
-
-    /// What of that goes to integrations of the exact motion: by the scheme, and beside the run.
-    fn integration_cost(&self) -> u64 {
-        integration_cost(&self.simulation, self.monitor.beside.motions())
+        let beside = self.monitor.beside.motions();
+        (points + COST_OF_A_STEP).saturating_add(integration_cost(&self.simulation, beside))
     }
 
     /// Shows the exact motion beside the run where that can be had, or does not.
@@ -255,10 +253,11 @@ impl LiveRun {
         self.shows_exact
     }
 
-    pub fn follow_exact(&mut self, enough: impl FnMut() -> bool) {
+    /// Advances the exact motion, if it is shown, to the time of the run, or until `is_over` returns true.
+    pub fn follow_exact(&mut self, is_over: impl FnMut() -> bool) {
         let now_s = self.now().time_s;
         if let Some(overlay) = &mut self.overlay {
-            overlay.follow(now_s, enough);
+            overlay.advance_to(now_s, is_over);
         }
     }
 
@@ -279,12 +278,8 @@ impl LiveRun {
         overlay.is_some_and(|overlay| overlay.is_before(now_s))
     }
 
-    pub fn health(&mut self) -> Health {
-        self.monitor.health(self.simulation.now())
-    }
-
     pub fn readouts(&mut self) -> Readouts {
-        let health = self.health();
+        let health = self.monitor.health(self.simulation.now());
         Readouts::new(&self.simulation, &mut self.monitor, &health, None)
     }
 
@@ -393,7 +388,7 @@ struct Checkpoints {
 }
 
 impl Checkpoint {
-    fn of(simulation: &Simulation, monitor: &Monitor) -> Self {
+    fn new(simulation: &Simulation, monitor: &Monitor) -> Self {
         let mut simulation = simulation.clone();
         simulation.keep_workings(false); // they may take much memory, and are found again by a step
         Self {
@@ -411,7 +406,7 @@ impl Checkpoints {
     pub fn new(simulation: &Simulation, monitor: &Monitor) -> Self {
         let points = simulation.scenario().body.mechanics.points().len();
         Self {
-            stored: vec![Checkpoint::of(simulation, monitor)],
+            stored: vec![Checkpoint::new(simulation, monitor)],
             spacing: SPACING,
             most: (MEMORY / (PER_CHECKPOINT + PER_POINT * points)).max(FEWEST_CHECKPOINTS),
         }
@@ -429,7 +424,7 @@ impl Checkpoints {
         if self.before(u64::MAX).step() >= simulation.step_number() {
             return; // this step is stored already
         }
-        self.stored.push(Checkpoint::of(simulation, monitor));
+        self.stored.push(Checkpoint::new(simulation, monitor));
         if self.stored.len() > self.most + 1 {
             self.spacing *= 2;
             let spacing = self.spacing;

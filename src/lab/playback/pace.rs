@@ -1,8 +1,10 @@
 //! Playback speed: how much simulated time passes per wall time, whatever the time step.
 
+use crate::engine::scenario::{Scenario, keys};
 use crate::engine::text::ladder::climbed;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
+use toml::Value;
 
 /// The longest time that one frame counts: after a suspension, or on a slow line, the run does not make up for more.
 const LONGEST_FRAME: Duration = Duration::from_millis(250);
@@ -37,14 +39,20 @@ impl Speed {
 /// Whether the run goes on, how fast, and how much simulated time is due.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pace {
-    pub(super) speed: Speed,
-    pub(super) is_running: bool,
+    pub speed: Speed,
+    pub is_running: bool,
     /// Simulated time that is due and has not been stepped yet, s.
     owed_s: f64,
-    pub(super) achieved: f64,
+    pub achieved: f64,
 }
 
 impl Pace {
+    /// Creates the pace of the run of `scenario`, with the speed that its `[view]` names.
+    pub fn of_scenario(scenario: &Scenario, running: bool) -> Self {
+        let speed = scenario.file.viewed("speed").and_then(Value::as_float);
+        Self::new(speed.unwrap_or(keys::DEFAULT_SPEED), running)
+    }
+
     pub fn new(speed: f64, running: bool) -> Self {
         Self {
             speed: Speed::Times(speed),

@@ -1,10 +1,10 @@
 //! The window of the strip of the fast motion. While it passes too fast to be seen, it is chosen only once in a while.
 
-use crate::engine::analysis::Readouts;
+use super::Player;
 use crate::engine::recording::RecordedCurve;
 use crate::engine::run::Clock;
-use crate::lab::playback::Playback;
 use crate::lab::playback::detail::{Detail, DetailRequest, Placement};
+use crate::lab::playback::live::LiveRun;
 use crate::lab::playback::pace::Speed;
 use crate::lab::playback::reading::Reading;
 use crate::lab::view::View;
@@ -23,10 +23,10 @@ pub(super) struct FastStrip {
 }
 
 impl FastStrip {
-    pub(super) fn of(playback: &Playback, reading: &Reading) -> Self {
-        let following = DetailRequest::following(Clock::end_s(playback.run().scenario()));
+    pub(super) fn new(run: &LiveRun, reading: &Reading) -> Self {
+        let following = DetailRequest::following(Clock::end_s(run.scenario()));
         Self {
-            detail: Detail::new(playback.run(), &reading.readouts, &following, None),
+            detail: Detail::new(run, &reading.readouts, &following, None),
             chosen_at: Duration::ZERO,
             is_of_run: true,
         }
@@ -36,47 +36,51 @@ impl FastStrip {
     pub(super) fn forget(&mut self) {
         self.is_of_run = false;
     }
+}
 
-    /// Chooses the window at `now`, about `cursor_s` where the cursor is shown. Returns a message where it shows another
-    /// curve of the same run than before.
-    pub(super) fn choose(
-        &mut self,
-        now: Duration,
-        view: &View,
-        playback: &Playback,
-        readouts: &Readouts,
-        cursor_s: Option<f64>,
-    ) -> Option<&'static str> {
-        let is_fast = match playback.speed() {
-            _ if !playback.is_running() => false,
+impl Player {
+    /// Chooses the window of the strip at `now`, about the cursor where it is shown. Returns a message where the strip
+    /// shows another curve of the same run than before.
+    pub(super) fn choose_strip(&mut self, now: Duration, view: &View) -> Option<&'static str> {
+        let FastStrip {
+            detail,
+            chosen_at,
+            is_of_run,
+        } = &self.strip;
+        let cursor_s = self.cursor().map(|cursor| cursor.time_s);
+        let is_fast = match self.speed() {
+            _ if !self.is_running() => false,
             Speed::Top => true,
-            Speed::Times(speed) => speed * PASSES_S > self.detail.window_s,
+            Speed::Times(speed) => speed * PASSES_S > detail.window_s,
         };
+        let is_at_end = !self.is_running() && self.step_number() >= self.end_step();
         let is_held = is_fast && cursor_s.is_none();
-        let run = playback.run();
-        let is_reached = self.detail.begin_s + self.detail.window_s <= run.now().time_s;
-        if is_held && self.is_of_run && is_reached && now < self.chosen_at + HOLD {
+        let is_reached = detail.begin_s + detail.window_s <= self.run.now().time_s;
+        if is_held && *is_of_run && is_reached && now < *chosen_at + HOLD {
             return None;
         }
-        let place = match cursor_s {
-            Some(cursor_s) => Placement::About(cursor_s),
-            None if is_held => Placement::Latest,
-            None if playback.is_at_end() => Placement::UpToNow,
-            None => Placement::Following,
-        };
-        let wanted = DetailRequest {
+        let request = DetailRequest {
             window_s: view.look.detail_s,
             curve: view.look.detail_of,
             long_s: view.look.window_s,
-            place,
+            place: match cursor_s {
+                Some(cursor_s) => Placement::About(cursor_s),
+                None if is_held => Placement::Latest,
+                None if is_at_end => Placement::UpToNow,
+                None => Placement::Following,
+            },
         };
-        let before = self.is_of_run.then_some(&self.detail);
-        let detail = Detail::new(run, readouts, &wanted, before);
-        let is_other = before.is_some_and(|before| before.curve != detail.curve);
-        (self.detail, self.chosen_at, self.is_of_run) = (detail, now, true);
+        let before = is_of_run.then_some(detail);
+        let chosen = Detail::new(&self.run, &self.reading.readouts, &request, before);
+        let is_other = before.is_some_and(|before| before.curve != chosen.curve);
+        self.strip = FastStrip {
+            detail: chosen,
+            chosen_at: now,
+            is_of_run: true,
+        };
         // After a jump in time the strip's label says it; only one who watches the run sees the strip change.
-        let is_watched = playback.is_running() && view.look.detail_of.is_none();
-        (is_other && is_watched).then_some(match self.detail.curve {
+        let is_watched = self.is_running() && view.look.detail_of.is_none();
+        (is_other && is_watched).then_some(match chosen.curve {
             RecordedCurve::Tilt => "the upper strip shows the tilt again",
             _ => "the upper strip shows x now: it swings more often than the tilt",
         })

@@ -140,15 +140,14 @@ impl View {
     /// Turns the camera so that the axle is seen aslant, unless its direction was chosen. A moving picture is left as it is:
     /// the motion shows where the axle points.
     pub(in crate::lab) fn turn_camera(&mut self, player: &Player) {
-        let playback = &player.playback;
-        let is_still = !playback.is_running() || playback.step_number() == 0;
+        let is_still = !player.is_running() || player.step_number() == 0;
         if is_still && self.look.camera.is_none() {
             self.camera = self.camera.aside_of(&player.reading.state.axle());
         }
     }
 
     fn cursor_or_here(&self, player: &Player) -> u64 {
-        self.cursor.unwrap_or(player.playback.step_number())
+        self.cursor.unwrap_or(player.step_number())
     }
 
     /// The time at the left edge of the traces, s.

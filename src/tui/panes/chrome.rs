@@ -260,7 +260,7 @@ fn word(lab: &Lab, goes_on: bool, row: &Binding) -> Option<&'static str> {
         _ => true,
     };
     let word = match (row.footer, action) {
-        ("pause", _) if !lab.player().playback.is_running() => "go on",
+        ("pause", _) if !lab.player().is_running() => "go on",
         ("next phase", _) if is_why => "next step",
         ("why sideways", _) if is_why => "phases",
         (_, Some(Action::Lesson(LessonKey::Take))) => enter,

@@ -30,7 +30,7 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     };
     let room = area.width.saturating_sub(1) as usize;
     let room = room.saturating_sub(columns(&mark) + columns(what) + 1);
-    let end_s = lab.player().playback.end_s();
+    let end_s = lab.player().end_s;
     let (name, counts, parts) = fitting(beside, end_s, room);
     let quiet = theme.style(Role::Quiet);
     let mut x = write(area, (1, 0), &mark, theme.style(Role::Measured), buf);

@@ -104,13 +104,13 @@ fn title(lab: &Lab) -> String {
 
 /// What is to be done where there is no step to take apart.
 fn nothing_yet(lab: &Lab, area: Rect, buf: &mut Buffer) {
-    let playback = &lab.player().playback;
-    let texts: [&str; 2] = if playback.step_number() == 0 {
+    let player = lab.player();
+    let texts: [&str; 2] = if player.step_number() == 0 {
         [
             "No time step has been taken yet.",
             "Press . to take the first: it is then shown here phase by phase, each with its formula and its numbers.",
         ]
-    } else if playback.is_busy() {
+    } else if player.is_busy() {
         [
             "The run goes on.",
             "Press space to stop it: the time step taken last is then shown here phase by phase.",

@@ -45,7 +45,7 @@ impl Timeline {
         let (scenario, furthest) = (run.scenario(), run.furthest());
         let now_s = run.now().time_s;
         Self {
-            end_s: lab.player().playback.end_s(),
+            end_s: lab.player().end_s,
             now_s,
             furthest_s: Clock::at(scenario, furthest).time_s(furthest).max(now_s),
             pinned_s: lab.comparison().pinned_end_s(run),

@@ -44,8 +44,9 @@ impl Pictures {
         pictures
     }
 
+    /// Adds `step`, which the run has taken.
     #[inline]
-    pub fn follow(&mut self, step: &Step) {
+    pub fn record(&mut self, step: &Step) {
         self.now = moment(step);
         if self.last_whole.is_none() && !step.after().is_a_rotation() {
             let before = step.before().filter(|before| before.is_a_rotation());
@@ -72,14 +73,15 @@ impl Pictures {
         }
     }
 
-    pub fn stand_at(&mut self, step: &Step) {
+    /// Makes `step`, to which the run has returned, the present one.
+    pub fn return_to(&mut self, step: &Step) {
         self.now = moment(step);
         self.last_whole.take_if(|(at, _)| *at >= step.number());
     }
 
     /// Goes back, or forward, to `step`, which the run has reached, from the present step `here`. Returns the latest step
     /// from which it has to be shown the steps up to there again.
-    pub fn go_to(&mut self, step: u64, here: u64) -> u64 {
+    pub fn begin_seek(&mut self, step: u64, here: u64) -> u64 {
         let ahead = self.ahead.get_or_insert_with(|| Ahead {
             step: here,
             recording: self.recording.clone(),
@@ -107,7 +109,7 @@ impl Pictures {
 
     /// Ends at the present step, `step`, where it was on its way to a later one. Where the recording lacks steps, it is
     /// filled with the present moment.
-    pub fn stay(&mut self, step: u64) {
+    pub fn cancel_seek(&mut self, step: u64) {
         self.path.cut_back(step);
         self.path.stand_at(&self.now.position);
         self.followed_to = step;
@@ -130,7 +132,7 @@ fn moment(step: &Step) -> Moment {
     }
 }
 
-/// The most samples of the exact motion that one call of [`follow`](Overlay::follow) computes. If the run is further
+/// The most samples of the exact motion that one call of [`advance_to`](Overlay::advance_to) computes. If the run is further
 /// ahead, only every second, third, ... step is sampled.
 const MOST_SAMPLES: f64 = 20_000.0;
 
@@ -163,11 +165,12 @@ impl Overlay {
     }
 
     /// Continues as the exact motion of `scenario`, which has the same motion up to the present time.
-    pub fn go_on_in(&mut self, scenario: &Arc<Scenario>) {
+    pub fn branch(&mut self, scenario: &Arc<Scenario>) {
         self.truth.go_on_in(scenario);
     }
 
-    pub fn follow(&mut self, time_s: f64, mut enough: impl FnMut() -> bool) {
+    /// Advances to `time_s` (s), or until `is_over` returns true.
+    pub fn advance_to(&mut self, time_s: f64, mut is_over: impl FnMut() -> bool) {
         let due = (time_s - self.now.time_s) / self.time_step_s;
         let spacing_s = self.time_step_s * (due / MOST_SAMPLES).ceil().max(1.0);
         while self.is_before(time_s) {
@@ -187,7 +190,7 @@ impl Overlay {
             if !self.has_ended {
                 self.record(moment);
             }
-            if enough() {
+            if is_over() {
                 return;
             }
         }
@@ -201,7 +204,7 @@ impl Overlay {
     }
 
     /// Whether it can go on from a run that stands at `time_s` (s): it has not come further, nor ended.
-    pub fn goes_on_at(&self, time_s: f64) -> bool {
+    pub fn can_continue_at(&self, time_s: f64) -> bool {
         !self.has_ended && self.now.time_s <= time_s
     }
 
