@@ -104,8 +104,10 @@ fn compiler() -> (String, Vec<String>) {
             .filter(|value| !value.trim().is_empty())
             .unwrap_or_else(|| default.to_owned())
     };
-    let options = from_environment("CFLAGS", "-O3");
-    let options = options.split_whitespace().map(str::to_owned).collect();
+    let options = from_environment("CFLAGS", "-O3")
+        .split_whitespace()
+        .map(str::to_owned)
+        .collect();
     (from_environment("CC", "gcc"), options)
 }
 
@@ -127,8 +129,11 @@ fn compiled(source: &str) -> Option<PathBuf> {
     if made.is_ok_and(|status| status.success()) {
         return Some(program);
     }
-    let options = options.join(" ");
-    eprintln!("{compiler} {options} does not build {}", source.display());
+    eprintln!(
+        "{compiler} {} does not build {}",
+        options.join(" "),
+        source.display()
+    );
     None
 }
 

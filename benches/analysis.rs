@@ -14,7 +14,7 @@ use std::hint::black_box;
 use std::sync::Arc;
 
 /// A wheel of ten points with four of 0.5 kg on its axle: kappa = 0.38, L = 100 J s. `rest` may make it lopsided.
-fn scenario(rest: &str) -> Arc<Scenario> {
+fn read_scenario(rest: &str) -> Arc<Scenario> {
     let mut text =
         "title = 'x'\n[body.rim]\npoints = 10\nradius_m = 0.8\nheight_m = 1\npoint_mass_kg = 0.5\n"
             .to_owned();
@@ -40,7 +40,7 @@ const LUMP: &str = "[[body.point]]\nname = 'lump'\nat_m = [0.6, 0, 1]\nmass_kg =
 fn exact(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("exact motion");
     for (name, rest) in [("closed form", ""), ("integrated, in order", LUMP)] {
-        let mut truth = Truth::new(scenario(rest));
+        let mut truth = Truth::new(read_scenario(rest));
         let mut time = 0.0;
         group.bench_function(name, |bencher| {
             bencher.iter(|| {
@@ -49,7 +49,7 @@ fn exact(criterion: &mut Criterion) {
             });
         });
     }
-    let scenario = scenario("");
+    let scenario = read_scenario("");
     group.bench_function("set-up and one evaluation", |bencher| {
         bencher.iter(|| Truth::new(Arc::clone(&scenario)).state_at(black_box(1.0)));
     });
@@ -58,11 +58,11 @@ fn exact(criterion: &mut Criterion) {
 fn readouts(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("readouts");
     for (name, rest) in [("symmetric", ""), ("lopsided", LUMP)] {
-        let mut simulation = Simulation::new(scenario(rest));
+        let mut simulation = Simulation::new(read_scenario(rest));
         let mut monitor = Monitor::new(simulation.now());
         group.bench_function(format!("a step and its following, {name}"), |bencher| {
             bencher.iter(|| {
-                monitor.follow(black_box(simulation.step().unwrap()));
+                monitor.record(black_box(simulation.step().unwrap()));
             });
         });
         group.bench_function(
@@ -88,7 +88,7 @@ fn readouts(criterion: &mut Criterion) {
 fn schemes(criterion: &mut Criterion) {
     for (name, rest) in [("symmetric", ""), ("lopsided", LUMP)] {
         let mut group = criterion.benchmark_group(format!("a step by the scheme alone, {name}"));
-        let scenario = scenario(rest);
+        let scenario = read_scenario(rest);
         let loads = Loads {
             gravity: scenario.motion.gravity,
             pushes: Vec::new(),
@@ -108,7 +108,7 @@ fn schemes(criterion: &mut Criterion) {
 
 fn billionth(criterion: &mut Criterion) {
     // The fewest time steps with which order 6 keeps within 1e-9 m of the exact motion over ten seconds, and its cost.
-    let scenario = scenario("");
+    let scenario = read_scenario("");
     let info = gyrolab::physics::SchemeInfo::find("srkn11b").unwrap();
     let loads = Loads {
         gravity: scenario.motion.gravity,

@@ -12,7 +12,7 @@ use gyrolab::physics::scheme::SCHEMES;
 use std::hint::black_box;
 use std::sync::Arc;
 
-fn simulation(scheme: &str, rim: usize) -> Simulation {
+fn new_simulation(scheme: &str, rim: usize) -> Simulation {
     let mut document = Document::open("method-2").unwrap();
     let mass = 5.0 / rim as f64;
     for set in [
@@ -30,7 +30,7 @@ fn simulation(scheme: &str, rim: usize) -> Simulation {
 fn schemes(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("step with record, 14 points");
     for scheme in SCHEMES {
-        let mut simulation = simulation(scheme.name, 10);
+        let mut simulation = new_simulation(scheme.name, 10);
         group.bench_function(scheme.name, |bencher| {
             bencher.iter(|| {
                 black_box(simulation.step().unwrap());
@@ -42,7 +42,7 @@ fn schemes(criterion: &mut Criterion) {
 fn points(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("report, a step of many points");
     for rim in [10, 1_000, 10_000, 99_996] {
-        let mut simulation = simulation("report", rim);
+        let mut simulation = new_simulation("report", rim);
         group.throughput(Throughput::Elements(rim as u64 + 4));
         group.bench_function(BenchmarkId::from_parameter(rim + 4), |bencher| {
             bencher.iter(|| {
@@ -59,11 +59,11 @@ fn points(criterion: &mut Criterion) {
 fn followed(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("step followed by the monitor, 14 points");
     for scheme in SCHEMES {
-        let mut simulation = simulation(scheme.name, 10);
+        let mut simulation = new_simulation(scheme.name, 10);
         let mut monitor = Monitor::new(simulation.now());
         group.bench_function(scheme.name, |bencher| {
             bencher.iter(|| {
-                monitor.follow(simulation.step().unwrap());
+                monitor.record(simulation.step().unwrap());
             });
         });
     }
@@ -72,7 +72,7 @@ fn followed(criterion: &mut Criterion) {
 fn watched(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("step of a watched run, 14 points");
     for scheme in SCHEMES {
-        let mut run = LiveRun::new(Arc::clone(simulation(scheme.name, 10).scenario()));
+        let mut run = LiveRun::new(Arc::clone(new_simulation(scheme.name, 10).scenario()));
         group.bench_function(scheme.name, |bencher| {
             bencher.iter(|| run.step().unwrap());
         });

@@ -34,7 +34,7 @@ fn main() {
         sweep.rows(),
         all * cores as f64 / one
     );
-    let [one, all] = [one_core as fn(&Sweep) -> f64, swept].map(|work| {
+    let [one_s, all_s] = [one_core as fn(&Sweep) -> f64, swept].map(|work| {
         let before = processors_s();
         (0..TIMES).for_each(|_| {
             work(&sweep);
@@ -42,8 +42,8 @@ fn main() {
         processors_s() - before
     });
     println!(
-        "processors' time, {TIMES} times: {one:.2} s on one core, {all:.2} s on {cores}: {:.3} of it",
-        all / one
+        "processors' time, {TIMES} times: {one_s:.2} s on one core, {all_s:.2} s on {cores}: {:.3} of it",
+        all_s / one_s
     );
 }
 

@@ -39,7 +39,7 @@ fn main() {
     }
 }
 
-fn scenario(points: u64, scheme: &str, steps: u64) -> Arc<Scenario> {
+fn read_scenario(points: u64, scheme: &str, steps: u64) -> Arc<Scenario> {
     let mut document = Document::open("method-2").unwrap();
     for set in [
         format!("body.rim.points={points}"),
@@ -53,7 +53,7 @@ fn scenario(points: u64, scheme: &str, steps: u64) -> Arc<Scenario> {
 }
 
 fn travel(steps: u64, points: u64, scheme: &str) {
-    let scenario = scenario(points, scheme, steps);
+    let scenario = read_scenario(points, scheme, steps);
     let seconds = |player: &mut Player, step: u64| {
         let begin = Instant::now();
         player.seek(step, SeekPurpose::Command);
@@ -67,11 +67,11 @@ fn travel(steps: u64, points: u64, scheme: &str) {
         player = Player::new(Arc::clone(&scenario), false);
         player.step_to(steps, Duration::MAX).unwrap();
         play = play.min(begin.elapsed().as_secs_f64());
-        let begin = Instant::now();
+        let bare_begin = Instant::now();
         black_box(Simulation::new(Arc::clone(&scenario)))
             .step_to(steps)
             .unwrap();
-        bare = bare.min(begin.elapsed().as_secs_f64());
+        bare = bare.min(bare_begin.elapsed().as_secs_f64());
     }
     let mut worst: f64 = 0.0;
     for share in SHARES {

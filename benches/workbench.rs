@@ -163,8 +163,8 @@ impl Lab {
     fn own_processor_ms(&self) -> f64 {
         let id = self.child.process_id().unwrap();
         let spent = self.proc(&format!("task/{id}/schedstat"));
-        let nanoseconds = spent.split(' ').next().and_then(|spent| spent.parse().ok());
-        nanoseconds.map_or(f64::NAN, |spent: f64| spent / 1e6)
+        let nanoseconds = spent.split(' ').next().and_then(|word| word.parse().ok());
+        nanoseconds.map_or(f64::NAN, |number: f64| number / 1e6)
     }
 
     fn memory_mb(&self) -> f64 {
@@ -218,8 +218,8 @@ fn main() {
             lab.first_frame.as_secs_f64() * 1e3
         );
         lab.press(" ");
-        let (bytes, core) = lab.measure(MEASURED);
-        println!("  paused: {bytes:.0} bytes/s (budget 0), {core:.1} % of a core");
+        let (paused_bytes, paused_core) = lab.measure(MEASURED);
+        println!("  paused: {paused_bytes:.0} bytes/s (budget 0), {paused_core:.1} % of a core");
         println!("  memory {:.1} MB (budget 30)", lab.memory_mb());
         lab.close();
     }
@@ -312,8 +312,11 @@ fn report_edit() {
 /// What 100 000 steps of method-2 take without anything else, ms: the least of several runs.
 fn bare_steps_ms() -> f64 {
     const STEPS: u64 = 100_000;
-    let scenario = Document::open("method-2").and_then(|document| document.scenario());
-    let scenario = Arc::new(scenario.unwrap());
+    let scenario = Arc::new(
+        Document::open("method-2")
+            .and_then(|document| document.scenario())
+            .unwrap(),
+    );
     (0..20)
         .map(|_| {
             let mut run = Simulation::new(Arc::clone(&scenario));

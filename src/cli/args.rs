@@ -450,8 +450,8 @@ pub(super) fn positive(text: &str) -> Result<f64, String> {
 
 pub(super) fn size(text: &str) -> Result<(u16, u16), String> {
     let (columns, lines) = MOST_SCREEN_CELLS;
-    let number = |text: &str, most| {
-        let number = text.parse().ok();
+    let number = |part: &str, most| {
+        let number = part.parse().ok();
         number.filter(|number| (1..=most).contains(number))
     };
     text.split_once('x')

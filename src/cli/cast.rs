@@ -4,7 +4,7 @@
 //! for one. Neither settings nor the environment are read, so that a file of commands has one recording.
 
 use super::args::{SetArgs, size};
-use super::new_lab::{DEFAULT, lab};
+use super::new_lab::{DEFAULT, open_lab};
 use super::progress::{self, Interrupted, Interruption};
 use super::tell;
 use crate::engine::text::number::counted;
@@ -66,7 +66,7 @@ pub(super) fn cast(args: &CastArgs) -> anyhow::Result<ExitCode> {
         background: Background::Dark,
     };
     let (marker, unchanged) = (Some(Marker::Braille), SetArgs::default());
-    let mut lab = lab(DEFAULT, &unchanged, marker, theme, false)?;
+    let mut lab = open_lab(DEFAULT, &unchanged, marker, theme, false)?;
     let (output, interruption) = progress::open_for(&args.output, args.force)?;
     let mut cast = Cast::begin(args, &mut lab)?;
     lab.take_commands(commands);
@@ -129,12 +129,12 @@ impl Cast {
                 "the recording is longer than an hour, the most there may be: shorten its waits, or raise its speed"
             );
             self.now += CAST_FRAME;
-            self.advance(lab, interruption);
+            self.advance_lab(lab, interruption);
         }
     }
 
     /// Lets the lab take its steps up to now, as many as there are to take. Only a signal cuts them short.
-    fn advance(&self, lab: &mut Lab, interruption: &Interruption) {
+    fn advance_lab(&self, lab: &mut Lab, interruption: &Interruption) {
         let mut is_first = true;
         lab.advance(&mut || {
             let is_late = !std::mem::take(&mut is_first) && interruption.has_come();

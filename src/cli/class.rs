@@ -55,8 +55,9 @@ pub(super) fn class(args: &ClassArgs) -> anyhow::Result<ExitCode> {
 fn teach(args: &ClassArgs) -> anyhow::Result<ExitCode> {
     let folder = ClassFolder::open(&args.folder).map_err(anyhow::Error::msg)?;
     folder.make_teacher().map_err(anyhow::Error::msg)?;
-    let confined = Confined::enter(&args.folder).with_context(|| sessions::named(&args.folder))?;
-    let confined = confined.keeping_in(folder.teacher());
+    let confined = Confined::enter(&args.folder)
+        .with_context(|| sessions::named(&args.folder))?
+        .keeping_in(folder.teacher());
     let sessions = session::list(&folder.teacher())?;
     let turn = File::open(folder.teacher())?; // held until the lab is left
     ensure!(

@@ -52,17 +52,17 @@ pub(super) struct CompareArgs {
 pub(super) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
     let on_stdout = one_on_stdout("compare", args.output.as_deref(), args.json);
     let scenario = scenario_of(&args.scenario, &args.length)?;
-    if let Some(objection) = cost::objection(&scenario) {
+    if let Some(why) = cost::why_exact_unavailable(&scenario) {
         bail!(
-            "{}: {objection}: give a shorter --duration",
+            "{}: {why}: give a shorter --duration",
             args.scenario.scenario
         );
     }
-    let schemes = schemes(args, &scenario)?;
-    let time_steps = time_steps(args, &scenario)?;
+    let schemes = chosen_schemes(args, &scenario)?;
+    let time_steps = chosen_time_steps(args, &scenario)?;
     let (output, interruption) = progress::open(args.output.as_deref(), args.force)?;
-    let rows = table_of(&scenario, &schemes, &time_steps, interruption.meter());
-    let rows = rows.ok_or(Interrupted)?;
+    let rows =
+        table_of(&scenario, &schemes, &time_steps, interruption.meter()).ok_or(Interrupted)?;
     if let Some(output) = output {
         interruption.keep(output, &csv_of_comparison(&scenario, &rows)?)?;
     }
@@ -91,11 +91,16 @@ pub(super) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
 ///
 /// # Errors
 /// When one that is named cannot be true to it.
-fn schemes(args: &CompareArgs, scenario: &Scenario) -> anyhow::Result<Vec<&'static SchemeInfo>> {
+fn chosen_schemes(
+    args: &CompareArgs,
+    scenario: &Scenario,
+) -> anyhow::Result<Vec<&'static SchemeInfo>> {
     let friction = &scenario.friction;
-    let chosen = args.schemes.iter().chain(&args.scenario.changes.scheme);
     let mut seen = HashSet::new(); // one that is named twice is compared once
-    let chosen: Vec<_> = chosen
+    let chosen: Vec<_> = args
+        .schemes
+        .iter()
+        .chain(&args.scenario.changes.scheme)
         .filter(|name| seen.insert(name.as_str()))
         .filter_map(|name| SchemeInfo::find(name))
         .collect();
@@ -103,15 +108,15 @@ fn schemes(args: &CompareArgs, scenario: &Scenario) -> anyhow::Result<Vec<&'stat
     if chosen.is_empty() {
         return Ok(able.collect());
     }
-    let objection = |scheme: &SchemeInfo| Some((scheme.name, scheme.admits.objection(friction)?));
-    if let Some((name, why)) = chosen.iter().find_map(|scheme| objection(scheme)) {
-        let able = able
-            .map(|scheme| scheme.name)
-            .collect::<Vec<_>>()
-            .join(", ");
+    let unable = chosen
+        .iter()
+        .find_map(|scheme| Some((scheme.name, scheme.admits.why_not(friction)?)));
+    if let Some((name, why)) = unable {
+        let names: Vec<_> = able.map(|scheme| scheme.name).collect();
         bail!(
-            "{}: --schemes {name} cannot be true to this friction: it {why}; take of {able}",
-            args.scenario.scenario
+            "{}: --schemes {name} cannot be true to this friction: it {why}; take of {}",
+            args.scenario.scenario,
+            names.join(", ")
         );
     }
     Ok(chosen)
@@ -119,7 +124,7 @@ fn schemes(args: &CompareArgs, scenario: &Scenario) -> anyhow::Result<Vec<&'stat
 
 /// # Errors
 /// When a time step is so short that the run would have more steps than can be counted.
-fn time_steps(args: &CompareArgs, scenario: &Scenario) -> anyhow::Result<Vec<f64>> {
+fn chosen_time_steps(args: &CompareArgs, scenario: &Scenario) -> anyhow::Result<Vec<f64>> {
     let mut steps = args.time_steps.clone();
     if steps.is_empty() {
         steps = [1.0, 2.0, 4.0, 8.0]

@@ -109,11 +109,11 @@ fn script(shell: Shell) -> anyhow::Result<String> {
     }
     let name = shell.to_string();
     let shells = Shells::builtins();
-    let Some(shell) = shells.completer(&name) else {
+    let Some(completer) = shells.completer(&name) else {
         bail!("no completion for {name}");
     };
     let mut script = Vec::new();
-    shell.write_registration(VARIABLE, "gyrolab", "gyrolab", "gyrolab", &mut script)?;
+    completer.write_registration(VARIABLE, "gyrolab", "gyrolab", "gyrolab", &mut script)?;
     String::from_utf8(script).context("the completion script is not text")
 }
 
@@ -125,8 +125,9 @@ fn completed(
 ) -> Vec<CompletionCandidate> {
     let text = current.to_string_lossy();
     let (typed, begin) = text.split_at(text.rfind([',', '=']).map_or(0, |mark| mark + 1));
-    let fitting = names(typed, begin).into_iter();
-    let fitting = fitting.filter(|(name, _)| name.starts_with(begin));
+    let fitting = names(typed, begin)
+        .into_iter()
+        .filter(|(name, _)| name.starts_with(begin));
     let mut candidates: Vec<_> = fitting
         .map(|(name, about)| {
             let about = (!about.is_empty()).then(|| about.into());
@@ -161,8 +162,7 @@ fn shipped(list: &'static [Shipped]) -> Vec<(String, String)> {
 }
 
 fn columns() -> Vec<(String, String)> {
-    let of_points = named(POINT_COLUMNS, |column| (column.name, column.about));
-    let of_points = of_points.into_iter();
+    let of_points = named(POINT_COLUMNS, |column| (column.name, column.about)).into_iter();
     let mut columns = named(COLUMNS, |column| (column.name, column.about));
     columns.extend(named(OPTIONAL_COLUMNS, |column| {
         (column.name, column.about)
@@ -209,9 +209,11 @@ fn is_free(key: &SchemaRow) -> bool {
 
 /// The key `path` with a number for each `*`: the one that stands there in `typed`, or else 0.
 fn instance(path: &str, typed: &str) -> String {
-    let mut typed = typed.split('.');
+    let mut typed_parts = typed.split('.');
     let part = |part| {
-        let number = typed.next().filter(|typed| typed.parse::<usize>().is_ok());
+        let number = typed_parts
+            .next()
+            .filter(|typed| typed.parse::<usize>().is_ok());
         if part == "*" {
             number.unwrap_or("0")
         } else {

@@ -131,11 +131,13 @@ impl LabelArgs {
 
 /// Two numbers, the lower one first: 0..1.
 fn range(text: &str) -> Result<(f64, f64), String> {
-    let ends = text.split_once("..").and_then(|(low, high)| {
-        let end = |text: &str| text.trim().parse().ok().filter(|end: &f64| end.is_finite());
-        Some((end(low)?, end(high)?))
-    });
-    let ends = ends.filter(|(low, high)| low < high && (high - low).is_finite());
+    let ends = text
+        .split_once("..")
+        .and_then(|(low, high)| {
+            let end = |part: &str| part.trim().parse().ok().filter(|end: &f64| end.is_finite());
+            Some((end(low)?, end(high)?))
+        })
+        .filter(|(low, high)| low < high && (high - low).is_finite());
     ends.ok_or_else(|| "must be two numbers, the lower one first, such as 0..1".to_owned())
 }
 
@@ -159,7 +161,7 @@ fn width(text: &str) -> Result<f64, String> {
 
 pub(super) fn figure(args: &FigureArgs) -> anyhow::Result<ExitCode> {
     let mut format = args.labels.format(&args.output)?;
-    let source = source(args)?;
+    let source = read_source(args)?;
     if format == PageFormat::Svg && source.asked.text {
         format = PageFormat::SvgText;
     }
@@ -167,8 +169,10 @@ pub(super) fn figure(args: &FigureArgs) -> anyhow::Result<ExitCode> {
     for line in said(&source) {
         tell(format_args!("gyrolab: {line}"));
     }
-    let figure = source.draw(interruption.meter());
-    let figure = figure.map_err(anyhow::Error::msg)?.ok_or(Interrupted)?;
+    let figure = source
+        .draw(interruption.meter())
+        .map_err(anyhow::Error::msg)?
+        .ok_or(Interrupted)?;
     let bytes = progress::with_clock("writing the figure", || source.write(&figure.scene, format))?;
     interruption.keep(output, &bytes)?;
     for warning in figure.told() {
@@ -200,7 +204,7 @@ fn said(source: &FigureSource) -> Vec<String> {
 }
 
 /// What the RUNs name, with what the command line changes.
-fn source(args: &FigureArgs) -> anyhow::Result<FigureSource> {
+fn read_source(args: &FigureArgs) -> anyhow::Result<FigureSource> {
     let mut source = FigureSource::default();
     for name in &args.runs {
         add(&mut source, name, args)?;
@@ -211,11 +215,11 @@ fn source(args: &FigureArgs) -> anyhow::Result<FigureSource> {
         FigureKind::named(kind).unwrap_or_else(|refusal| no_kind(args, &refusal));
     }
     if let Some(name) = &args.measured {
-        let measured = measured(name, &args.columns)?;
+        let data = measured(name, &args.columns)?;
         if let Some(run) = source.runs.first() {
-            tell_notes(&doubts(&measured, &run.scenario));
+            tell_notes(&doubts(&data, &run.scenario));
         }
-        source.measured = Some(Arc::new(measured));
+        source.measured = Some(Arc::new(data));
         (source.asked.measured_until_s, source.asked.kind) = (None, None);
     }
     let asked = &mut source.asked;
@@ -224,9 +228,9 @@ fn source(args: &FigureArgs) -> anyhow::Result<FigureSource> {
     }
     ask(args, asked);
     for run in source.runs.iter().filter(|_| asked.exact) {
-        if let Some(objection) = cost::objection(&run.scenario) {
+        if let Some(why) = cost::why_exact_unavailable(&run.scenario) {
             bail!(
-                "{}: {objection}: leave --exact out, or give a shorter --duration",
+                "{}: {why}: leave --exact out, or give a shorter --duration",
                 run.named
             );
         }
@@ -242,13 +246,13 @@ fn add(source: &mut FigureSource, name: &str, args: &FigureArgs) -> anyhow::Resu
         source.table = Some(table);
         return Ok(());
     }
-    let figure = if is_file(name) {
+    let figure_file = if is_file(name) {
         provenance::FigureFile::open(path)
+            .map_err(|rule| Problems::one(name, Problem::at("", rule)))?
     } else {
-        Ok(None)
+        None
     };
-    let figure = figure.map_err(|rule| Problems::one(name, Problem::at("", rule)))?;
-    let Some(figure) = figure else {
+    let Some(figure) = figure_file else {
         return add_runs(
             source,
             &provenance::name_of(name),
@@ -300,12 +304,12 @@ fn ask(args: &FigureArgs, asked: &mut FigureOptions) {
     let (given, labels) = (&args.labels, &mut asked.labels);
     labels.title = given.title.clone().or(labels.title.take());
     labels.x = given.x_label.clone().or(labels.x.take());
-    for (given, list) in [
+    for (texts, list) in [
         (&given.label, &mut labels.names),
         (&given.y_label, &mut labels.y),
     ] {
-        if !given.is_empty() {
-            list.clone_from(given);
+        if !texts.is_empty() {
+            list.clone_from(texts);
         }
     }
     if let Some(log) = &given.log {

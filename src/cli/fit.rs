@@ -88,7 +88,7 @@ impl std::str::FromStr for RowRange {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let number = |text: &str| text.trim().parse().ok().filter(|&row: &usize| row > 0);
+        let number = |part: &str| part.trim().parse().ok().filter(|&row: &usize| row > 0);
         let ranges: Option<Vec<_>> = text
             .split(',')
             .map(|part| {
@@ -141,8 +141,7 @@ pub(super) fn fit(args: &FitArgs) -> anyhow::Result<ExitCode> {
 fn fit_each(args: &FitArgs, task: &Task, throws: &[Throw]) -> anyhow::Result<ExitCode> {
     let (_, interruption) = progress::open(None, false)?;
     if !args.json {
-        let list = throws.iter().map(|throw| format!("  {throw}\n"));
-        let list: String = list.collect();
+        let list: String = throws.iter().map(|throw| format!("  {throw}\n")).collect();
         let count = throws.len();
         print(&format!(
             "{count} free flights in {}:\n{list}",
@@ -273,8 +272,11 @@ impl Task {
             return Err(refused("has no free flight: nowhere do the rates stay above 2 rad/s for 0.2 s and change as those of a free body do. Name the time of one by --from and --to; --from 0 alone fits all of the recording".to_owned()));
         }
         let of = flights.len();
-        let throws = flights.into_iter().zip(1..);
-        let throws = throws.map(|(flight, number)| Throw { number, of, flight });
+        let throws =
+            flights
+                .into_iter()
+                .zip(1..)
+                .map(|(flight, number)| Throw { number, of, flight });
         let (chosen, others): (Vec<Throw>, Vec<Throw>) =
             throws.partition(|throw| args.flight.is_none_or(|it| it == throw.number as u64));
         if chosen.is_empty() {
@@ -294,8 +296,10 @@ impl Task {
         if let Some(Throw { flight, .. }) = throw {
             measured.keep_between(flight.from_s, flight.to_s);
         }
-        let keys = args.free.iter();
-        let keys = keys.map(|argument| Free::parse(argument, &self.document));
+        let keys = args
+            .free
+            .iter()
+            .map(|argument| Free::parse(argument, &self.document));
         Model::new(
             &self.document,
             keys.collect::<Result<Vec<_>, _>>()?,
@@ -400,13 +404,14 @@ impl Serialize for Thrown<'_> {
 pub(super) fn again(command: &str, interruption: &Interruption) -> Result<Vec<u8>, Unverified> {
     let cannot = |why: String| Unverified::from(format!("cannot be recomputed: {why}"));
     let words = shlex::split(command).unwrap_or_default();
-    let words = words
+    let words_of_fit = words
         .get(1..)
         .filter(|words| words.first().is_some_and(|word| word == "fit"));
     let line = FitArgs::augment_args(clap::Command::new("fit"));
-    let matches = line.try_get_matches_from(words.unwrap_or_default());
-    let args = matches.and_then(|matches| FitArgs::from_arg_matches(&matches));
-    let Ok(args) = args else {
+    let parsed = line
+        .try_get_matches_from(words_of_fit.unwrap_or_default())
+        .and_then(|matches| FitArgs::from_arg_matches(&matches));
+    let Ok(args) = parsed else {
         let why = "the line command at its top is no command line of a fit";
         return Err(cannot(why.to_owned()));
     };
@@ -415,8 +420,9 @@ pub(super) fn again(command: &str, interruption: &Interruption) -> Result<Vec<u8
             "it was fitted to what stood on standard input, which no file holds".to_owned(),
         ));
     }
-    let model = Task::read(&args).and_then(|task| task.model(&args, None));
-    let model = model.map_err(|problems| cannot(problems.to_string()))?;
+    let model = Task::read(&args)
+        .and_then(|task| task.model(&args, None))
+        .map_err(|problems| cannot(problems.to_string()))?;
     let found = match fitted(&model, &|| !interruption.has_come(), &|_, _| {}) {
         Ok(found) => found,
         Err(NoFit::Interrupted) => return Err(Unverified::Stopped),
@@ -437,8 +443,8 @@ fn measured(args: &FitArgs) -> Result<MeasuredData, Problems> {
     if args.measured != STDIN {
         return data::open_with(&args.measured, &options);
     }
-    let text = csv::text_from(io::stdin().lock());
-    let text = text.map_err(|problem| Problems::one(STDIN_WORDS, problem))?;
+    let text = csv::text_from(io::stdin().lock())
+        .map_err(|problem| Problems::one(STDIN_WORDS, problem))?;
     data::read_with(STDIN_WORDS, &text, &options)
 }
 
@@ -492,10 +498,16 @@ fn command(args: &FitArgs) -> String {
         .columns
         .map
         .iter()
-        .map(|(column, name)| format!("{column}={name}"));
-    let map = map.collect::<Vec<_>>().join(",");
-    let sigma = args.columns.sigma.iter().map(ToString::to_string);
-    let sigma = sigma.collect::<Vec<_>>().join(",");
+        .map(|(column, name)| format!("{column}={name}"))
+        .collect::<Vec<_>>()
+        .join(",");
+    let sigma = args
+        .columns
+        .sigma
+        .iter()
+        .map(ToString::to_string)
+        .collect::<Vec<_>>()
+        .join(",");
     let time_step = args.changes.time_step.map(shortest).unwrap_or_default();
     let [from, to] = [args.from, args.to].map(|it| it.map(shortest).unwrap_or_default());
     let rows = args.rows.as_ref().map_or("", |rows| &rows.text);
@@ -520,8 +532,10 @@ fn command(args: &FitArgs) -> String {
 fn write(output: impl Write, report: &FitReport<'_>, args: &FitArgs) -> anyhow::Result<()> {
     let Fit { keys, quality, .. } = report.fit;
     let values: Vec<f64> = keys.iter().map(|key| key.value).collect();
-    let scenario = report.model.as_long_as_measured(&values);
-    let scenario = scenario.map_err(|why| anyhow!(why))?;
+    let scenario = report
+        .model
+        .as_long_as_measured(&values)
+        .map_err(|why| anyhow!(why))?;
     let asked = FitCommand {
         command: command(args),
         measured: args.measured.clone(),

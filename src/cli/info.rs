@@ -26,15 +26,16 @@ pub(super) fn presets(name: Option<&str>) -> anyhow::Result<ExitCode> {
     let Some(name) = name else {
         return print(&preset_list()?);
     };
-    let preset = presets::find(name).map(|preset| preset.text);
-    let preset = preset.or_else(|| sweep::find(name).map(|sweep| sweep.text));
+    let preset = presets::find(name)
+        .map(|preset| preset.text)
+        .or_else(|| sweep::find(name).map(|sweep| sweep.text));
     match preset.or_else(|| data::find_shipped(name).map(|data| data.text)) {
         Some(text) => print(text),
         None => {
             let sweeps = SWEEPS.iter().map(|sweep| sweep.name);
-            let data = data::SHIPPED.iter().map(|data| data.name);
-            let names = PRESETS.iter().map(|preset| preset.name);
-            let near = nearest(name, names.chain(sweeps).chain(data));
+            let recordings = data::SHIPPED.iter().map(|data| data.name);
+            let names = PRESETS.iter().map(|shipped| shipped.name);
+            let near = nearest(name, names.chain(sweeps).chain(recordings));
             bail!("no preset named {}: {near}", printable(name))
         }
     }
@@ -53,9 +54,12 @@ fn preset_list() -> anyhow::Result<String> {
 
 /// The entry of a list: name and title, and what it is about.
 pub(super) fn listed(name: &str, title: &str, about: Option<&str>) -> String {
-    let about = about.unwrap_or_default().lines();
-    let about: String = about.map(|line| format!("    {line}\n")).collect();
-    format!("{name}: {title}\n{about}\n")
+    let lines: String = about
+        .unwrap_or_default()
+        .lines()
+        .map(|line| format!("    {line}\n"))
+        .collect();
+    format!("{name}: {title}\n{lines}\n")
 }
 
 pub(super) fn scheme_list() -> Result<String, std::fmt::Error> {
@@ -151,16 +155,20 @@ fn checked(document: &Document) -> Result<String, Problems> {
         return Sweep::open(document).map(|sweep| described_sweep(&sweep));
     }
     let scenario = Arc::new(document.scenario()?);
-    let words = Original::of("", &scenario).difference(&scenario);
-    let words = words.map(|difference| {
-        format!("\n  its look_at line, or its about, is of another motion: this one {difference}")
-    });
+    let words = Original::of("", &scenario)
+        .difference(&scenario)
+        .map(|difference| {
+            format!(
+                "\n  its look_at line, or its about, is of another motion: this one {difference}"
+            )
+        });
     Ok(described(&scenario) + &words.unwrap_or_default())
 }
 
 fn described_sweep(sweep: &Sweep) -> String {
-    let axes = sweep.axes.iter();
-    let axes: Vec<_> = axes
+    let axes: Vec<_> = sweep
+        .axes
+        .iter()
         .map(|axis| format!("{} ({})", axis.key, axis.values.len()))
         .collect();
     let (rows, measured) = (sweep.rows(), sweep.measure.len());
@@ -193,8 +201,7 @@ fn described(scenario: &Scenario) -> String {
 /// Which pushes of `scenario` never act, since they begin when its run is over.
 fn pushes_without_effect(scenario: &Scenario) -> String {
     let (steps, end_s) = (scenario.steps, Clock::end_s(scenario));
-    let idle = scenario.pushes.iter().enumerate();
-    let idle = idle.filter_map(|(index, push)| match push.window {
+    let idle = scenario.pushes.iter().enumerate().filter_map(|(index, push)| match push.window {
         Window::Steps { first, .. } if first > steps => Some(format!(
             "; push.{index} never acts: it begins at step {first}, and the run ends at step {steps}"
         )),

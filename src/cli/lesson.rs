@@ -115,8 +115,9 @@ fn list(folder: Option<&Confined>) -> anyhow::Result<String> {
 /// The page that is asked for; the first where none is.
 fn page_of<'a>(lesson: &'a Lesson, args: &LessonArgs) -> anyhow::Result<&'a LessonPage> {
     let number = args.page.map_or(1, std::num::NonZeroU64::get);
-    let page = usize::try_from(number).ok();
-    let page = page.and_then(|number| lesson.page(number));
+    let page = usize::try_from(number)
+        .ok()
+        .and_then(|place| lesson.page(place));
     let (name, last) = (&lesson.name, lesson.pages.len());
     page.with_context(|| format!("--page {number}: {name} has the pages 1 to {last}"))
 }

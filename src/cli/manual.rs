@@ -88,9 +88,10 @@ fn help(command: &Command) -> String {
 }
 
 fn in_plain(sections: &[ManualSection]) -> String {
-    let sections = sections.iter();
-    let sections = sections.map(|(title, text)| format!("\n{title}\n\n{}\n", text.trim_end()));
-    sections.collect()
+    sections
+        .iter()
+        .map(|(title, text)| format!("\n{title}\n\n{}\n", text.trim_end()))
+        .collect()
 }
 
 /// Writes the page of the program and that of each command into `folder`.
@@ -143,10 +144,9 @@ fn page(
         roff.control("in", []).control("fi", []);
         page.extend(roff.to_roff().into_bytes());
     }
-    let page = String::from_utf8(page).context("the manual is not text")?;
+    let text = String::from_utf8(page).context("the manual is not text")?;
     // clap_mangen's space above possible values is two line breaks with an empty line between them.
-    let page = page.replace(".br\n\n.br\n", ".sp\n");
-    Ok((format!("{name}.1"), page))
+    Ok((format!("{name}.1"), text.replace(".br\n\n.br\n", ".sp\n")))
 }
 
 /// Name, and text.
@@ -169,9 +169,10 @@ fn topic_names() -> impl Iterator<Item = &'static str> + Clone {
 
 /// The topics, and the commands of `gyrolab` that are none.
 pub(super) fn names_and_commands(gyrolab: &Command) -> Vec<String> {
-    let commands = commands(gyrolab).map(|command| command.get_name().to_owned());
-    let commands = commands.filter(|name| topic_names().all(|topic| topic != name));
-    topic_names().map(str::to_owned).chain(commands).collect()
+    let names = commands(gyrolab)
+        .map(|command| command.get_name().to_owned())
+        .filter(|name| topic_names().all(|topic| topic != name));
+    topic_names().map(str::to_owned).chain(names).collect()
 }
 
 /// The commands of `gyrolab` that have a page.
@@ -230,8 +231,9 @@ const TABLES: [ManualTable; 6] = [
 
 /// Two columns of text.
 fn two_columns<T>(rows: &[T], row: fn(&T) -> (&'static str, &'static str)) -> String {
-    let rows = rows.iter().map(row);
-    rows.map(|(name, about)| format!("  {name:<14} {about}\n"))
+    rows.iter()
+        .map(row)
+        .map(|(name, about)| format!("  {name:<14} {about}\n"))
         .collect()
 }
 
@@ -239,8 +241,8 @@ fn two_columns<T>(rows: &[T], row: fn(&T) -> (&'static str, &'static str)) -> St
 type ManualSection = (&'static str, String);
 
 fn of_program() -> Result<Vec<ManualSection>, fmt::Error> {
-    let topics: Vec<_> = topic_names().collect();
-    let topics = paragraph(&format!("gyrolab man TOPIC, of {}.", topics.join(", ")));
+    let names: Vec<_> = topic_names().collect();
+    let topics = paragraph(&format!("gyrolab man TOPIC, of {}.", names.join(", ")));
     Ok(vec![
         ("KEYS IN THE LAB", keys()),
         ("FILES OF COMMANDS", files_of_commands()),
@@ -253,8 +255,7 @@ fn of_program() -> Result<Vec<ManualSection>, fmt::Error> {
 }
 
 fn of_command(command: &Command) -> Result<Vec<ManualSection>, fmt::Error> {
-    let notes = topic(command.get_name())?;
-    let notes = notes.map(|text| ("NOTES", text));
+    let notes = topic(command.get_name())?.map(|text| ("NOTES", text));
     Ok(notes.into_iter().chain([fixed("EXIT STATUS")]).collect())
 }
 
@@ -268,8 +269,8 @@ fn fixed(title: &'static str) -> ManualSection {
 fn terms(rows: &[(String, &str)]) -> String {
     const MANUAL_INDENT: usize = 16;
     let row = |(term, meaning): &(String, &str)| {
-        let meaning = wrapped(meaning, MANUAL_WIDTH - MANUAL_INDENT);
-        let meaning = meaning.join(&format!("\n{:MANUAL_INDENT$}", ""));
+        let meaning = wrapped(meaning, MANUAL_WIDTH - MANUAL_INDENT)
+            .join(&format!("\n{:MANUAL_INDENT$}", ""));
         let begin = match wrapped(term, MANUAL_WIDTH - 4).join("\n    ") {
             short if columns(&short) + 4 <= MANUAL_INDENT => format!("  {short:<14}"),
             long => format!("  {long}\n{:MANUAL_INDENT$}", ""),
@@ -286,15 +287,19 @@ fn paragraph(text: &str) -> String {
 /// The keys of each purpose, pane and place under its name.
 fn keys() -> String {
     let entries = keys_of_lab::entries();
-    let keys = entries.iter().filter(|entry| entry.binding.is_some());
-    let keys: Vec<_> = keys.collect();
+    let keys: Vec<_> = entries
+        .iter()
+        .filter(|entry| entry.binding.is_some())
+        .collect();
     let mut text =
         paragraph("The same list is shown by ? in the lab, with the words on its screen.");
     for group in keys.chunk_by(|one, next| one.group == next.group) {
         let focus = group[0].pane.map(|_| ", while this pane has the focus");
         text += &format!("{}{}\n", group[0].group, focus.unwrap_or_default());
-        let rows = group.iter().map(|entry| (entry.name(), entry.text));
-        let rows: Vec<_> = rows.collect();
+        let rows: Vec<_> = group
+            .iter()
+            .map(|entry| (entry.name(), entry.text))
+            .collect();
         text += &terms(&rows);
     }
     text
@@ -337,8 +342,10 @@ const EXAMPLES: &str = include_str!("examples.txt");
 
 /// The part of `text` below the line `== name`.
 fn part(text: &'static str, name: &str) -> Option<&'static str> {
-    let text = text.strip_prefix("== ")?;
-    let mut parts = text.split("\n== ").filter_map(|part| part.split_once('\n'));
+    let mut parts = text
+        .strip_prefix("== ")?
+        .split("\n== ")
+        .filter_map(|part| part.split_once('\n'));
     parts.find_map(|(of, part)| (of == name).then(|| part.trim_end()))
 }
 

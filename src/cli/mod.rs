@@ -123,8 +123,9 @@ pub fn main() -> ExitCode {
         Ok(true) => return ExitCode::SUCCESS,
         Err(error) => return misused(&error),
     }
-    let parsed = command().try_get_matches();
-    let parsed = parsed.and_then(|matches| Cli::from_arg_matches(&matches));
+    let parsed = command()
+        .try_get_matches()
+        .and_then(|matches| Cli::from_arg_matches(&matches));
     match parsed.map_err(explained) {
         Ok(cli) => ended(execute(cli)),
         Err(Ok(error)) => misused(&error),
@@ -213,8 +214,9 @@ fn explained(mut error: clap::Error) -> Result<clap::Error, String> {
 
 /// The refusal of options of the lab before a command, which clap then takes for a scenario.
 fn command_behind_options() -> Option<String> {
-    let typed = std::env::args_os().skip(1);
-    let mut typed = typed.map_while(|word| word.into_string().ok());
+    let mut typed = std::env::args_os()
+        .skip(1)
+        .map_while(|word| word.into_string().ok());
     let first = typed.next().filter(|first| first.starts_with('-'))?;
     let command = Cli::command();
     let name = typed.find(|word| command.find_subcommand(word).is_some())?;
@@ -269,7 +271,7 @@ fn misused(error: &clap::Error) -> ExitCode {
         (true, false) => io::stdout().write_all(plain.as_bytes()),
     };
     match printed.context(NO_STDOUT) {
-        Err(error) if is_help && !is_closed_pipe(&error) => ended_by(Some(error)),
+        Err(failure) if is_help && !is_closed_pipe(&failure) => ended_by(Some(failure)),
         _ => ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2)),
     }
 }
@@ -360,7 +362,7 @@ fn is_closed_pipe(error: &anyhow::Error) -> bool {
     error
         .chain()
         .filter_map(|cause| match cause.downcast_ref() {
-            Some(DestinationError::Refused { error, .. }) => Some(error),
+            Some(DestinationError::Refused { error: source, .. }) => Some(source),
             _ => cause.downcast_ref::<io::Error>(),
         })
         .any(|cause| cause.kind() == io::ErrorKind::BrokenPipe)

@@ -22,7 +22,7 @@ use std::sync::Arc;
 pub(super) const DEFAULT: &str = "method-2";
 
 /// A lab with what `name` names, changed.
-pub(super) fn lab(
+pub(super) fn open_lab(
     name: &str,
     changes: &SetArgs,
     markers: Option<Marker>,
@@ -49,11 +49,11 @@ pub(super) fn variable(name: &str) -> Option<String> {
 }
 
 /// The colours that `look` asks for, or that suit the terminal.
-pub(super) fn theme(look: DisplayArgs) -> Theme {
-    let theme = theme::theme(look.color.unwrap_or_default(), variable);
+pub(super) fn theme_for(look: DisplayArgs) -> Theme {
+    let suited = theme::theme(look.color.unwrap_or_default(), variable);
     Theme {
-        background: look.background.unwrap_or(theme.background),
-        ..theme
+        background: look.background.unwrap_or(suited.background),
+        ..suited
     }
 }
 
@@ -64,8 +64,8 @@ pub(super) fn marker(markers: Option<Marker>) -> Marker {
 
 /// A lab with what `name` names, as the command line wants it.
 pub(super) fn of_workbench(args: &WorkbenchArgs, name: &str) -> anyhow::Result<Lab> {
-    let theme = theme(args.look);
-    let mut lab = lab(name, &args.changes, args.look.markers, theme, !args.paused)?;
+    let (markers, theme) = (args.look.markers, theme_for(args.look));
+    let mut lab = open_lab(name, &args.changes, markers, theme, !args.paused)?;
     if let Some(step) = args.at {
         // No signal is caught yet: one that ends the process here has nothing to put right.
         lab.begin_at(step, |_, _| ControlFlow::Continue(()))
@@ -80,7 +80,7 @@ pub(super) fn new_lab(look: DisplayArgs) -> anyhow::Result<Lab> {
         colour: false,
         background: Background::Dark,
     };
-    lab(DEFAULT, &SetArgs::default(), look.markers, plain, false)
+    open_lab(DEFAULT, &SetArgs::default(), look.markers, plain, false)
 }
 
 pub(super) fn refused(lesson: &Lesson, problem: Problem) -> anyhow::Error {

@@ -17,7 +17,7 @@ use crate::lessons::predictions::LessonProgress;
 use crate::lessons::{Lesson, handout, reading};
 use anyhow::{bail, ensure};
 use std::io::{self, IsTerminal, Stdout, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 use std::thread;
 use std::time::{Duration, SystemTime};
@@ -56,7 +56,7 @@ pub(super) fn answers(
 /// Prints the teacher's notes of the page that is open in the lab of the session called `name`, or of the newest session
 /// with an open lesson if that is empty, and goes on with the next page until Ctrl-C.
 pub(super) fn notes(name: &str) -> anyhow::Result<ExitCode> {
-    let folder = folder()?;
+    let folder = sessions::folder_of(None).map_err(anyhow::Error::msg)?;
     let interruption = progress::interruption()?;
     let Some(found) = find(&folder, name)? else {
         ensure!(
@@ -69,22 +69,19 @@ pub(super) fn notes(name: &str) -> anyhow::Result<ExitCode> {
         )
     };
     let line = live_line();
-    let followed = follow(&folder, &found, line.as_ref(), &interruption);
+    let followed = watch_session(&folder, &found, line.as_ref(), &interruption);
     drop(line);
     followed?;
     bail!(Interrupted)
-}
-
-fn folder() -> anyhow::Result<PathBuf> {
-    sessions::folder_of(None).map_err(anyhow::Error::msg)
 }
 
 /// The name of the session that is meant: of those with an open lesson, the one in use that was written last.
 fn find(folder: &Path, name: &str) -> anyhow::Result<Option<String>> {
     let is_meant =
         |session: &ListedSession| session.name == name || name.is_empty() && session.is_in_use;
-    let open = session::list(folder)?.into_iter();
-    let open = open.filter(|session| is_meant(session) && open_in(session).is_some());
+    let open = session::list(folder)?
+        .into_iter()
+        .filter(|session| is_meant(session) && open_in(session).is_some());
     let newest = open.max_by_key(|session| session.written);
     Ok(newest.map(|session| session.name))
 }
@@ -109,7 +106,7 @@ fn live_line() -> Option<LiveLine<Stdout>> {
 }
 
 /// Prints the notes of each page as it is opened, until a signal comes.
-fn follow(
+fn watch_session(
     folder: &Path,
     name: &str,
     line: Option<&LiveLine<Stdout>>,
@@ -118,12 +115,14 @@ fn follow(
     let mut seen = None;
     let mut open: Option<(Lesson, LessonProgress)> = None;
     while !interruption.has_come() {
-        let session = session::look_at(folder, name);
-        let saved = session.as_ref().map(|session| session.written);
+        let found = session::look_at(folder, name);
+        let saved = found.as_ref().map(|session| session.written);
         if saved != seen {
             seen = saved;
-            let now = session.as_ref().and_then(open_in);
-            let now = now.and_then(|(name, place)| Some((reading::open(&name).ok()?, place)));
+            let now = found
+                .as_ref()
+                .and_then(open_in)
+                .and_then(|(lesson, place)| Some((reading::open(&lesson).ok()?, place)));
             let page = |open: &(Lesson, LessonProgress)| (open.0.name.clone(), open.1.page);
             if let Some((lesson, place)) = &now
                 && now.as_ref().map(page) != open.as_ref().map(page)
@@ -133,7 +132,7 @@ fn follow(
             open = now;
         }
         let text = match &open {
-            Some(_) if !session.is_some_and(|session| session.is_in_use) => {
+            Some(_) if !found.is_some_and(|session| session.is_in_use) => {
                 "the lab was left; Ctrl-C ends this".to_owned()
             }
             Some((lesson, place)) => times(lesson, place),
@@ -148,11 +147,14 @@ fn follow(
 }
 
 /// Prints `text` above the live line, in lines that end between words.
-fn tell(line: Option<&LiveLine<Stdout>>, text: &str) -> io::Result<()> {
-    let lines = text.lines().flat_map(|line| wrapped(line, NOTES_WIDTH));
-    let text = lines.collect::<Vec<_>>().join("\n");
-    let text = printable_lines(&text);
-    if let Some(line) = line {
+fn tell(live: Option<&LiveLine<Stdout>>, text: &str) -> io::Result<()> {
+    let lines: Vec<String> = text
+        .lines()
+        .flat_map(|line| wrapped(line, NOTES_WIDTH))
+        .collect();
+    let words = lines.join("\n");
+    let text = printable_lines(&words);
+    if let Some(line) = live {
         line.print_above(&text);
         return Ok(());
     }

@@ -134,8 +134,8 @@ pub(super) fn open_for(path: &Path, replace: bool) -> anyhow::Result<(Destinatio
         let output = Destination::open(path, replace)?;
         return Ok((output, interruption()?));
     }
-    let interruption = interruption()?;
-    Ok((Destination::open(path, replace)?, interruption))
+    let from_now = interruption()?;
+    Ok((Destination::open(path, replace)?, from_now))
 }
 
 /// Has signals raise the flag, on a thread of its own. Where the system gives no thread, a signal ends the process at once.
@@ -162,9 +162,11 @@ pub(super) fn interruption() -> io::Result<Interruption> {
 /// in the process's status; elsewhere, where nothing says, a hang-up is left to the system.
 fn hangup_is_ignored() -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
-    let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
-    mask.is_none_or(|mask| mask & (1 << (SIGHUP - 1)) != 0)
+    status
+        .lines()
+        .find_map(|line| line.strip_prefix("SigIgn:"))
+        .and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok())
+        .is_none_or(|mask| mask & (1 << (SIGHUP - 1)) != 0)
 }
 
 /// After this time a command says how far it is.
@@ -201,8 +203,7 @@ where
         let mut written = self.written.lock().unwrap_or_else(PoisonError::into_inner);
         if written.is_none_or(|at| at.elapsed() >= PROGRESS_INTERVAL) {
             *written = Some(Instant::now());
-            let text: String = text.chars().take(PROGRESS_WIDTH).collect();
-            self.write(&text);
+            self.write(&text.chars().take(PROGRESS_WIDTH).collect::<String>());
         }
     }
 
@@ -301,12 +302,8 @@ impl Meter {
     }
 
     fn count(&self, step: u64, steps: u64) -> String {
-        let pace = pace(
-            self.of,
-            step,
-            steps.saturating_sub(step),
-            self.begin.elapsed(),
-        );
+        let left = steps.saturating_sub(step);
+        let pace = rate_and_rest(self.of, step, left, self.begin.elapsed());
         let (of, step, steps) = (self.of, HumanCount(step), HumanCount(steps));
         format!("{of} {step} of {steps}{pace}")
     }
@@ -315,7 +312,7 @@ impl Meter {
 /// `, 12/s, 40s left` behind the count of `of`: the rate of all that is `done`, and all the time that it took, since a
 /// rate of the last moments would be wrong at first. Nothing before something is done; seconds for each where they are
 /// more than one.
-fn pace(of: &str, done: u64, left: u64, elapsed: Duration) -> String {
+fn rate_and_rest(of: &str, done: u64, left: u64, elapsed: Duration) -> String {
     /// The longest time left that is shown, s: ten years.
     const MOST_S: f64 = 3e8;
     if done == 0 {
@@ -348,7 +345,7 @@ mod tests {
 
     #[test]
     fn a_rate_is_told_once_there_is_one_and_never_as_0() {
-        let told = |done, left, s| pace("row", done, left, Duration::from_secs_f64(s));
+        let told = |done, left, s| rate_and_rest("row", done, left, Duration::from_secs_f64(s));
         assert_eq!(told(0, 1000, 1.1), "");
         assert_eq!(told(1000, 9000, 0.5), ", 2,000/s, 5s left");
         assert_eq!(told(5, 5, 2.0), ", 2.5/s, 2s left");

@@ -63,22 +63,23 @@ pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
         .map(|destination| CsvWriter::with_layout(destination, &scenario, layout))
         .transpose()
         .with_context(|| cannot_write(output_path))?;
-    let played = played(&scenario, csv, |_| {}, &interruption);
-    let mut played = played.with_context(|| cannot_write(output_path))?;
+    let mut played =
+        played(&scenario, csv, |_| {}, &interruption).with_context(|| cannot_write(output_path))?;
     if played.ended == Ended::Stopped {
         bail!(Interrupted);
     }
     if played.rows == Some(0) && played.ended == Ended::Done {
         bail!("no row lies between --from and --to: they are closer than the rows");
     }
-    if let Some(output) = played.output.take() {
+    if let Some(rows) = played.output.take() {
         interruption.may_keep()?;
-        output.keep()?;
+        rows.keep()?;
     }
     interruption.may_act_at_once()?;
     let readouts = progress::with_clock(CHECKING, || played.readouts());
-    let summary = RunSummary::new(readouts, played.wall).with_time_steps_of(&scenario);
-    let summary = summary.in_full(args.all);
+    let summary = RunSummary::new(readouts, played.wall)
+        .with_time_steps_of(&scenario)
+        .in_full(args.all);
     print_result(&summary, args.output.as_deref(), args.json)?;
     if let Some(rows) = played.rows.filter(|_| !to_stdout) {
         tell_of_rows(rows, output_path);
@@ -140,7 +141,7 @@ pub(super) fn played<W: Write>(
     also(simulation.now());
     // Each step is followed at once; the exact motion is computed after the block, outside the time of stepping.
     let each = |step: &Step| {
-        monitor.borrow_mut().follow_ahead(step);
+        monitor.borrow_mut().record_ahead(step);
         also(step);
     };
     let meter = interruption.meter();

@@ -2,7 +2,7 @@
 //! and what is said of it on the shell's screen.
 
 use super::args::{DisplayArgs, WorkbenchArgs};
-use super::new_lab::{DEFAULT, marker, of_workbench, theme};
+use super::new_lab::{DEFAULT, marker, of_workbench, theme_for};
 use super::{print, tell};
 use crate::engine::text::printable::{PrintablePath, printable};
 use crate::lab::storage::confined::Confined;
@@ -22,14 +22,14 @@ const SESSION_SAVE_LIMIT: Duration = Duration::from_secs(3);
 
 pub(super) fn list(folder: Option<&Path>) -> anyhow::Result<ExitCode> {
     let confined = folder
-        .map(|folder| Confined::within(folder).with_context(|| named(folder)))
+        .map(|path| Confined::within(path).with_context(|| named(path)))
         .transpose()?;
-    let folder = folder_of(confined.as_ref()).map_err(anyhow::Error::msg)?;
-    let sessions = session::list(&folder)?;
+    let sessions_folder = folder_of(confined.as_ref()).map_err(anyhow::Error::msg)?;
+    let sessions = session::list(&sessions_folder)?;
     if sessions.is_empty() {
         tell(format_args!(
             "gyrolab: there are no sessions in {}",
-            PrintablePath(&folder)
+            PrintablePath(&sessions_folder)
         ));
         return Ok(ExitCode::SUCCESS);
     }
@@ -104,11 +104,11 @@ pub(super) fn tell_of_session(
 ) -> anyhow::Result<()> {
     let name = session.as_ref().map_or("", Session::name).to_owned();
     let closed = session.map(|session| session.close(SESSION_SAVE_LIMIT));
-    let (kept, trouble) = match closed {
+    let (kept, why) = match closed {
         Ok(closed) => (closed.kept, closed.trouble),
         Err(trouble) => (None, Some(trouble)),
     };
-    let trouble = trouble.as_deref().map(printable);
+    let trouble = why.as_deref().map(printable);
     let Some(summary) = kept.and_then(|content| SessionSummary::read(&content).ok()) else {
         tell(format_args!(
             "gyrolab: there is no session to come back to: {}",
@@ -121,13 +121,13 @@ pub(super) fn tell_of_session(
             "gyrolab: what was done last is lost: {trouble}"
         ));
     }
-    let folder = folder.map_or(String::new(), |folder| {
+    let option = folder.map_or(String::new(), |folder| {
         format!(" --folder {}", PrintablePath(folder))
     });
     let SessionSummary { title, step, .. } = summary;
     writeln!(
         io::stdout(),
-        "gyrolab{folder} --resume comes back to step {step} of {} (session {name})",
+        "gyrolab{option} --resume comes back to step {step} of {} (session {name})",
         printable(&title)
     )?;
     Ok(())
@@ -143,7 +143,7 @@ fn resumed(
     confined: Option<&Confined>,
 ) -> Result<(Lab, Table), String> {
     let lab = Lab::resumed(content, confined, |scenario| {
-        View::new(scenario, marker(look.markers), theme(look))
+        View::new(scenario, marker(look.markers), theme_for(look))
     })
     .map_err(|error| error.to_string())?;
     Ok((lab, lessons_in(content)))
@@ -156,9 +156,9 @@ pub(super) fn come_back_to(
     confined: Option<&Confined>,
     folder: Result<PathBuf, String>,
 ) -> anyhow::Result<SessionLab> {
-    let folder = folder.map_err(anyhow::Error::msg)?;
+    let sessions_folder = folder.map_err(anyhow::Error::msg)?;
     let name_shown = printable(name);
-    let found = session::resume(&folder, Some(name), |content| {
+    let found = session::resume(&sessions_folder, Some(name), |content| {
         resumed(content, args.look, confined)
     })
     .with_context(|| format!("--resume {name_shown} (gyrolab sessions lists what there is)"))?;

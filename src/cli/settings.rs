@@ -34,17 +34,18 @@ impl Chosen {
         let mut settings = shown_here(self.remembered.settings.clone());
         settings.extend(self.config.settings.clone());
         let value = |key: &str| settings.get(key);
-        let mut args = args.clone();
-        args.fps = args
-            .fps
-            .or_else(|| u32::try_from(value("fps")?.as_integer()?).ok());
-        args.look = DisplayArgs {
-            color: args.look.color.or_else(|| option(value("colour"))),
-            background: args.look.background.or_else(|| option(value("background"))),
-            markers: args.look.markers.or_else(|| option(value("marker"))),
-            no_mouse: args.look.no_mouse || value("mouse") == Some(&Value::Boolean(false)),
-        };
-        args
+        WorkbenchArgs {
+            fps: args
+                .fps
+                .or_else(|| u32::try_from(value("fps")?.as_integer()?).ok()),
+            look: DisplayArgs {
+                color: args.look.color.or_else(|| option(value("colour"))),
+                background: args.look.background.or_else(|| option(value("background"))),
+                markers: args.look.markers.or_else(|| option(value("marker"))),
+                no_mouse: args.look.no_mouse || value("mouse") == Some(&Value::Boolean(false)),
+            },
+            ..args.clone()
+        }
     }
 
     /// Says in `lab` what is wrong with the files, and of the user's also on the shell's screen, which shows all of it

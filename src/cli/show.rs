@@ -94,7 +94,7 @@ pub(super) fn print_picture(
         background: args.background.unwrap_or(Background::Dark),
     };
     let usual = args.svg.then_some(Marker::Braille); // whatever the terminal is
-    let mut lab = new_lab::lab(name, &args.changes, args.markers.or(usual), theme, false)?;
+    let mut lab = new_lab::open_lab(name, &args.changes, args.markers.or(usual), theme, false)?;
     if let Some(folder) = confined {
         lab.files_mut().confine(folder);
     }

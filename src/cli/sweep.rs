@@ -77,7 +77,7 @@ pub(super) fn sweep(args: &SweepArgs) -> anyhow::Result<ExitCode> {
 fn list() -> anyhow::Result<String> {
     let mut text = String::new();
     for shipped in SWEEPS {
-        let sweep = Sweep::open(&document(shipped.name)?)?;
+        let sweep = Sweep::open(&open_document(shipped.name)?)?;
         text += &listed(shipped.name, sweep.title(), sweep.about());
     }
     text.push_str(
@@ -87,7 +87,7 @@ fn list() -> anyhow::Result<String> {
 }
 
 /// What `name` names: a shipped sweep, or what a run may be made of.
-fn document(name: &str) -> Result<Document, Problems> {
+fn open_document(name: &str) -> Result<Document, Problems> {
     match sweep::find(name) {
         Some(found) => Document::parse(&format!("presets/sweeps/{name}.toml"), found.text),
         None if !name.contains(['/', '.']) && presets::find(name).is_none() => {
@@ -103,7 +103,7 @@ fn document(name: &str) -> Result<Document, Problems> {
 }
 
 fn sweep_of(name: &str, args: &SweepArgs) -> Result<Sweep, Problems> {
-    let mut document = document(name)?;
+    let mut document = open_document(name)?;
     let (mut file, base) = if document.is_sweep() {
         let file = SweepFile::read(&document)?;
         let base = Sweep::base(&file, &document, |base| change(base, &args.changes))?;
@@ -142,8 +142,9 @@ fn sweep_of(name: &str, args: &SweepArgs) -> Result<Sweep, Problems> {
 fn place(problem: &mut Problem, keys: &[String], args: &SweepArgs) {
     let place = problem.key.strip_prefix("vary.");
     let number = place.and_then(|place| place.split('.').next()?.parse::<usize>().ok());
-    let key = number.and_then(|number| keys.get(number));
-    let key = key.unwrap_or(&problem.key);
+    let key = number
+        .and_then(|number| keys.get(number))
+        .unwrap_or(&problem.key);
     let is_of_key = |argument: &&String| argument.split('=').next().map(str::trim) == Some(key);
     if let Some(argument) = args.vary.iter().rev().find(is_of_key) {
         return axis::place(problem, argument);

@@ -64,8 +64,11 @@ const OWN_CODE: &str = "Your own code";
 
 pub(super) fn verify(args: &VerifyArgs) -> anyhow::Result<ExitCode> {
     let interruption = progress::interruption()?;
-    let scenario = args.against.as_ref().map(|name| scenario(name, &args.set));
-    let scenario = scenario.transpose()?;
+    let scenario = args
+        .against
+        .as_ref()
+        .map(|name| scenario(name, &args.set))
+        .transpose()?;
     let mut is_good = true;
     for file in &args.files {
         let result = match &scenario {
@@ -105,15 +108,23 @@ fn folder(folder: &Path, interruption: &Interruption) -> anyhow::Result<bool> {
     }
     let document = Document::read(&run_file).map_err(Unverified::from)?;
     let scenario = Arc::new(document.scenario().map_err(Unverified::from)?);
-    let version = document.table().get("gyrolab").and_then(Value::as_str);
-    let version = version.unwrap_or(OWN_VERSION);
+    let version = document
+        .table()
+        .get("gyrolab")
+        .and_then(Value::as_str)
+        .unwrap_or(OWN_VERSION);
     let data = measured_in(folder);
-    let against = csv.is_file().then(|| Against::open(&csv)).transpose();
-    let against = against.with_context(|| PrintablePath(&csv).to_string())?;
+    let against = csv
+        .is_file()
+        .then(|| Against::open(&csv))
+        .transpose()
+        .with_context(|| PrintablePath(&csv).to_string())?;
     let again = writeup::again(scenario, data.as_deref(), against, &csv, interruption);
     let (again, against) = again?;
-    let notes = other_version(version).into_iter();
-    let notes: Vec<_> = notes.chain([again.verdict()]).collect();
+    let notes: Vec<_> = other_version(version)
+        .into_iter()
+        .chain([again.verdict()])
+        .collect();
     let mut is_good = match against.map(Against::end).transpose()? {
         Some((rows, difference)) => say_of_rows(&csv, rows, difference.as_ref(), &notes)?,
         None => say(&csv, "", Some(&MISSING), &notes)?,
@@ -135,8 +146,8 @@ fn folder(folder: &Path, interruption: &Interruption) -> anyhow::Result<bool> {
 
 /// Names the files in `folder` that are none of the write-up's `own`.
 fn say_of_others(folder: &Path, own: impl Iterator<Item = OsString>) -> anyhow::Result<()> {
-    let own: Vec<_> = own.chain([CSV.into()]).collect();
-    let others = OutputFolder::others(folder, &own)?;
+    let of_writeup: Vec<_> = own.chain([CSV.into()]).collect();
+    let others = OutputFolder::others(folder, &of_writeup)?;
     if !others.is_empty() {
         let count = counted(others.len() as u64, "file");
         let (folder, others) = (PrintablePath(folder), brief(&others.join(", "), 200));
@@ -188,9 +199,9 @@ fn differs(
 
 /// The measured data in the folder of a write-up.
 fn measured_in(folder: &Path) -> Option<String> {
-    let readouts = folder.join(READOUTS_FILE);
-    let readouts = readouts.is_file().then(|| csv::text(&readouts))?.ok()?;
-    let readouts: serde_json::Value = serde_json::from_str(&readouts).ok()?;
+    let file = folder.join(READOUTS_FILE);
+    let text = file.is_file().then(|| csv::text(&file))?.ok()?;
+    let readouts: serde_json::Value = serde_json::from_str(&text).ok()?;
     let name = Path::new(readouts.get(MEASURED_DATA)?.get("file")?.as_str()?);
     Some(
         folder
@@ -216,8 +227,8 @@ fn made_again(file: &Path, interruption: &Interruption) -> anyhow::Result<bool> 
 
 fn scenario(name: &str, set: &[String]) -> Result<Arc<Scenario>, Problems> {
     let mut document = Document::open(name)?;
-    for set in set {
-        document.set(set)?;
+    for argument in set {
+        document.set(argument)?;
     }
     Ok(Arc::new(document.scenario()?))
 }
@@ -229,12 +240,13 @@ fn own(
     scenario: &Arc<Scenario>,
     interruption: &Interruption,
 ) -> anyhow::Result<bool> {
-    let verdict = verdict(file, args, scenario, interruption).map_err(|error| match error {
-        Unverified::Refused(problems) => {
-            Unverified::Refused(problems.in_file(file.display().to_string()))
-        }
-        stopped => stopped,
-    })?;
+    let verdict =
+        compare_rows(file, args, scenario, interruption).map_err(|error| match error {
+            Unverified::Refused(problems) => {
+                Unverified::Refused(problems.in_file(file.display().to_string()))
+            }
+            stopped => stopped,
+        })?;
     if args.json {
         let json = serde_json::to_string(&verdict).unwrap_or_default();
         print(&format!("{json}\n"))?;
@@ -253,7 +265,7 @@ fn own(
     Ok(verdict.agrees)
 }
 
-fn verdict(
+fn compare_rows(
     file: &Path,
     args: &VerifyArgs,
     scenario: &Arc<Scenario>,

@@ -90,10 +90,10 @@ pub(super) fn open_at(
     name: &str,
     confined: Option<Confined>,
     lesson: Option<(&Lesson, usize)>,
-    role: Option<Box<dyn ClassRole>>,
+    class_role: Option<Box<dyn ClassRole>>,
 ) -> anyhow::Result<ExitCode> {
-    let is_alone = role.is_none();
-    let mut role = role.unwrap_or(Box::new(NoClass));
+    let is_alone = class_role.is_none();
+    let mut role = class_role.unwrap_or(Box::new(NoClass));
     // A write past `ulimit -f` fails then, like one to a full disk, and does not end the process.
     signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default())?;
     let commands = args.commands.as_deref().map(command::open).transpose()?;
@@ -121,7 +121,7 @@ pub(super) fn open_at(
     if let Some(commands) = commands {
         lab.take_commands(commands);
     }
-    let mut lessons = lessons(&mut lab, role.lessons(kept), lesson)?;
+    let mut lessons = open_lessons(&mut lab, role.lessons(kept), lesson)?;
     let ran = app::run(&mut lab, &mut lessons, &mut *role, session.as_ref().ok());
     ran.context("the terminal cannot be used")?;
     tell_of_exports(&lab)?;
@@ -149,7 +149,7 @@ fn furnish(lab: &mut Lab, args: &WorkbenchArgs, confined: Option<Confined>) -> a
 }
 
 /// The lessons as a session has `kept` them, at the page of one that is asked for.
-fn lessons(
+fn open_lessons(
     lab: &mut Lab,
     kept: Table,
     lesson: Option<(&Lesson, usize)>,
@@ -183,8 +183,10 @@ fn tell_of_exports(lab: &Lab) -> io::Result<()> {
     let mut stdout = io::stdout().lock();
     for written in &lab.files().written {
         let path = PrintablePath(&written.path);
-        let rows = written.rows.map(|rows| format!(": {rows} rows"));
-        let rows = rows.unwrap_or_default();
+        let rows = written
+            .rows
+            .map(|rows| format!(": {rows} rows"))
+            .unwrap_or_default();
         let scp = exporting::scp_line(&written.path);
         match scp.filter(|_| !lab.files().confined().is_some_and(Confined::is_seat)) {
             Some(line) => writeln!(

@@ -49,11 +49,15 @@ pub(super) struct WriteupArgs {
 }
 
 pub(super) fn writeup(args: &WriteupArgs) -> anyhow::Result<ExitCode> {
-    let scenario = scenario_of(&args.scenario, &args.length)?;
-    let scenario = marked(scenario, &args.scenario.scenario);
-    let data = args.measured.as_deref();
-    let data = data.map(|name| measured(name, &args.columns));
-    let data = data.transpose()?;
+    let scenario = marked(
+        scenario_of(&args.scenario, &args.length)?,
+        &args.scenario.scenario,
+    );
+    let data = args
+        .measured
+        .as_deref()
+        .map(|name| measured(name, &args.columns))
+        .transpose()?;
     if let Some(measured) = &data {
         tell_notes(&doubts(measured, &scenario));
     }
@@ -61,8 +65,11 @@ pub(super) fn writeup(args: &WriteupArgs) -> anyhow::Result<ExitCode> {
     let interruption = progress::interruption()?;
     let folder = OutputFolder::begin(&args.output, args.force)?;
     let cannot_write = || format!("cannot write {}", PrintablePath(&args.output));
-    let csv = File::create(folder.path().join(CSV)).with_context(cannot_write)?;
-    let csv = CsvWriter::new(csv, &scenario).with_context(cannot_write)?;
+    let csv = CsvWriter::new(
+        File::create(folder.path().join(CSV)).with_context(cannot_write)?,
+        &scenario,
+    )
+    .with_context(cannot_write)?;
     let (writeup, _) = made(scenario, beside, Some(csv), cannot_write, &interruption)?;
     for (name, bytes) in progress::with_clock("drawing the figures", || writeup.files())? {
         let written = fs::write(folder.path().join(name), bytes);
@@ -96,16 +103,18 @@ pub(super) fn again(
     csv: &Path,
     interruption: &Interruption,
 ) -> anyhow::Result<(Writeup, Option<Against>)> {
-    let data = data
+    let measured_data = data
         .map(|name| measured(name, &MapArgs::default()))
         .transpose()?;
     let cannot_read = || format!("{}: cannot be read", PrintablePath(csv));
-    let against = against.map(|against| CsvWriter::new(against, &scenario));
-    let against = against.transpose().with_context(cannot_read)?;
+    let csv_against = against
+        .map(|against| CsvWriter::new(against, &scenario))
+        .transpose()
+        .with_context(cannot_read)?;
     made(
         scenario,
-        data.map(MeasuredComparison::new),
-        against,
+        measured_data.map(MeasuredComparison::new),
+        csv_against,
         cannot_read,
         interruption,
     )
@@ -119,12 +128,12 @@ fn made<W: Write>(
     cannot: impl FnOnce() -> String,
     interruption: &Interruption,
 ) -> anyhow::Result<(Writeup, Option<W>)> {
-    let mut recorder = recorder(&scenario, beside.as_ref());
-    let played = played(&scenario, csv, |step| recorder.follow(step), interruption);
-    let mut played = played.with_context(cannot)?;
-    ensure!(played.ended != Ended::Stopped, Interrupted);
-    let broken = played.ended.not_finite();
-    let readouts = progress::with_clock(CHECKING, || played.readouts());
+    let mut recording = recorder(&scenario, beside.as_ref());
+    let mut run =
+        played(&scenario, csv, |step| recording.follow(step), interruption).with_context(cannot)?;
+    ensure!(run.ended != Ended::Stopped, Interrupted);
+    let broken = run.ended.not_finite();
+    let readouts = progress::with_clock(CHECKING, || run.readouts());
     if let Some(beside) = &mut beside {
         let end_s = readouts.sample.time_s;
         let held = progress::with_clock("comparing the run with the measured data", || {
@@ -132,9 +141,10 @@ fn made<W: Write>(
         });
         ensure!(held.map_err(anyhow::Error::msg)?, Interrupted);
     }
-    let (recorded, meter) = (recorder.end(broken), interruption.meter());
-    let drawings = figures(&scenario, &readouts, recorded, beside.as_ref(), meter);
-    let drawings = drawings.map_err(anyhow::Error::msg)?.ok_or(Interrupted)?;
+    let (recorded, meter) = (recording.end(broken), interruption.meter());
+    let drawings = figures(&scenario, &readouts, recorded, beside.as_ref(), meter)
+        .map_err(anyhow::Error::msg)?
+        .ok_or(Interrupted)?;
     let writeup = Writeup {
         scenario,
         readouts,
@@ -142,14 +152,15 @@ fn made<W: Write>(
         beside,
         drawings,
     };
-    Ok((writeup, played.output))
+    Ok((writeup, run.output))
 }
 
 /// `scenario`; where the command line has changed its motion, its words say so, as in the lab.
 fn marked(scenario: Scenario, name: &str) -> Arc<Scenario> {
     let scenario = Arc::new(scenario);
-    let opened = Document::open(name).and_then(|document| document.scenario());
-    let opened = opened.map_or_else(|_| Arc::clone(&scenario), Arc::new);
+    let opened = Document::open(name)
+        .and_then(|document| document.scenario())
+        .map_or_else(|_| Arc::clone(&scenario), Arc::new);
     Original::of(name, &opened).marked(&scenario)
 }
 

@@ -363,8 +363,8 @@ pub(super) fn show_exact(shown: bool, player: &mut Player) -> Done {
     if !shown {
         return Done::saying("without the exact motion");
     }
-    Done::saying(match cost::objection(player.run().scenario()) {
-        Some(objection) => format!("{objection}: it is left out; a shorter run has it"),
+    Done::saying(match cost::why_exact_unavailable(player.run().scenario()) {
+        Some(why) => format!("{why}: it is left out; a shorter run has it"),
         None => "the exact motion (same start, same pushes) is dashed; t takes it away".to_owned(),
     })
 }

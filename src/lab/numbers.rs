@@ -125,7 +125,9 @@ impl PresentNumbers<'_> {
                 let sample = self.sample.get_or_insert_with(|| run.sample());
                 Some(column.value(run.scenario(), sample))
             }
-            NumberSource::Readout(readout) => readout.of(self.readouts(readout.source)).number(),
+            NumberSource::Readout(readout) => {
+                readout.read_from(self.readouts(readout.source)).number()
+            }
             NumberSource::Gravity => Some(self.run.simulation().motion().gravity),
             NumberSource::TimeStep => Some(self.run.simulation().motion().time_step_s),
             NumberSource::Fixed(value) => *value,

@@ -380,7 +380,7 @@ impl Player {
             NumberSource::Column(column) => {
                 Some(column.value(self.run().scenario(), &readouts.sample))
             }
-            NumberSource::Readout(readout) => readout.of(readouts).number(),
+            NumberSource::Readout(readout) => readout.read_from(readouts).number(),
             NumberSource::Gravity => Some(self.motion().gravity),
             NumberSource::TimeStep => Some(self.motion().time_step_s),
             NumberSource::Fixed(value) => value,

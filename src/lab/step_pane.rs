@@ -67,7 +67,7 @@ impl StepWorkings {
         if view.look.sum_to.is_some() && index.is_some() && known != index {
             let phase = self.phase(view.look.phase);
             let table = phase.and_then(|(phase, ..)| table_of(phase));
-            self.sums = index.zip(table.map(ColumnSums::of));
+            self.sums = index.zip(table.map(ColumnSums::from_table));
         }
         if view.look.phase == StepPageChoice::Why && self.dip.is_none() {
             self.dip = Dip::of(&self.scenario, self.step);

@@ -98,7 +98,7 @@ impl Damping {
     ///
     /// With `free_spin`, friction about the axle acts on the spin that there would be if the free motion changed it during
     /// this time too, and the swing of a body whose spin dry friction holds is slowed with the moments of the held body.
-    pub(crate) fn act(
+    pub(crate) fn slow(
         &self,
         omega: &Vector3<f64>,
         torque: &Vector3<f64>,

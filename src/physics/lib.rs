@@ -66,7 +66,7 @@
 //! let wheel = PlacedSolid::new(Shape::Cylinder { radius: 0.1, length: 0.02 }, 1.2, 0.5 * axle, &axle)?;
 //! let rod = PlacedSolid::new(Shape::Rod { length: 0.6 }, 0.1, 0.3 * axle, &axle)?;
 //! let body = Body::new([wheel, rod].iter().flat_map(PlacedSolid::points).collect())?;
-//! let top = SymmetricTop::of(&body).unwrap();
+//! let top = SymmetricTop::from_body(&body).unwrap();
 //! assert!((top.along - 1.2 * 0.1 * 0.1 / 2.0).abs() < 1e-15); // kg m^2: a thin rod has none
 //! assert!((top.first_moment - (1.2 * 0.5 + 0.1 * 0.3)).abs() < 1e-15); // kg m
 //! # Ok::<(), Box<dyn std::error::Error>>(())

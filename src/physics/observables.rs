@@ -89,7 +89,7 @@ impl Azimuth {
 
     /// Follows the axle to its next direction, by the change wrapped to (−180, 180] degrees; a vertical one changes
     /// nothing.
-    pub fn follow(&mut self, axle: &Vector3<f64>) {
+    pub fn turn_to(&mut self, axle: &Vector3<f64>) {
         if is_vertical(axle) {
             return;
         }
@@ -177,7 +177,7 @@ mod tests {
             let axles: Vec<_> = directions.iter().map(|&(x, y)| Vector3::new(x, y, 0.5)).collect();
             prop_assume!(axles.iter().all(|a| !is_vertical(a)));
             let mut azimuth = Azimuth::start(&axles[0]);
-            axles[1..].iter().for_each(|axle| azimuth.follow(axle));
+            axles[1..].iter().for_each(|axle| azimuth.turn_to(axle));
             prop_assert!((azimuth.degrees() - by_arc_tangents(&axles)).abs() < 1e-9);
         }
     }
@@ -186,7 +186,7 @@ mod tests {
     fn half_turns_count_as_plus_180() {
         let mut azimuth = Azimuth::start(&Vector3::new(1.0, 0.0, 0.0));
         for x in [-1.0, 1.0, -1.0, 1.0] {
-            azimuth.follow(&Vector3::new(x, -0.0, 0.0));
+            azimuth.turn_to(&Vector3::new(x, -0.0, 0.0));
         }
         assert_eq!(azimuth.degrees(), 720.0);
     }
@@ -195,8 +195,8 @@ mod tests {
     fn a_vertical_axle_has_azimuth_0_and_keeps_what_it_had() {
         let mut azimuth = Azimuth::start(&Vector3::new(1e-13, 0.0, 1.0));
         assert_eq!(azimuth.degrees(), 0.0);
-        azimuth.follow(&Vector3::new(0.0, 1.0, 0.0));
-        azimuth.follow(&Vector3::new(0.0, 0.0, -1.0));
+        azimuth.turn_to(&Vector3::new(0.0, 1.0, 0.0));
+        azimuth.turn_to(&Vector3::new(0.0, 0.0, -1.0));
         assert_eq!(azimuth.degrees(), 90.0);
     }
 

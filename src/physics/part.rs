@@ -234,8 +234,10 @@ impl PlacedSolid {
             return Err(PartError::OutOfRange);
         }
         if about_center.min() < -MOMENT_SUM_ROUNDING * per_mass.amax() {
-            let ratios = about_pivot.iter().zip(&squares);
-            let ratios = ratios.filter(|(_, square)| **square > 0.0);
+            let ratios = about_pivot
+                .iter()
+                .zip(&squares)
+                .filter(|(_, square)| **square > 0.0);
             let nearer = ratios.fold(f64::INFINITY, |least, (own, square)| {
                 least.min(own / square)
             });

@@ -54,7 +54,7 @@ impl ReportScheme {
             pushes: Vec::new(),
             damping: None,
             work: 0.0,
-            inertia: Inertia::of(&body.inertia()),
+            inertia: Inertia::from_matrix(&body.inertia()),
         }
     }
 
@@ -75,11 +75,13 @@ impl ReportScheme {
     /// The inertia of points with these `moments`, less that about the axle of what does not spin.
     #[inline]
     fn inertia_of(&self, moments: &Moments, state: &State) -> Inertia {
-        let (of_points, axle) = (Inertia::of_points(moments), state.axle());
+        let (of_points, axle) = (Inertia::from_moments(moments), state.axle());
         if self.body.frame_moment() == 0.0 {
             return of_points;
         }
-        Inertia::of(&(of_points.matrix() - axle * axle.transpose() * self.body.frame_moment()))
+        Inertia::from_matrix(
+            &(of_points.matrix() - axle * axle.transpose() * self.body.frame_moment()),
+        )
     }
 
     /// The torque of the weight, N m, from Σ m X: it has no moment about z, so that L_z keeps its bits.
@@ -112,10 +114,10 @@ impl ReportScheme {
         let Some(damping) = &self.damping else {
             return;
         };
-        let torque = self.torque(&Moments::of_all(&self.points[..self.massive]).first());
+        let torque = self.torque(&Moments::from_pairs(&self.points[..self.massive]).first());
         let q = &state.orientation;
         let omega = q.tr_mul(&angular_velocity);
-        let action = damping.act(&omega, &q.tr_mul(&torque), dt, None);
+        let action = damping.slow(&omega, &q.tr_mul(&torque), dt, None);
         let impulse = q * action.impulse;
         state.momentum += impulse;
         self.work = action.work;
@@ -134,12 +136,12 @@ impl ReportScheme {
         listener.hear(|| phases::rotation_phase(&rotation));
         let before = L::LISTENS.then(|| self.points.clone());
         // What the next step waits for comes first: the points with mass, and their sums.
-        let turn = LaneRotation::of(&rotation);
+        let lane_turn = LaneRotation::from_matrix(&rotation);
         let (massive, massless) = self.points.split_at_mut(self.massive);
-        turn.points(massive);
-        let moments = Moments::of_all(massive);
-        turn.points(massless);
-        state.orientation = turn.times(&state.orientation);
+        lane_turn.points(massive);
+        let moments = Moments::from_pairs(massive);
+        lane_turn.points(massless);
+        state.orientation = lane_turn.times(&state.orientation);
         listener.hear(|| self.positions_phase(before.as_deref().unwrap_or_default()));
         let first_moment = moments.first();
         let torque = self.torque(&first_moment);
@@ -166,7 +168,7 @@ impl Scheme for ReportScheme {
             let [x, y, z, mass] = lanes.map(f64x2::new);
             self.points.push(Pair { x, y, z, mass });
         }
-        self.inertia = self.inertia_of(&Moments::of_all(&self.points), state);
+        self.inertia = self.inertia_of(&Moments::from_pairs(&self.points), state);
     }
 
     fn load(&mut self, loads: &Loads) {

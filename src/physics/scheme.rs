@@ -43,7 +43,7 @@ pub enum Admits {
 
 impl Admits {
     /// Why a scheme of this kind cannot be true to `friction`; `None` where it can.
-    pub fn objection(self, friction: &Friction) -> Option<&'static str> {
+    pub fn why_not(self, friction: &Friction) -> Option<&'static str> {
         match self {
             Self::None if !friction.is_none() => {
                 Some("goes backwards in time within a step, where friction would feed the motion")
@@ -114,7 +114,7 @@ pub const SCHEMES: &[SchemeInfo] = &[
 pub fn true_to(friction: Friction) -> impl Iterator<Item = &'static SchemeInfo> + Clone {
     SCHEMES
         .iter()
-        .filter(move |scheme| scheme.admits.objection(&friction).is_none())
+        .filter(move |scheme| scheme.admits.why_not(&friction).is_none())
 }
 
 /// The names of all schemes, in the table's order.

@@ -36,7 +36,7 @@ pub struct SymmetricTop {
 
 impl SymmetricTop {
     /// The moments of `body`, or `None` where they, or its centre of mass, are off by more than 1e-9 of the whole.
-    pub fn of(body: &Body) -> Option<Self> {
+    pub fn from_body(body: &Body) -> Option<Self> {
         let inertia = body.inertia();
         let largest = inertia.diagonal().amax();
         let small = |moment: f64| moment.abs() <= SYMMETRY_TOLERANCE * largest;
@@ -63,7 +63,7 @@ impl SymmetricTop {
     /// divided by the radius of gyration. The difference of the moments across must also be small against their difference
     /// from the moment along the axle: else it decides how the axle moves.
     pub fn nearly(body: &Body) -> Option<(Self, f64)> {
-        if let Some(top) = Self::of(body) {
+        if let Some(top) = Self::from_body(body) {
             return Some((top, 0.0));
         }
         let (inertia, first) = (body.inertia(), body.first_moment());
@@ -127,7 +127,7 @@ pub fn steady_precession(across_cos: f64, spin: f64, load: f64) -> (Option<f64>,
 
 impl Loads {
     /// Σ s F, N m, world frame, over all forces, s the height along the axle at which each acts: the torque is the axle
-    /// times this. `None` where a force acts off the axle. `top` must be [that of](SymmetricTop::of) `body`.
+    /// times this. `None` where a force acts off the axle. `top` must be [that of](SymmetricTop::from_body) `body`.
     ///
     /// # Panics
     /// When a push is on a point that `body` does not have.

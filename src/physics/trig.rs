@@ -156,13 +156,18 @@ mod tests {
 
     #[test]
     fn rounds_as_the_standard_library_does_bit_for_bit() {
-        let near_halves = (0..2000).map(|n| 0.5 * f64::from(n));
-        let near_halves = near_halves.flat_map(|x| [x.next_down(), x, x.next_up()]);
+        let near_halves = (0..2000)
+            .map(|n| 0.5 * f64::from(n))
+            .flat_map(|x| [x.next_down(), x, x.next_up()]);
         let anything = (0..300_000).map(|i| scattered(i, -60, 60));
         let edges = [f64::NAN, f64::INFINITY, f64::MAX, f64::MIN_POSITIVE];
         for x in near_halves.chain(anything).chain(edges) {
-            for x in [x, -x] {
-                assert_eq!(round(x).to_bits(), x.round().to_bits(), "{x:e}");
+            for signed in [x, -x] {
+                assert_eq!(
+                    round(signed).to_bits(),
+                    signed.round().to_bits(),
+                    "{signed:e}"
+                );
             }
         }
     }

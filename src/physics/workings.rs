@@ -293,7 +293,7 @@ pub struct ColumnSums {
 
 impl ColumnSums {
     /// The sums of `table`; its rows are visited once.
-    pub fn of(table: &PointTable) -> Self {
+    pub fn from_table(table: &PointTable) -> Self {
         let columns = table.columns.len();
         let mut lanes = vec![0.0; SUM_LANES * columns];
         let mut stored = lanes.clone();
@@ -306,9 +306,9 @@ impl ColumnSums {
         Self { columns, stored }
     }
 
-    /// The sum of each column over the first `rows` rows of `table`, which is the one they were made of.
-    pub fn first(&self, table: &PointTable, rows: usize) -> Vec<f64> {
-        let rows = rows.min(table.points.len());
+    /// The sum of each column over the first `most_rows` rows of `table`, which is the one they were made of.
+    pub fn first(&self, table: &PointTable, most_rows: usize) -> Vec<f64> {
+        let rows = most_rows.min(table.points.len());
         let from = rows / ROWS_PER_SUM;
         let width = SUM_LANES * self.columns;
         let stored = self.stored.get(from * width..(from + 1) * width);

@@ -137,7 +137,7 @@ fn play_run(
         &mut simulation,
         steps,
         Some(&mut csv),
-        |step| monitor.borrow_mut().follow_ahead(step),
+        |step| monitor.borrow_mut().record_ahead(step),
         go_on,
     )?;
     if ended == Ended::Stopped && !differs() {

@@ -20,7 +20,7 @@ fn measured(scenario: &Arc<Scenario>) -> [Option<MeasuredNumber>; 2] {
     let mut instruments = Instruments::new(simulation.now());
     while simulation.step_number() < scenario.steps {
         simulation.step().unwrap();
-        instruments.follow(simulation.now());
+        instruments.record(simulation.now());
     }
     [
         instruments.precession_rad_per_s(),

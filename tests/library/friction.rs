@@ -536,7 +536,7 @@ fn theory_under_friction_is_of_the_moment_and_predicts_no_motion() {
         let mut simulation = Simulation::new(scenario);
         let mut monitor = Monitor::new(simulation.now());
         for _ in 0..steps {
-            monitor.follow(simulation.step().unwrap());
+            monitor.record(simulation.step().unwrap());
         }
         let health = monitor.health(simulation.now());
         Readouts::new(&simulation, &mut monitor, &health, None)
@@ -553,7 +553,7 @@ fn theory_under_friction_is_of_the_moment_and_predicts_no_motion() {
         "measured_precession_rad_per_s",
         "measured_nutation_period_s",
     ] {
-        let of = |readouts: &Readouts| find(name).unwrap().of(readouts);
+        let of = |readouts: &Readouts| find(name).unwrap().read_from(readouts);
         assert_eq!(of(&rubbed), ReadoutValue::Nothing, "{name}");
         assert_ne!(of(&spared), ReadoutValue::Nothing, "{name}");
     }

@@ -35,7 +35,7 @@ fn data(scenario: &Scenario, columns: &[(&str, f64)], off: impl Fn(usize) -> f64
     for number in 0..20 {
         write!(text, "{:?}", simulation.now().time_s()).unwrap();
         for (name, sigma) in columns {
-            let value = RunQuantity::find(name).unwrap().of(simulation.now());
+            let value = RunQuantity::find(name).unwrap().value_at(simulation.now());
             write!(text, ",{:?},{sigma}", value + off(number) * sigma).unwrap();
         }
         text.push('\n');

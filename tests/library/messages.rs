@@ -21,7 +21,7 @@ fn health(scenario: &str, set: &[&str]) -> Health {
     let mut monitor = Monitor::new(simulation.now());
     let end = simulation.scenario().steps;
     while simulation.step_number() < end && simulation.step().is_ok() {
-        monitor.follow(simulation.now());
+        monitor.record(simulation.now());
     }
     monitor.health(simulation.now())
 }

@@ -147,7 +147,7 @@ proptest! {
         for uneven in uneven {
             prop_assert!(uneven.abs() <= 1e-12 * inertia.amax(), "{inertia}");
         }
-        prop_assert!(SymmetricTop::of(mechanics).is_some());
+        prop_assert!(SymmetricTop::from_body(mechanics).is_some());
         let loads = Simulation::new(Arc::new(scenario.clone())).loads().clone();
         let exact = ExactMotion::new(mechanics, &loads, &scenario.start);
         prop_assert_eq!(exact.kind(), ExactMethod::Closed);
@@ -279,7 +279,7 @@ fn moments_about_the_pivot_are_kept_as_the_pivot_is_kept() {
         [0.4, 0.4, 0.6],
     ));
     let scenario = parse(&given);
-    let top = SymmetricTop::of(&scenario.body.mechanics).unwrap();
+    let top = SymmetricTop::from_body(&scenario.body.mechanics).unwrap();
     assert!((top.across - 0.4).abs() < 1e-15 && (top.along - 0.6).abs() < 1e-15);
     assert!((top.first_moment - 0.4).abs() < 1e-15);
     let again = parse(&scenario.to_toml());

@@ -27,7 +27,7 @@ fn health_at(scenario: &Scenario, step: u64) -> Health {
     let mut simulation = Simulation::new(Arc::new(scenario.clone()));
     let mut monitor = Monitor::new(simulation.now());
     while simulation.step_number() < step && simulation.step().is_ok() {
-        monitor.follow(simulation.now());
+        monitor.record(simulation.now());
     }
     monitor.health(simulation.now())
 }

@@ -77,7 +77,7 @@ fn readouts_of(scenario: Scenario) -> Readouts {
     let mut monitor = Monitor::new(simulation.now());
     while simulation.step_number() < simulation.scenario().steps {
         simulation.step().unwrap();
-        monitor.follow(simulation.now());
+        monitor.record(simulation.now());
     }
     let health = monitor.health(simulation.now());
     Readouts::new(&simulation, &mut monitor, &health, None)

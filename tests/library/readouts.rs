@@ -28,7 +28,7 @@ fn played(scenario: &Scenario) -> (Readouts, Vec<gyrolab::engine::run::Sample>) 
     let mut monitor = Monitor::new(simulation.now());
     let mut rows = vec![simulation.sample()];
     while simulation.step_number() < scenario.steps && simulation.step().is_ok() {
-        monitor.follow(simulation.now());
+        monitor.record(simulation.now());
         rows.push(simulation.sample());
     }
     let health = monitor.health(simulation.now());
@@ -89,7 +89,7 @@ fn a_column_of_the_csv_is_the_readout_of_its_name() {
     assert_eq!(readouts.number("title"), None);
     let object = json(&readouts);
     for readout in READOUTS {
-        match readout.of(&readouts) {
+        match readout.read_from(&readouts) {
             ReadoutValue::Nothing => {
                 assert!(object[readout.name].is_null(), "{}: {object}", readout.name);
             }

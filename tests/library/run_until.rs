@@ -119,11 +119,11 @@ fn what_is_read_again_alone_is_what_is_read_with_everything() {
             }
             let whole = run.readouts();
             for readout in READOUTS {
-                let is_text = matches!(readout.of(&whole), ReadoutValue::Text(_));
+                let is_text = matches!(readout.read_from(&whole), ReadoutValue::Text(_));
                 assert!(readout.is_text || !is_text, "{}", readout.name);
                 let mut again = first.clone();
                 run.read_again(&mut again, readout.source);
-                let (again, whole) = (readout.of(&again), readout.of(&whole));
+                let (again, whole) = (readout.read_from(&again), readout.read_from(&whole));
                 assert!(
                     readout.is_text || again == whole,
                     "{name}: {}",

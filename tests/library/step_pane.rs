@@ -76,14 +76,14 @@ fn all_rows_add_up_to_the_schemes_own_sums() {
     let Some(WorkedValue::Table(points)) = phases[0].value("X") else {
         panic!("a table")
     };
-    let sums = ColumnSums::of(points).first(points, 14);
+    let sums = ColumnSums::from_table(points).first(points, 14);
     let s = numbers(&phases[0], "S");
     // xx, yy, zz, xy, xz, yz
     assert_eq!(sums[4..], [s[0], s[4], s[8], s[1], s[2], s[5]]);
     let Some(WorkedValue::Table(points)) = phases[5].value("m X") else {
         panic!("a table")
     };
-    let sums = ColumnSums::of(points).first(points, 14);
+    let sums = ColumnSums::from_table(points).first(points, 14);
     assert_eq!(sums, numbers(&phases[5], "Σ m X"));
 }
 

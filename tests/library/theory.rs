@@ -28,7 +28,7 @@ fn followed(scenario: &Arc<Scenario>) -> (Simulation, Monitor) {
     let mut monitor = Monitor::new(simulation.now());
     while simulation.step_number() < scenario.steps {
         simulation.step().unwrap();
-        monitor.follow(simulation.now());
+        monitor.record(simulation.now());
     }
     (simulation, monitor)
 }
@@ -431,7 +431,7 @@ fn uncertainty_is_that_of_repeated_measurements() {
             let mut monitor = Monitor::new(simulation.now());
             while simulation.step_number() < half * scenario.steps / 2 {
                 simulation.step().unwrap();
-                monitor.follow(simulation.now());
+                monitor.record(simulation.now());
             }
             let instruments = monitor.instruments;
             [

@@ -37,10 +37,10 @@ pub(super) fn slope(points: &[Point]) -> Option<Slope> {
         columns.push(column(&|point| libm::sin(times * point.phase)));
     }
     let mut basis: Vec<Vec<f64>> = Vec::new();
-    for column in columns {
-        let left = without(&basis, &column);
+    for values in columns {
+        let left = without(&basis, &values);
         let size = norm(&left);
-        if size > DEPENDENT * norm(&column) {
+        if size > DEPENDENT * norm(&values) {
             basis.push(left.iter().map(|it| it / size).collect());
         }
     }

@@ -132,7 +132,7 @@ impl ComparisonTrial {
             fastest_s: f64::INFINITY,
             ..Self::default()
         };
-        let stride = stride(scenario.steps);
+        let steps_between = stride(scenario.steps);
         let block = if has_closed_form(scenario) {
             COMPARISON_BLOCK_STEPS
         } else {
@@ -143,8 +143,8 @@ impl ComparisonTrial {
         let mut states = Vec::new();
         let mut timed = (0, Duration::ZERO);
         while simulation.step_number() < scenario.steps && !trial.has_broken {
-            let looks = simulation.step_number() / stride + 1;
-            let next_look = scenario.steps.min(looks.saturating_mul(stride));
+            let looks = simulation.step_number() / steps_between + 1;
+            let next_look = scenario.steps.min(looks.saturating_mul(steps_between));
             let next = next_look.min(simulation.step_number() + block);
             states.clear();
             let begin = Instant::now();
@@ -197,7 +197,7 @@ impl ComparisonTrial {
 
     /// Holds one step of the run against the exact motion.
     fn hold(&mut self, state: &State, truth: &mut Truth, scale: f64) {
-        let off = Deviation::of(state, truth);
+        let off = Deviation::between(state, truth);
         self.end_distance_m = off.distance_m;
         self.most_distance_m = greater(self.most_distance_m, off.distance_m);
         self.spin_drift = greater(self.spin_drift, (off.spin / scale).abs());

@@ -15,7 +15,7 @@ pub fn is_affordable(scenario: &Scenario) -> bool {
 }
 
 /// Why the exact motion of `scenario` cannot be had on the side; `None` where it [can](is_affordable).
-pub fn objection(scenario: &Scenario) -> Option<String> {
+pub fn why_exact_unavailable(scenario: &Scenario) -> Option<String> {
     (!is_affordable(scenario)).then(|| {
         format!(
             "its exact motion must be integrated, which would take too long for {} s",
@@ -63,7 +63,7 @@ pub fn has_closed_form(scenario: &Scenario) -> bool {
     let on_axle =
         |top: &SymmetricTop, point: usize| top.has_on_axle(body, &body.points()[point].at);
     scenario.friction.is_none()
-        && SymmetricTop::of(body).is_some_and(|top| pushed.all(|point| on_axle(&top, point)))
+        && SymmetricTop::from_body(body).is_some_and(|top| pushed.all(|point| on_axle(&top, point)))
 }
 
 #[cfg(test)]

@@ -118,13 +118,16 @@ impl ExactReference {
     }
 
     fn look_at(&mut self, states: &[State]) {
-        let near = self.truth.as_ref().zip(states.as_array());
-        let near = near.and_then(|(truth, states)| Some((states, near_exact(states, truth)?)));
-        if let Some((states, (distances_m, heights))) = near
-            && self.is_predictable_at(states[AT_ONCE - 1].time_s)
+        let near = self
+            .truth
+            .as_ref()
+            .zip(states.as_array())
+            .and_then(|(truth, run)| Some((run, near_exact(run, truth)?)));
+        if let Some((run, (distances_m, heights))) = near
+            && self.is_predictable_at(run[AT_ONCE - 1].time_s)
         {
-            self.swings.follow(states, &heights);
-            for (state, distance_m) in states.iter().zip(distances_m) {
+            self.swings.record(run, &heights);
+            for (state, distance_m) in run.iter().zip(distances_m) {
                 if distance_m > self.most_m {
                     (self.farthest, self.most_m) = (Some(*state), distance_m);
                 }
@@ -139,9 +142,9 @@ impl ExactReference {
                     break;
                 };
                 let exact = truth.orientation_at(state.time_s);
-                self.swings.follow(&[*state], &[height(exact.m33)]);
-                let distance_m = distance_m(state, &exact, truth.scenario());
-                self.take_in(distance_m);
+                self.swings.record(&[*state], &[height(exact.m33)]);
+                let off_m = distance_m(state, &exact, truth.scenario());
+                self.take_in(off_m);
             }
         }
     }
@@ -212,7 +215,7 @@ impl ExactReference {
         if self.has_parted() {
             return None;
         }
-        let deviation = Deviation::of(state, self.truth.as_mut()?);
+        let deviation = Deviation::between(state, self.truth.as_mut()?);
         self.take_in(deviation.distance_m);
         self.truth.as_ref().map(|_| deviation)
     }
@@ -276,7 +279,7 @@ pub struct Deviation {
 
 impl Deviation {
     /// Of a run that is `seen` so, from its `truth`.
-    pub fn of(seen: &State, truth: &mut Truth) -> Self {
+    pub fn between(seen: &State, truth: &mut Truth) -> Self {
         let exact = truth.state_at(seen.time_s);
         Self {
             distance_m: distance_m(seen, &exact.orientation, truth.scenario()),

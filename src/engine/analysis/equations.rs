@@ -279,7 +279,7 @@ pub(super) struct StepEquation {
 impl StepEquation {
     /// The row after `step`; `per_across` is one over the moment across the axle, 1/(kg m²).
     #[inline]
-    pub fn of(step: &Step, per_across: f64) -> Self {
+    pub fn from_step(step: &Step, per_across: f64) -> Self {
         let state = step.after();
         Self {
             time_s: state.time_s,

@@ -57,11 +57,11 @@ impl Extremes {
 
     /// Takes in the next `step`, at which the axle has this height.
     #[inline]
-    pub(super) fn follow(&mut self, step: &Step, height: f64) {
+    pub(super) fn record(&mut self, step: &Step, height: f64) {
         let z = step.position().z;
         self.lowest_z_m = self.lowest_z_m.min(z);
         self.highest_z_m = self.highest_z_m.max(z);
-        self.tilt.follow(step, height);
+        self.tilt.record(step, height);
     }
 }
 
@@ -76,7 +76,7 @@ impl Tilts {
     }
 
     #[inline]
-    fn follow(&mut self, step: &Step, height: f64) {
+    fn record(&mut self, step: &Step, height: f64) {
         // An arc tangent at every step would cost as much as some schemes' step: it is taken only where the axle is
         // about as low or as high as it has ever been.
         let (least, greatest) = self.heights;
@@ -135,7 +135,7 @@ impl TiltSwing {
 
     /// Takes in the next `step`, at which the axle has this height.
     #[inline]
-    pub fn follow(&mut self, step: &Step, height: f64) {
+    pub fn record(&mut self, step: &Step, height: f64) {
         let row = (step.after().axle(), height);
         let [before, at] = self.last;
         // The height falls as the tilt grows.
@@ -145,7 +145,7 @@ impl TiltSwing {
         }
         self.last = [at, row];
         self.rows += 1;
-        self.tilts.follow(step, height);
+        self.tilts.record(step, height);
         if self.rows.is_power_of_two() {
             self.earlier = [self.earlier[1], self.tilts.swing_deg()];
         }

@@ -65,7 +65,7 @@ impl FootForce {
     }
 
     #[inline]
-    pub fn follow(&mut self, step: &Step) {
+    pub fn record(&mut self, step: &Step) {
         let height = weight_height(&step.scenario().body.mechanics, step.after());
         let [before, at] = self.heights;
         if let Some(start) = self.start.take() {

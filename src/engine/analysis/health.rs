@@ -133,11 +133,11 @@ impl Health {
         Self {
             scheme: motion.scheme,
             turns_per_step: psi / TAU,
-            picture: WheelPicture::of(
+            picture: WheelPicture::from_angle(
                 psi,
                 scenario.file.body.rim.as_ref().map_or(1, |rim| rim.points),
             ),
-            nutation: Nutation::of(step, &motion, psi),
+            nutation: Nutation::from_step(step, &motion, psi),
             swing: beside.swing(),
             is_a_rotation: state.is_a_rotation(),
             lag_deg: if lag.is_finite() {
@@ -215,7 +215,7 @@ impl Health {
 
 impl WheelPicture {
     /// Of a wheel of `points` equal points that turns by `psi` radians a step.
-    fn of(psi: f64, points: usize) -> Self {
+    fn from_angle(psi: f64, points: usize) -> Self {
         match psi {
             psi if !psi.is_finite() => Self::Unknown,
             psi if psi > PI && psi % TAU < PI => Self::TooSlow,
@@ -227,11 +227,11 @@ impl WheelPicture {
 }
 
 impl Nutation {
-    fn of(step: &Step, motion: &Motion, psi: f64) -> Option<Self> {
+    fn from_step(step: &Step, motion: &Motion, psi: f64) -> Option<Self> {
         let scenario = step.scenario();
         let (state, loads) = (step.after(), step.loads());
         let body = &scenario.body.mechanics;
-        let top = SymmetricTop::of(body).filter(|_| motion.scheme.name == "report")?;
+        let top = SymmetricTop::from_body(body).filter(|_| motion.scheme.name == "report")?;
         let kappa = top.kappa();
         let (sin, cos) = libm::sincos(psi);
         let ratio = psi / libm::hypot(1.0 - cos, sin);
@@ -295,11 +295,11 @@ fn turns_if_believed(scenario: &Arc<Scenario>, is_wanted: &dyn Fn() -> bool) -> 
 /// What trials of `scenario` lead to; each ends as one that does not hold when `is_wanted` returns false.
 fn tried(scenario: &Scenario, is_wanted: &dyn Fn() -> bool) -> Advice {
     let (own, scheme) = (scenario.motion.time_step_s, scenario.motion.scheme);
-    let trial = |step: f64, scheme| {
-        let other = Arc::new(resampled(scenario, step, scheme));
+    let trial = |step: f64, with| {
+        let other = Arc::new(resampled(scenario, step, with));
         turns_if_believed(&other, is_wanted)
     };
-    let holds = |step: f64, scheme| trial(step, scheme).is_some_and(|most_turns| most_turns < 0.5);
+    let holds = |step: f64, with| trial(step, with).is_some_and(|most_turns| most_turns < 0.5);
     if !is_affordable(scenario) || Clock::end_s(scenario) / own > most_steps(scenario) {
         return Advice::Nothing;
     }
@@ -340,7 +340,7 @@ fn better_scheme(scenario: &Scenario) -> &'static SchemeInfo {
         .iter()
         .filter_map(|name| SchemeInfo::find(name));
     better
-        .find(|scheme| scheme.admits.objection(&scenario.friction).is_none())
+        .find(|scheme| scheme.admits.why_not(&scenario.friction).is_none())
         .unwrap_or(scenario.motion.scheme)
 }
 

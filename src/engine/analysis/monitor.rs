@@ -56,10 +56,10 @@ impl Instruments {
     }
 
     #[inline]
-    pub fn follow(&mut self, step: &Step) {
+    pub fn record(&mut self, step: &Step) {
         match self {
-            Self::TurningPoints(points) => points.follow(step),
-            Self::Parabolas(parabolas) => parabolas.follow(step),
+            Self::TurningPoints(points) => points.record(step),
+            Self::Parabolas(parabolas) => parabolas.record(step),
         }
     }
 
@@ -115,7 +115,7 @@ impl Monitor {
     /// Takes in `step`; to be shown every step. Every one of them is compared with the exact motion: what leaves it and
     /// comes back between two looks has left it too.
     #[inline]
-    pub fn follow(&mut self, step: &Step) {
+    pub fn record(&mut self, step: &Step) {
         self.measure(step);
         self.beside.hold(step.after());
     }
@@ -123,7 +123,7 @@ impl Monitor {
     /// The same, but the step is compared with the exact motion later: when [`catch_up`](Self::catch_up) is called, at the
     /// latest when health or theory is asked for. So the time that stepping takes can be told from it.
     #[inline]
-    pub fn follow_ahead(&mut self, step: &Step) {
+    pub fn record_ahead(&mut self, step: &Step) {
         self.measure(step);
         self.beside.wait(step.after());
     }
@@ -150,11 +150,11 @@ impl Monitor {
     #[inline]
     pub fn measure(&mut self, step: &Step) {
         let height = height_in(step.after());
-        self.extremes.follow(step, height);
+        self.extremes.record(step, height);
         if step.changes() == self.changes {
-            self.instruments.follow(step);
-            self.tilt_swing.follow(step, height);
-            self.foot_force.follow(step);
+            self.instruments.record(step);
+            self.tilt_swing.record(step, height);
+            self.foot_force.record(step);
         } else {
             self.changes = step.changes();
             self.since = step.number();

@@ -88,7 +88,7 @@ impl Parabolas {
     /// Instruments for the run that begins at `step`.
     pub fn new(step: &Step) -> Self {
         let look = AxleSample::at(step);
-        let is_lopsided = SymmetricTop::of(&step.scenario().body.mechanics).is_none();
+        let is_lopsided = SymmetricTop::from_body(&step.scenario().body.mechanics).is_none();
         Self {
             looks: [look; 3],
             seen: 1,
@@ -115,13 +115,13 @@ impl Parabolas {
     }
 
     #[inline]
-    pub fn follow(&mut self, step: &Step) {
+    pub fn record(&mut self, step: &Step) {
         let look = AxleSample::at(step);
         let before = self.looks[2].axle;
         self.is_ambiguous |= before[0] * look.axle[0] + before[1] * look.axle[1] < 0.0;
         self.looks = [self.looks[1], self.looks[2], look];
         self.seen += 1;
-        let [a, b, c] = self.looks.map(|look| look.axle[2]);
+        let [a, b, c] = self.looks.map(|sample| sample.axle[2]);
         self.heights = [self.heights[0].min(c), self.heights[1].max(c)];
         if self.seen > 2 && b >= a && b > c {
             self.candidate = Some((self.turn(), b));
@@ -142,11 +142,10 @@ impl Parabolas {
     /// The turning point between the last three steps: the top of a parabola through them.
     fn turn(&self) -> HeightExtreme {
         let [a, b, c] = self.looks;
-        let parabola = |a: f64, b: f64, c: f64| ((c - a) / 2.0, a - 2.0 * b + c);
-        let (slope, bend) = parabola(a.axle[2], b.axle[2], c.axle[2]);
+        let (slope, bend) = parabola(self.looks.map(|look| look.axle[2]));
         let shift = -slope / bend;
-        let [before, middle, after] = [a, b, c].map(|look| look.azimuth_rad());
-        let (way, curve) = parabola(before, middle, after);
+        let azimuths = self.looks.map(|look| look.azimuth_rad());
+        let (way, curve) = parabola(azimuths);
         let step = if shift < 0.0 {
             b.time_s - a.time_s
         } else {
@@ -156,7 +155,7 @@ impl Parabolas {
             time_s: b.time_s + shift * step,
             time_off_s: 0.0,
             time_error_s: 0.0,
-            azimuth: middle + shift * way + shift * shift * curve / 2.0,
+            azimuth: azimuths[1] + shift * way + shift * shift * curve / 2.0,
             azimuth_off: 0.0,
             azimuth_error: 0.0,
             azimuth_rate: (way + shift * curve) / step,
@@ -324,4 +323,9 @@ impl Parabolas {
             nutations: 0,
         })
     }
+}
+
+/// Slope and bend at the middle of the parabola through three numbers one apart.
+fn parabola([a, b, c]: [f64; 3]) -> (f64, f64) {
+    ((c - a) / 2.0, a - 2.0 * b + c)
 }

@@ -172,9 +172,9 @@ fn is_balanced(exact: &Truth, state: &State, error_rad: f64) -> bool {
     let scenario = exact.scenario();
     let body = &scenario.body.mechanics;
     let moment = exact.loads().moment(body);
-    let in_body = |state: &State| {
-        let rate = observables::angular_velocity(body, state);
-        state.orientation.tr_mul(&rate)
+    let in_body = |at: &State| {
+        let rate = observables::angular_velocity(body, at);
+        at.orientation.tr_mul(&rate)
     };
     let (first, now) = (in_body(&scenario.start), in_body(state));
     torque(&state.orientation, &moment).norm() <= error_rad * moment.norm()

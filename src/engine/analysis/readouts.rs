@@ -162,7 +162,7 @@ impl Readouts {
 
     /// The number that `name` stands for; `None` where there is none of that name, it is a text, or it cannot be stated.
     pub fn number(&self, name: &str) -> Option<f64> {
-        find(name)?.of(self).number()
+        find(name)?.read_from(self).number()
     }
 
     /// Theory, where its axis is +z, about which the measured numbers are too.
@@ -239,7 +239,7 @@ impl Serialize for Readouts {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut object = serializer.serialize_map(None)?;
         for readout in READOUTS {
-            let value = readout.of(self);
+            let value = readout.read_from(self);
             if readout.name != "scheme_kind" || value != ReadoutValue::Nothing {
                 object.serialize_entry(readout.name, &value)?;
             }
@@ -300,7 +300,7 @@ pub fn at_end(
         while simulation.step_number() < end {
             let step = simulation.step().map_err(|error| error.to_string())?;
             if is_held {
-                monitor.follow(step);
+                monitor.record(step);
             } else {
                 monitor.measure(step);
             }
@@ -316,7 +316,10 @@ pub fn at_end(
     let advice = (is_asked && is_wrong).then(|| advise(&scenario));
     let read = Readouts::new(&simulation, &mut monitor, &health, advice.as_ref());
     Ok(Some(
-        wanted.iter().map(|readout| readout.of(&read)).collect(),
+        wanted
+            .iter()
+            .map(|readout| readout.read_from(&read))
+            .collect(),
     ))
 }
 

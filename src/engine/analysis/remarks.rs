@@ -48,8 +48,8 @@ impl Remark {
 
 /// What there is to say of `health`, and of what would mend it, where that is known; most important first.
 pub fn remarks(health: &Health, advice: Option<&Advice>) -> Vec<Remark> {
-    let limit = limit(health);
-    if let Some(limit) = limit.as_ref()
+    let limited = limit(health);
+    if let Some(limit) = limited.as_ref()
         && health.is_believed() != Some(false)
     {
         // Nothing else of it is right or wrong.
@@ -60,7 +60,7 @@ pub fn remarks(health: &Health, advice: Option<&Advice>) -> Vec<Remark> {
     } else {
         vec![broken_down(health)]
     };
-    remarks.extend(limit);
+    remarks.extend(limited);
     remarks.extend(wrong_swing(health));
     if health.is_believed() == Some(false) {
         remarks.extend(advice.and_then(|advice| mend(health, advice)));
@@ -402,20 +402,19 @@ impl Health {
             );
         }
         if limits.until_s.is_some() {
-            let within = format!(": the traced point has kept within {far} of the exact motion");
             // Two exact motions differ by rounding, which says nothing.
             let within = match self.scheme.order {
-                Some(_) => within.as_str(),
-                None => "",
+                Some(_) => format!(": the traced point has kept within {far} of the exact motion"),
+                None => String::new(),
             };
             return format!("The motion is {limits}. Until then the numbers hold{within}.");
         }
-        let picture = picture(self);
+        let strobed = picture(self);
         if is_exact {
-            format!("The numbers hold: the run is the exact motion itself{picture}.")
+            format!("The numbers hold: the run is the exact motion itself{strobed}.")
         } else {
             format!(
-                "The numbers hold: the traced point has kept within {far} of the exact motion{picture}."
+                "The numbers hold: the traced point has kept within {far} of the exact motion{strobed}."
             )
         }
     }
@@ -432,8 +431,9 @@ fn picture(health: &Health) -> String {
 /// Why the tilt does not swing as it should, where that is known.
 fn cause_of_swing(health: &Health) -> Option<String> {
     let nutation = health.nutation;
-    let too_far = nutation.and_then(|nutation| nutation.lag_ratio);
-    let too_far = too_far.filter(|ratio| *ratio > LAG_IS_RIGHT);
+    let too_far = nutation
+        .and_then(|nutation| nutation.lag_ratio)
+        .filter(|ratio| *ratio > LAG_IS_RIGHT);
     if let (Some(nutation), Some(_)) = (nutation, health.changed_nutation()) {
         Some(changed(&nutation))
     } else if let Some(ratio) = too_far {

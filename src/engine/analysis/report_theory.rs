@@ -59,7 +59,8 @@ impl ReportTheory {
     pub fn new(step: &Step) -> Option<Self> {
         let scenario = step.scenario();
         let body = &scenario.body.mechanics;
-        let top = SymmetricTop::of(body).filter(|_| step.motion().scheme.name == "report")?;
+        let top =
+            SymmetricTop::from_body(body).filter(|_| step.motion().scheme.name == "report")?;
         let rubs = !step.loads().friction.is_none();
         let load = step.loads().on_axle(body, &top).filter(|_| !rubs)?;
         let (state, time_step_s) = (step.after(), step.motion().time_step_s);
@@ -85,9 +86,9 @@ impl ReportTheory {
         );
         let tilt = libm::acos(state.momentum.z / size);
         let off_by =
-            |size: f64| 2.5 * psi * kick.abs() * size / size_2 + 1.5 * size / libm::tan(tilt).abs();
+            |lag: f64| 2.5 * psi * kick.abs() * lag / size_2 + 1.5 * lag / libm::tan(tilt).abs();
         Some(Self {
-            lag: Some(lag_size).filter(|&size| off_by(size) <= THEORY_TOLERANCE),
+            lag: Some(lag_size).filter(|&lag| off_by(lag) <= THEORY_TOLERANCE),
             growth: 0.5 * libm::log1p(-2.0 * kappa * (1.0 - kappa) * (1.0 - cos)),
             swing: (off_by(lag_size.max(swing_size)) <= THEORY_TOLERANCE).then_some(LagSwing {
                 lag,

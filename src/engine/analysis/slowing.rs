@@ -29,7 +29,7 @@ impl FrictionEffect {
             return None;
         }
         let scenario = step.scenario();
-        let top = SymmetricTop::of(&scenario.body.mechanics);
+        let top = SymmetricTop::from_body(&scenario.body.mechanics);
         let state = step.after();
         let Friction {
             spin_dry,
@@ -39,8 +39,8 @@ impl FrictionEffect {
         } = friction;
         let time = |moment: Option<f64>, rate: f64| Some(moment? / rate).filter(|s| s.is_finite());
         let least = SPIN_ROUNDING * state.momentum.norm();
-        let spin = top.map(|_| state.axle().dot(&state.momentum).abs());
-        let spin = spin.map(|spin| if spin > least { spin } else { 0.0 });
+        let along_axle = state.axle().dot(&state.momentum).abs();
+        let spin = top.map(|_| if along_axle > least { along_axle } else { 0.0 });
         Some(Self {
             work: step.friction_work(),
             spin_decay_s: time(top.map(|top| top.along), spin_viscous),

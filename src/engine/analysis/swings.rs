@@ -121,7 +121,7 @@ impl Swings {
     /// Takes in steps of the run that follow each other, beside the [heights](height) of the exact motion's axle. However
     /// many are taken in together, the numbers are the same.
     #[inline]
-    pub fn follow<const N: usize>(&mut self, states: &[State; N], exact: &[f64; N]) {
+    pub fn record<const N: usize>(&mut self, states: &[State; N], exact: &[f64; N]) {
         let run = states.each_ref().map(height_in);
         let room = (self.steps - self.last_steps).min(N as u64) as usize;
         if room == N {
@@ -139,12 +139,12 @@ impl Swings {
             return;
         };
         block.to_s = last.time_s;
-        for ((way, last), heights) in block.ways.iter_mut().zip(&mut self.last).zip(heights) {
-            for height in heights {
+        for ((way, previous), values) in block.ways.iter_mut().zip(&mut self.last).zip(heights) {
+            for height in values {
                 way.least = way.least.min(*height);
                 way.greatest = way.greatest.max(*height);
-                way.length += (height - *last).abs();
-                *last = *height;
+                way.length += (height - *previous).abs();
+                *previous = *height;
             }
         }
         self.last_steps += states.len() as u64;
@@ -220,7 +220,7 @@ impl SwingBin {
     fn swing(&self, is_whole_run: bool) -> SwingComparison {
         let [run, exact] = self.ways;
         let (run_deg, exact_deg) = (run.tilts_deg(), exact.tilts_deg());
-        let allowed_deg = allowed_deg(exact_deg);
+        let most_deg = allowed_deg(exact_deg);
         let off_deg = (run_deg.0 - exact_deg.0)
             .abs()
             .max((run_deg.1 - exact_deg.1).abs());
@@ -236,8 +236,8 @@ impl SwingBin {
             run_deg,
             exact_deg,
             way,
-            tilts_differ: off_deg > allowed_deg,
-            worst: (off_deg / allowed_deg).max(of_way),
+            tilts_differ: off_deg > most_deg,
+            worst: (off_deg / most_deg).max(of_way),
         }
     }
 }
@@ -341,7 +341,7 @@ mod tests {
         for step in 1..10_000 {
             let time = f64::from(step) / 30.0;
             let exact = libm::cos((30.0 + wave(time)).to_radians());
-            swings.follow(&[state(time)], &[height(exact)]);
+            swings.record(&[state(time)], &[height(exact)]);
         }
         swings.worst().unwrap()
     }

@@ -158,7 +158,7 @@ impl Theory {
         let (low, high) = motion.tilt_range();
         // What turns about -z turns the other way about +z, from which tilts and azimuths are measured.
         let is_turned_over = (up + Vector3::z()).norm() <= SAME_DIRECTION;
-        let (up, load, way, (low, high)) = if is_turned_over {
+        let (up, upward_load, way, (low, high)) = if is_turned_over {
             (-up, -size, -1.0, (PI - high, PI - low))
         } else {
             (up, size, 1.0, (low, high))
@@ -167,7 +167,7 @@ impl Theory {
         let tilt_range_deg = (low.to_degrees(), high.to_degrees());
         let cosine = Some(axle.dot(&up)).filter(|cosine| cosine.abs() > LEVEL);
         let (slow, fast) = if spins {
-            steady_precession(top.across * cosine.unwrap_or(0.0), spin, load)
+            steady_precession(top.across * cosine.unwrap_or(0.0), spin, upward_load)
         } else {
             (None, None)
         };
@@ -176,9 +176,9 @@ impl Theory {
             .then(|| libm::acos(cusp_cosine).to_degrees());
         Self {
             axis: TheoryAxis::new(up, size > 0.0),
-            load,
+            load: upward_load,
             spin,
-            fast_top_precession: spins.then(|| load / spin),
+            fast_top_precession: spins.then(|| upward_load / spin),
             slow_precession: slow,
             fast_precession: fast,
             precession: (!is_through_vertical).then(|| way * motion.mean_precession()),
@@ -186,7 +186,7 @@ impl Theory {
             body_cone_period_s: body_cone_period_s(top, spin, size).filter(|_| spins),
             nutation_period_s: motion.nutation_period(),
             tilt_range_deg,
-            sleeping_limit: (load >= 0.0).then(|| 2.0 * (top.across * size).sqrt()),
+            sleeping_limit: (upward_load >= 0.0).then(|| 2.0 * (top.across * size).sqrt()),
             cusp_tilt_deg,
             path: if is_through_vertical {
                 AxlePath::ThroughVertical

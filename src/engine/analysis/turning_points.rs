@@ -55,14 +55,14 @@ impl TurningPoints {
     /// Instruments for the run that begins at `step`; `None` where its rows do not show the motion between them.
     pub fn new(step: &Step) -> Option<Self> {
         let body = &step.scenario().body.mechanics;
-        let top = SymmetricTop::of(body)?;
+        let top = SymmetricTop::from_body(body)?;
         let load = step.loads().on_axle(body, &top)?;
         // The equations of motion that are used here are those of a body without friction.
         if !step.loads().friction.is_none() || libm::hypot(load.x, load.y) > 1e-12 * load.z.abs() {
             return None;
         }
         let per_across = 1.0 / top.across;
-        let (start, motion) = (StepEquation::of(step, per_across), step.motion());
+        let (start, motion) = (StepEquation::from_step(step, per_across), step.motion());
         let (swing, pull) = (start.swing, load * per_across);
         let axle_rate = swing.momentum.norm() + pull.norm().sqrt();
         let equations = Equations {
@@ -105,10 +105,10 @@ impl TurningPoints {
     }
 
     #[inline]
-    pub fn follow(&mut self, step: &Step) {
+    pub fn record(&mut self, step: &Step) {
         // Assigned at once: by way of a copy it would be stored in parts and read whole, for which processors wait.
         let before = self.now;
-        self.now = StepEquation::of(step, self.per_across);
+        self.now = StepEquation::from_step(step, self.per_across);
         let (a, b) = (&before.swing.axle, &self.now.swing.axle);
         let missed = self.missed;
         if self.may_turn_far || a.x * b.x + a.y * b.y < 0.0 {
@@ -141,21 +141,21 @@ impl TurningPoints {
         if away <= self.confirmed_by {
             return;
         }
-        let Some(candidate) = self.candidate.take() else {
+        let Some(taken) = self.candidate.take() else {
             return;
         };
         if self
             .last
-            .is_some_and(|(_, last)| last.is_top == candidate.is_top)
+            .is_some_and(|(_, last)| last.is_top == taken.is_top)
         {
             return;
         }
         if self.turns.wants(self.count) {
-            let turn = self.equations.turn(&candidate);
+            let turn = self.equations.turn(&taken);
             self.least_level = self.least_level.min(turn.level);
             self.turns.keep(self.count, turn);
         }
-        self.last = Some((self.count, candidate));
+        self.last = Some((self.count, taken));
         self.count += 1;
     }
 

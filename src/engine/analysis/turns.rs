@@ -147,8 +147,7 @@ impl Turns {
         if self.kept.len() > self.thinning.most {
             self.stride *= self.thinning.keeps_every;
             let stride = self.stride;
-            self.kept
-                .retain(|(number, _)| number.is_multiple_of(stride));
+            self.kept.retain(|(kept, _)| kept.is_multiple_of(stride));
         }
     }
 

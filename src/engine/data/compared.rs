@@ -60,14 +60,14 @@ impl Compared {
             places: places(series, traced),
             ..Self::default()
         };
-        for (curve, model) in series.curves.iter().zip(model) {
-            let reached = reached(series, curve, now_s).min(model.len());
-            let shown = shown(series, curve, &model[..reached]);
-            compared.sum.take(curve.quantity, &shown);
+        for (curve, values) in series.curves.iter().zip(model) {
+            let count = reached(series, curve, now_s).min(values.len());
+            let points = shown(series, curve, &values[..count]);
+            compared.sum.add_quantity(curve.quantity, &points);
             let mut own = Sum::default();
-            own.take(curve.quantity, &shown);
+            own.add_quantity(curve.quantity, &points);
             compared.sums.push(own);
-            compared.curves.push(shown);
+            compared.curves.push(points);
         }
         compared
     }
@@ -105,7 +105,7 @@ fn shown(series: &TimeSeries, curve: &MeasuredCurve, model: &[f64]) -> Vec<Compa
 }
 
 impl Sum {
-    fn take(&mut self, quantity: &'static RunQuantity, shown: &[ComparedPoint]) {
+    fn add_quantity(&mut self, quantity: &'static RunQuantity, shown: &[ComparedPoint]) {
         self.points += shown.len();
         let (mut squares, mut count) = (0.0, 0_u32);
         for point in shown {
@@ -178,7 +178,7 @@ pub fn residuals(
     let shift = |index: usize| turns_deg(model[index] - points[index].value);
     let common = (is_counted(points) && !points.is_empty() && !model.is_empty()).then(|| shift(0));
     let pairs = points.iter().zip(model).enumerate();
-    let all = pairs.map(|(index, (point, &model))| Residual {
+    let all = pairs.map(|(index, (point, &value))| Residual {
         row: point.row,
         measured: if is_direction {
             point.value + common.unwrap_or_else(|| shift(index))
@@ -186,7 +186,7 @@ pub fn residuals(
             point.value
         },
         sigma: point.sigma,
-        model,
+        model: value,
     });
     all.collect()
 }

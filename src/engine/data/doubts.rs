@@ -23,8 +23,11 @@ pub fn doubts(measured: &MeasuredData, scenario: &Arc<Scenario>) -> Vec<String> 
         tilt_in_radians(series, scenario),
     ];
     let origin = printable(&measured.origin);
-    let found = found.into_iter().flatten();
-    found.map(|doubt| format!("{origin}: {doubt}")).collect()
+    found
+        .into_iter()
+        .flatten()
+        .map(|doubt| format!("{origin}: {doubt}"))
+        .collect()
 }
 
 /// A traced point that was measured farther from the pivot than its arm is long.
@@ -62,9 +65,9 @@ fn point_beyond_arm(series: &TimeSeries, arm_m: f64) -> Option<String> {
             format!("are they in {unit}? --map {}", columns.join(","))
         }
     };
-    let names = names.join(", ");
     Some(format!(
-        "{names}: the point was measured up to {} m from the pivot, and it is {} m from it: {cure}",
+        "{}: the point was measured up to {} m from the pivot, and it is {} m from it: {cure}",
+        names.join(", "),
         significant(farthest_m, 3),
         significant(arm_m, 3)
     ))

@@ -71,8 +71,9 @@ fn completed(cells: &Csv, map: &[Renaming], origin: &str, only: Option<&str>) ->
 /// The option that maps what `map` does, and the columns at these places.
 pub fn map_option(cells: &Csv, map: &[Renaming], added: &[(usize, String)]) -> Option<String> {
     let given = map.iter().map(|(column, name)| format!("{column}={name}"));
-    let added = added.iter();
-    let added = added.map(|(place, name)| format!("{}={name}", label(cells, *place)));
+    let added = added
+        .iter()
+        .map(|(place, name)| format!("{}={name}", label(cells, *place)));
     let all = given.chain(added).collect::<Vec<_>>().join(",");
     if all
         .chars()
@@ -110,11 +111,12 @@ struct Guess<'a> {
 
 impl Guess<'_> {
     fn add_all(&mut self, only: Option<&str>, origin: &str) {
-        let places = (0..self.cells.names.len()).filter(|&place| {
-            let is_first = place == 0 || only.is_none();
-            !self.cells.own[place].is_mapped && (is_first || track(self.cells, place) == only)
-        });
-        let places: Vec<usize> = places.collect();
+        let places: Vec<usize> = (0..self.cells.names.len())
+            .filter(|&place| {
+                let is_first = place == 0 || only.is_none();
+                !self.cells.own[place].is_mapped && (is_first || track(self.cells, place) == only)
+            })
+            .collect();
         let has = |name: &str| {
             let mut columns = self.cells.own.iter().zip(&self.cells.names);
             columns.any(|(own, known)| own.is_mapped && known == name)
@@ -146,7 +148,7 @@ impl Guess<'_> {
                 || name.contains("uncertainty") && name.starts_with("t_");
             let guessed = self.quantity(place, is_gyroscope);
             let is_free =
-                |known: &String| self.added.iter().all(|(_, name)| name != known) && !has(known);
+                |known: &String| self.added.iter().all(|(_, other)| other != known) && !has(known);
             if is_refused {
                 self.added.push((place, LEFT_OUT.to_owned()));
             } else if let Some(known) = guessed.filter(is_free) {
@@ -178,8 +180,9 @@ impl Guess<'_> {
                     name,
                     KEYS.iter().map(|key| key.path).chain(readouts::names()),
                 )
-                .filter(|meant| !meant.contains('*') && *meant != name);
-                let meant = meant.unwrap_or(LEFT_OUT).to_owned();
+                .filter(|meant| !meant.contains('*') && *meant != name)
+                .unwrap_or(LEFT_OUT)
+                .to_owned();
                 self.added.push((place, meant));
             }
         }

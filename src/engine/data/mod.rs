@@ -184,8 +184,11 @@ impl MeasuredData {
             rows(self.rows_outside, "outside --from and --to"),
         ];
         let origin = printable(&self.origin);
-        let notes = notes.into_iter().flatten();
-        notes.map(|note| format!("{origin}: {note}")).collect()
+        notes
+            .into_iter()
+            .flatten()
+            .map(|note| format!("{origin}: {note}"))
+            .collect()
     }
 
     /// The same without what was measured after `until_s`, s, where that is given.
@@ -193,8 +196,8 @@ impl MeasuredData {
     pub fn until(mut self, until_s: Option<f64>) -> Self {
         if let (DataKind::Series(TimeSeries { times_s, .. }), Some(until_s)) = (&self.data, until_s)
         {
-            let times_s = times_s.clone();
-            self.keep_rows(|row| times_s[row] <= until_s);
+            let times = times_s.clone();
+            self.keep_rows(|row| times[row] <= until_s);
         }
         Self { until_s, ..self }
     }

@@ -88,7 +88,7 @@ pub(super) fn named(cells: &Csv) -> Result<Columns, Vec<Problem>> {
             .iter()
             .any(|column| column.uncertainty == Some(place));
         match uncertainty_of(name) {
-            Some(of) if of == TIME_COLUMN && !is_mapped => {
+            Some(stem) if stem == TIME_COLUMN && !is_mapped => {
                 let rule = format!(
                     "is not read: make what was measured more uncertain, by its change in that time ({TIME_COLUMN} has no uncertainty)"
                 );
@@ -125,8 +125,7 @@ pub(super) fn without_uncertainty(name: &str) -> Option<String> {
         .find(UNCERTAINTY_WORD)
         .filter(|_| lower.len() == name.len())?;
     let (front, back) = (name.get(..at)?, name.get(at + UNCERTAINTY_WORD.len()..)?);
-    let front = front.trim_end_matches(['_', ' ', '-']);
-    Some(match front {
+    Some(match front.trim_end_matches(['_', ' ', '-']) {
         "" => back.trim_start_matches(['_', ' ', '-']).to_owned(),
         front => format!("{front}{back}"),
     })

@@ -23,7 +23,7 @@ pub(super) struct CellParser<'a> {
 }
 
 impl<'a> CellParser<'a> {
-    pub fn of(cells: &'a Csv) -> Self {
+    pub fn new(cells: &'a Csv) -> Self {
         Self {
             cells,
             found: Problems::default(),
@@ -185,8 +185,8 @@ impl<'a> CellParser<'a> {
         self.uses_commas |= has_comma;
         self.uses_points |= text.contains('.');
         if self.uses_commas && self.uses_points {
-            let rule = "has another decimal sign than the numbers before it: write all of them with a point, or all with a comma";
-            self.refuse(line, name, text, rule);
+            let mixed = "has another decimal sign than the numbers before it: write all of them with a point, or all with a comma";
+            self.refuse(line, name, text, mixed);
             // Told once: each number after it would be refused for one of the two.
             (self.uses_commas, self.uses_points) = (false, false);
         }

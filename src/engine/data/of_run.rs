@@ -52,7 +52,7 @@ impl<S: Borrow<TimeSeries>> RunReader<S> {
     }
 
     /// Reads `simulation` at every measured time from now up to, and without, its next step.
-    pub fn take(&mut self, simulation: &Simulation) -> Result<(), NotFinite> {
+    pub fn read_to_next_step(&mut self, simulation: &Simulation) -> Result<(), NotFinite> {
         let end_s = simulation.next_time_s();
         while let Some(time_s) = self.next_time_s().filter(|time_s| *time_s < end_s) {
             if time_s <= simulation.now().time_s() {
@@ -71,12 +71,12 @@ impl<S: Borrow<TimeSeries>> RunReader<S> {
         let series = self.series.borrow();
         let curves = series.curves.iter().zip(&mut self.next);
         for ((curve, next), values) in curves.zip(&mut self.values) {
-            let is_now = |next: usize| {
-                let point = curve.points.get(next);
+            let is_now = |index: usize| {
+                let point = curve.points.get(index);
                 point.is_some_and(|point| series.times_s[point.row] == time_s)
             };
             while is_now(*next) {
-                values.push(curve.quantity.of(simulation.now()));
+                values.push(curve.quantity.value_at(simulation.now()));
                 *next += 1;
             }
         }
@@ -108,7 +108,7 @@ pub fn at_times(
                 reader.read(&simulation, time_s);
             }
         } else {
-            reader.take(&simulation)?;
+            reader.read_to_next_step(&simulation)?;
             simulation.step()?;
         }
         if (jumps || simulation.step_number().is_multiple_of(DATA_BLOCK_STEPS)) && !go_on() {

@@ -44,7 +44,7 @@ impl RunQuantity {
     }
 
     pub fn words(&self) -> String {
-        let end = Unit::of(self.name).map_or("", |unit| unit.end);
+        let end = Unit::from_name(self.name).map_or("", |unit| unit.end);
         self.name[..self.name.len() - end.len()].replace('_', " ")
     }
 
@@ -54,7 +54,7 @@ impl RunQuantity {
     }
 
     /// Its value after `step`, in the unit of its name.
-    pub fn of(&self, step: &Step) -> f64 {
+    pub fn value_at(&self, step: &Step) -> f64 {
         self.column.value(step.scenario(), &step.sample())
     }
 }

@@ -80,7 +80,7 @@ pub fn read_with(
 ) -> Result<MeasuredData, Problems> {
     let (cells, columns) = taken_apart(origin, text, options)
         .map_err(|found| scenario_instead(origin, text).unwrap_or_else(|| found.in_file(origin)))?;
-    let mut numbers = CellParser::of(&cells);
+    let mut numbers = CellParser::new(&cells);
     let mut data = if columns.read.iter().any(|column| column.name == TIME_COLUMN) {
         DataKind::Series(numbers.series(&columns.read))
     } else {

@@ -38,12 +38,13 @@ impl FromStr for ColumnSigma {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let wrong = || "must be COLUMN=VALUE, such as tilt_deg=0.5, with VALUE above 0".to_owned();
-        let (column, value) = text.rsplit_once('=').ok_or_else(wrong)?;
-        let value = value.trim().parse::<f64>().ok();
-        let value = value.filter(|value| *value > 0.0 && value.is_finite());
+        let (column, number) = text.rsplit_once('=').ok_or_else(wrong)?;
+        let value = number.trim().parse::<f64>().ok();
         Ok(Self {
             column: column.trim().to_owned(),
-            value: value.ok_or_else(wrong)?,
+            value: value
+                .filter(|value| *value > 0.0 && value.is_finite())
+                .ok_or_else(wrong)?,
         })
     }
 }
@@ -84,9 +85,11 @@ pub(super) fn set_sigmas(
             continue;
         };
         let value = sigma.value * factor;
-        for (_, points) in measured(data).filter(|(measured, _)| *measured == name) {
-            let points = points.iter_mut();
-            points.for_each(|point| point.sigma = point.sigma.or(Some(value)));
+        let points = measured(data)
+            .filter(|(measured, _)| *measured == name)
+            .flat_map(|(_, points)| points);
+        for point in points {
+            point.sigma = point.sigma.or(Some(value));
         }
     }
     found.or(())

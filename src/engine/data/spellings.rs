@@ -102,12 +102,12 @@ pub fn name_columns(
     origin: &str,
     is_wanted: impl Fn(&str) -> bool,
 ) -> Result<(), Vec<Problem>> {
-    let company = Company::of(cells, origin);
+    let company = Company::new(cells, origin);
     let is_mapped = cells.own.iter().any(|own| own.is_mapped);
     let meanings: Vec<Option<Meaning>> = (0..cells.names.len())
         .map(|place| {
-            let meaning = meaning(&cells.names[place], &company);
-            meaning.filter(|it| !cells.own[place].is_mapped && is_wanted(&it.name))
+            meaning(&cells.names[place], &company)
+                .filter(|it| !cells.own[place].is_mapped && is_wanted(&it.name))
         })
         .collect();
     let mut problems = Vec::new();
@@ -117,11 +117,14 @@ pub fn name_columns(
         let surest = meanings.iter().flatten().filter(of_name);
         let is_surest = surest.map(|it| it.surety).max() == Some(meaning.surety);
         let is_rival = |other: &Option<Meaning>| {
-            let other = other.as_ref().filter(of_name);
-            other.is_some_and(|other| other.surety == meaning.surety)
+            other
+                .as_ref()
+                .filter(of_name)
+                .is_some_and(|other| other.surety == meaning.surety)
         };
-        let rivals = (0..meanings.len()).filter(|&place| is_rival(&meanings[place]));
-        let rivals: Vec<usize> = rivals.collect();
+        let rivals: Vec<usize> = (0..meanings.len())
+            .filter(|&other| is_rival(&meanings[other]))
+            .collect();
         let mut columns = cells.own.iter().zip(&cells.names);
         let is_taken = columns.any(|(own, name)| own.is_mapped && *name == meaning.name);
         if is_taken || !is_surest || (is_mapped && rivals.len() > 1) {
@@ -145,8 +148,9 @@ const OTHER: &str = "(another) ";
 fn several(cells: &Csv, name: &str, places: &[usize]) -> Problem {
     let numbers = places
         .iter()
-        .map(|&place| cells.own[place].number.to_string());
-    let numbers = numbers.collect::<Vec<_>>().join(" and ");
+        .map(|&place| cells.own[place].number.to_string())
+        .collect::<Vec<_>>()
+        .join(" and ");
     let tracks: Vec<String> = places
         .iter()
         .filter_map(|&place| track(cells, place))
@@ -165,17 +169,23 @@ fn several(cells: &Csv, name: &str, places: &[usize]) -> Problem {
 
 /// The title above the column, which is the name of its track.
 pub(super) fn track(cells: &Csv, place: usize) -> Option<&str> {
-    let titles = cells.titles.iter().take(cells.own[place].number);
-    let mut titles = titles.filter(|title| !title.is_empty());
+    let mut titles = cells
+        .titles
+        .iter()
+        .take(cells.own[place].number)
+        .filter(|title| !title.is_empty());
     titles.next_back().map(String::as_str)
 }
 
 impl Company {
-    fn of(cells: &Csv, origin: &str) -> Self {
+    fn new(cells: &Csv, origin: &str) -> Self {
         let has = |name: &str| cells.own.iter().any(|own| own.name == name);
         let is_t = |own: &str| Unit::split(own).map_or(own, |(stem, _)| stem) == "t";
-        let file = Path::new(origin).file_name().unwrap_or_default();
-        let file = file.to_string_lossy().to_lowercase();
+        let file = Path::new(origin)
+            .file_name()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .to_lowercase();
         Self {
             has_t: cells.own.iter().any(|own| is_t(&own.name)),
             has_time: has("time"),
@@ -215,7 +225,7 @@ fn meaning(name: &str, company: &Company) -> Option<Meaning> {
     if let Some((stem, unit)) = Unit::split(name) {
         let known = with_unit(stem, unit)?;
         return Some(Meaning {
-            factor: unit.times(Unit::of(known)?)?,
+            factor: unit.times(Unit::from_name(known)?)?,
             name: known.to_owned(),
             surety: Surety::WithUnit,
         });
@@ -234,24 +244,23 @@ fn meaning(name: &str, company: &Company) -> Option<Meaning> {
 
 /// gyrolab's name for a column whose name is `stem` and which states `unit`.
 fn with_unit(stem: &str, unit: &Unit) -> Option<&'static str> {
-    let letters = letters(stem);
+    let own = letters(stem);
     match unit.kind {
-        UnitKind::Time => TIMES.contains(&&*letters).then_some(TIME_COLUMN),
-        UnitKind::Rate if axis_after(&letters, &RATES).is_some() => {
-            axis_after(&letters, &RATES).map(|axis| BODY_RATES[axis])
+        UnitKind::Time => TIMES.contains(&&*own).then_some(TIME_COLUMN),
+        UnitKind::Rate if axis_after(&own, &RATES).is_some() => {
+            axis_after(&own, &RATES).map(|axis| BODY_RATES[axis])
         }
-        UnitKind::Length if axis_after(&letters, &PLACES).is_some() => {
-            axis_after(&letters, &PLACES).map(|axis| COORDINATES[axis])
+        UnitKind::Length if axis_after(&own, &PLACES).is_some() => {
+            axis_after(&own, &PLACES).map(|axis| COORDINATES[axis])
         }
         // Which axes wx (rad/s) is about cannot be known.
-        UnitKind::Rate if axis_after(&letters, &["w"]).is_some() => None,
+        UnitKind::Rate if axis_after(&own, &["w"]).is_some() => None,
         kind => QUANTITIES
             .iter()
             .map(|quantity| quantity.name)
             .find(|name| {
-                Unit::of(name).is_some_and(|unit| {
-                    unit.kind == kind
-                        && self::letters(&name[..name.len() - unit.end.len()]) == letters
+                Unit::from_name(name).is_some_and(|known| {
+                    known.kind == kind && letters(&name[..name.len() - known.end.len()]) == own
                 })
             }),
     }
@@ -259,8 +268,7 @@ fn with_unit(stem: &str, unit: &Unit) -> Option<&'static str> {
 
 /// The same for a column that states no unit.
 fn without_unit(name: &str, company: &Company) -> Option<&'static str> {
-    let letters = letters(name);
-    if IN_SECONDS.contains(&&*letters) {
+    if IN_SECONDS.contains(&&*letters(name)) {
         return Some(TIME_COLUMN);
     }
     if company.has_time && name.len() == 2 {
@@ -289,8 +297,11 @@ pub fn time_like(name: &str) -> bool {
 
 /// The letters and digits of `name` in lower case, without the word "axis".
 fn letters(name: &str) -> String {
-    let all = name.chars().filter(|c| c.is_alphanumeric());
-    let all: String = all.flat_map(char::to_lowercase).collect();
+    let all: String = name
+        .chars()
+        .filter(|c| c.is_alphanumeric())
+        .flat_map(char::to_lowercase)
+        .collect();
     all.replace("axis", "")
 }
 
@@ -302,14 +313,15 @@ pub(super) fn read_as(cells: &Csv) -> Option<String> {
         let is_read = is_known(&of) && **name != own.name;
         is_read && (!own.is_mapped || own.factor != 1.0)
     });
-    let words = renamed.map(|(own, name)| {
-        let own_name = brief(&own.shown(), 40);
-        match own.factor {
-            1.0 => format!("{own_name} as {name}"),
-            factor => format!("{own_name} as {name} (times {})", significant(factor, 7)),
-        }
-    });
-    let mut words: Vec<String> = words.collect();
+    let mut words: Vec<String> = renamed
+        .map(|(own, name)| {
+            let own_name = brief(&own.shown(), 40);
+            match own.factor {
+                1.0 => format!("{own_name} as {name}"),
+                factor => format!("{own_name} as {name} (times {})", significant(factor, 7)),
+            }
+        })
+        .collect();
     let more = words.len().saturating_sub(MOST_TOLD);
     words.truncate(MOST_TOLD);
     words.extend((more > 0).then(|| format!("and {more} more")));

@@ -35,12 +35,12 @@ impl<W: Write> CsvWriter<W> {
         } else {
             ""
         };
-        let delimiter = delimiter(&layout);
+        let separator = delimiter(&layout);
         let (above, run_file) = (layout.comments(), commented(&scenario.to_toml()));
-        let names = layout.names().join(&char::from(delimiter).to_string());
+        let names = layout.names().join(&char::from(separator).to_string());
         writeln!(out, "{mark}{above}{run_file}{names}")?;
         let points = if layout.file().points {
-            NamedPoint::all_of(scenario, |name| field(name, delimiter))
+            NamedPoint::all_of(scenario, |name| field(name, separator))
         } else {
             Vec::new()
         };

@@ -3,7 +3,6 @@
 use super::temporary;
 use crate::text::advice::unwritten;
 use crate::text::printable::PrintablePath;
-use std::borrow::Cow;
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
@@ -87,8 +86,11 @@ impl Destination {
         }
         // What a descriptor already leads to is not overwritten.
         let mut options = OpenOptions::new();
-        let opened = options.append(is_descriptor).write(true).open(path);
-        let opened = opened.map_err(|error| DestinationError::refused(path, error))?;
+        let opened = options
+            .append(is_descriptor)
+            .write(true)
+            .open(path)
+            .map_err(|error| DestinationError::refused(path, error))?;
         Ok(Self::Stream(opened, path.to_owned()))
     }
 
@@ -132,12 +134,12 @@ impl Destination {
 
     fn file(path: PathBuf, replace: bool) -> io::Result<Self> {
         let permissions = fs::Permissions::from_mode(0o666); // before the umask
-        let temporary = temporary::file_in(folder_of(&path), &permissions)?;
+        let file = temporary::file_in(folder_of(&path), &permissions)?;
         if let Ok(there) = fs::metadata(&path) {
-            copy_permissions(temporary.as_file(), &there)?;
+            copy_permissions(file.as_file(), &there)?;
         }
         Ok(Self::File {
-            temporary,
+            temporary: file,
             path,
             replace,
         })
@@ -209,14 +211,14 @@ fn copy_permissions(file: &File, there: &fs::Metadata) -> io::Result<()> {
 fn descriptor(path: &Path) -> Option<u32> {
     const MOST_LINKS: usize = 40;
     let own = fs::canonicalize("/proc/self/fd").ok();
-    let mut path = path.to_owned();
+    let mut place = path.to_owned();
     for _ in 0..MOST_LINKS {
-        let folder = fs::canonicalize(folder_of(&path)).ok()?;
-        let number = path.file_name()?.to_str()?.parse().ok();
+        let folder = fs::canonicalize(folder_of(&place)).ok()?;
+        let number = place.file_name()?.to_str()?.parse().ok();
         if number.is_some() && (folder == Path::new("/dev/fd") || Some(&folder) == own.as_ref()) {
             return number;
         }
-        path = folder_of(&path).join(fs::read_link(&path).ok()?);
+        place = folder_of(&place).join(fs::read_link(&place).ok()?);
     }
     None
 }
@@ -266,8 +268,8 @@ pub struct OutputFolder {
 impl OutputFolder {
     /// Begins a folder that will be at `path`. One that is there already must be empty, unless `replace` is true: then its
     /// files of the same names are replaced, and its others stay.
-    pub fn begin(path: &Path, replace: bool) -> Result<Self, DestinationError> {
-        let path: PathBuf = path.components().collect(); // without a slash at its end
+    pub fn begin(folder: &Path, replace: bool) -> Result<Self, DestinationError> {
+        let path: PathBuf = folder.components().collect(); // without a slash at its end
         let in_folder = folder_of(&path);
         if !in_folder.is_dir() {
             return Err(DestinationError::NoFolder {
@@ -315,8 +317,10 @@ impl OutputFolder {
         let mut others = names(folder)?;
         others.retain(|name| !own.contains(name));
         others.sort();
-        let others = others.iter().map(|name| name.to_string_lossy());
-        Ok(others.map(Cow::into_owned).collect())
+        Ok(others
+            .iter()
+            .map(|name| name.to_string_lossy().into_owned())
+            .collect())
     }
 }
 

@@ -190,9 +190,8 @@ impl CsvLayout {
     /// Whether the first row would come after the end of the run of `scenario`.
     pub fn begins_after(&self, scenario: &Scenario) -> bool {
         let end_s = Clock::end_s(scenario);
-        let slack_s = slack_s(scenario.motion.time_step_s, end_s);
-        let from_s = self.file.from_s;
-        from_s.is_some_and(|from_s| from_s > end_s + slack_s)
+        let latest_s = end_s + slack_s(scenario.motion.time_step_s, end_s);
+        self.file.from_s.is_some_and(|from_s| from_s > latest_s)
     }
 
     /// Whether the time of `step` lies between the two ends.
@@ -202,9 +201,9 @@ impl CsvLayout {
             return true;
         }
         let time_s = step.time_s();
-        let slack_s = slack_s(step.motion().time_step_s, time_s);
-        from_s.is_none_or(|from_s| time_s >= from_s - slack_s)
-            && to_s.is_none_or(|to_s| time_s <= to_s + slack_s)
+        let slack = slack_s(step.motion().time_step_s, time_s);
+        from_s.is_none_or(|from_s| time_s >= from_s - slack)
+            && to_s.is_none_or(|to_s| time_s <= to_s + slack)
     }
 
     /// The lines above the run file in the header; none of the default.

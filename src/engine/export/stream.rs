@@ -46,8 +46,11 @@ pub fn play<W: Write>(
     let block = (EXPORT_BLOCK_STEPS / points).clamp(16, 4096);
     let may_take_long = !has_closed_form(simulation.scenario());
     let layout = csv.as_deref().map(|csv| csv.layout().clone());
-    let layout = layout.as_ref();
-    let has_row = |step: &Step| layout.is_some_and(|layout| layout.has_row(step, steps));
+    let has_row = |step: &Step| {
+        layout
+            .as_ref()
+            .is_some_and(|layout| layout.has_row(step, steps))
+    };
     let mut rows = Vec::new();
     if has_row(simulation.now()) {
         rows.push(simulation.sample());
@@ -77,7 +80,7 @@ pub fn play<W: Write>(
         let last = simulation.now();
         // The last finite step has a row whichever the layout leaves out between.
         let is_left_out = result.is_err() && !has_row(last);
-        if is_left_out && layout.is_some_and(|layout| layout.has_time(last)) {
+        if is_left_out && layout.as_ref().is_some_and(|layout| layout.has_time(last)) {
             rows.push(last.sample());
         }
         if let Some(csv) = csv.as_deref_mut() {

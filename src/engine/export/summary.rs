@@ -107,7 +107,7 @@ impl RunSummary {
         // Under friction no motion goes on as theory has it.
         let theory = readouts.theory.filter(|theory| !theory.is_of_a_moment);
         let predicted = theory.and_then(|theory| theory.precession);
-        let path = readouts.theory.as_ref().map(|theory| theory.path);
+        let path = readouts.theory.as_ref().map(|any| any.path);
         let why = match (predicted, path) {
             (None, Some(AxlePath::ThroughVertical)) => ": the axle passes through the vertical",
             _ => "",
@@ -120,10 +120,16 @@ impl RunSummary {
             self.compared("rad/s", predicted, readouts.precession, false, unmeasured) + why;
         let period = theory.and_then(|theory| theory.nutation_period_s);
         let is_strobed = readouts.nutation_is_resolved() == Some(false);
-        let unmeasured = readouts.without_nutation.map_or("", WithoutNutation::words);
-        let nutation = self.compared("s", period, readouts.nutation, is_strobed, unmeasured);
+        let nutation_unmeasured = readouts.without_nutation.map_or("", WithoutNutation::words);
+        let nutation = self.compared(
+            "s",
+            period,
+            readouts.nutation,
+            is_strobed,
+            nutation_unmeasured,
+        );
         let mut lines = vec![("precession", precession), ("nutation", nutation)];
-        let asymmetry = readouts.theory.and_then(|theory| theory.of_mean_moment());
+        let asymmetry = readouts.theory.and_then(|any| any.of_mean_moment());
         lines.extend(asymmetry.map(|asymmetry| ("asymmetry", asymmetry)));
         lines.extend(self.foot_force().map(|force| ("foot force", force)));
         lines
@@ -268,7 +274,7 @@ impl RunSummary {
         in_pane
             .filter(|(_, line)| line.is_in_summary)
             .map(|(row, InPane { label, .. })| {
-                let number = row.of(&self.readouts).number();
+                let number = row.read_from(&self.readouts).number();
                 let text = number.map_or(NOT_AVAILABLE.to_owned(), |number| fixed(number, 6));
                 let unit = if row.unit == "deg" {
                     "degrees"
@@ -319,8 +325,8 @@ pub fn steps_in_words(scenario: &Scenario, steps: u64) -> String {
         [] => format!("{steps} of {} s", shortest(time_step_s)),
         [only] => one(only),
         [first, rest @ ..] if rest.len() < 4 => {
-            let rest: Vec<_> = rest.iter().map(one).collect();
-            format!("{steps}: {}, then {}", one(first), rest.join(", then "))
+            let others: Vec<_> = rest.iter().map(one).collect();
+            format!("{steps}: {}, then {}", one(first), others.join(", then "))
         }
         many => {
             let least = many.iter().map(|part| part.1).fold(f64::INFINITY, f64::min);
@@ -362,9 +368,10 @@ impl fmt::Display for RunSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let readouts = &self.readouts;
         let text = |lines: Vec<SummaryLine>| -> String {
-            let lines = lines.into_iter();
-            let lines = lines.map(|(name, said)| format!("  {name:<14}{said}\n"));
-            lines.collect()
+            lines
+                .into_iter()
+                .map(|(name, said)| format!("  {name:<14}{said}\n"))
+                .collect()
         };
         let first = text([self.extent(), self.rates()].concat());
         let verdict = readouts.health.sentence(readouts.advice.as_ref());

@@ -133,7 +133,7 @@ impl Simulation {
         now.energy.work += work;
         now.number += 1;
         now.workings = workings.map(Arc::new);
-        now.azimuth.follow(&now.after.axle());
+        now.azimuth.turn_to(&now.after.axle());
         now.turn_rotor();
         self.unchanged = None; // it may hold workings, which take much memory
         Ok(())

@@ -389,7 +389,7 @@ impl Csv {
 
 /// The factor from the unit that the column's own name states to that of `ours`; 1 if it states none of the same kind.
 fn unit_between(own: &str, ours: &str) -> f64 {
-    let units = Unit::split(own).zip(Unit::of(ours));
+    let units = Unit::split(own).zip(Unit::from_name(ours));
     let factor = units.and_then(|((_, stated), unit)| stated.times(unit));
     factor.unwrap_or(1.0)
 }

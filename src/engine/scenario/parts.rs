@@ -220,7 +220,7 @@ pub(super) fn check_scheme(
     scheme: &'static SchemeInfo,
     friction: &Friction,
 ) -> Result<(), Problem> {
-    let Some(why) = scheme.admits.objection(friction) else {
+    let Some(why) = scheme.admits.why_not(friction) else {
         return Ok(());
     };
     let able = listed(scheme::true_to(*friction).map(|scheme| scheme.name));
@@ -258,7 +258,7 @@ fn with_rotor(name: &str, body: &NamedBody, parts: &[PartFile]) -> Result<physic
         let near = nearest(name, parts.iter().map(|part| part.name.as_str()));
         return Err(format!("is no part of this body: {near}"));
     };
-    if SymmetricTop::of(whole).is_none() {
+    if SymmetricTop::from_body(whole).is_none() {
         let rule =
             "needs a body that is symmetric about its axle, and this one is lopsided: leave it out";
         return Err(rule.to_owned());

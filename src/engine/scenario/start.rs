@@ -180,7 +180,7 @@ fn steady(
     spin: f64,
     gravity: f64,
 ) -> Result<Vector3<f64>, String> {
-    let top = SymmetricTop::of(body).ok_or(
+    let top = SymmetricTop::from_body(body).ok_or(
         "needs a body that is symmetric about its axle, and this one is lopsided: leave it out",
     )?;
     let up = orientation.row(2).transpose();

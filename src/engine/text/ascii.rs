@@ -58,7 +58,7 @@ pub fn in_ascii(text: &str) -> String {
     for c in text.chars() {
         let found = [('^', RAISED), ('_', LOWERED)]
             .into_iter()
-            .find_map(|(sign, pairs)| Some((sign, on_line(pairs, c)?)));
+            .find_map(|(mark, pairs)| Some((mark, on_line(pairs, c)?)));
         if let Some((new, plain)) = found.filter(|_| !c.is_ascii()) {
             if new != sign {
                 ascii.push(new);

@@ -122,11 +122,11 @@ pub fn uncertain(number: f64, uncertainty: f64) -> Option<Uncertain> {
     if !(number.is_finite() && uncertainty.is_finite() && uncertainty > 0.0) {
         return None;
     }
-    let uncertainty = uncertainty.max(number.abs() * f64::EPSILON);
+    let stated = uncertainty.max(number.abs() * f64::EPSILON);
     // As "2.4e-5": its first digit stands at 10^-5, its second, the last one to be written, at 10^-6.
-    let (two_digits, first) = scientific(uncertainty, 1);
+    let (leading, first) = scientific(stated, 1);
     let last = first - 1;
-    let two_digits = two_digits.replace('.', "");
+    let two_digits = leading.replace('.', "");
     let top = if number == 0.0 {
         first
     } else {
@@ -175,8 +175,12 @@ impl Uncertain {
         let digits = self.digits.split('(').next().unwrap_or_default();
         let decimals = digits.split_once('.').map_or(0, |(_, after)| after.len());
         let scaled = number / libm::exp10(f64::from(self.exponent));
-        let digits = without_minus_zero(format!("{scaled:.decimals$}"));
-        Self { digits, ..*self }.to_string()
+        let rounded = without_minus_zero(format!("{scaled:.decimals$}"));
+        Self {
+            digits: rounded,
+            ..*self
+        }
+        .to_string()
     }
 }
 

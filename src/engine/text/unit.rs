@@ -98,7 +98,7 @@ const OTHER_UNITS: [Unit; 30] = [
 
 impl Unit {
     /// The unit at the end of `name`, of those that gyrolab uses.
-    pub fn of(name: &str) -> Option<&'static Self> {
+    pub fn from_name(name: &str) -> Option<&'static Self> {
         OURS.iter().find(|unit| name.ends_with(unit.end))
     }
 
@@ -111,14 +111,14 @@ impl Unit {
 
     /// The unit that `text` is, as people write it: `s`, `m/s2`, `°/s`, `deg s^-1`, `1/min`.
     pub fn written(text: &str) -> Option<&'static Self> {
-        let plain = plain(text);
+        let name = plain(text);
         let known = || OURS.iter().chain(&OTHER_UNITS);
-        let in_lower_case = plain.to_lowercase();
+        let in_lower_case = name.to_lowercase();
         let alias = ALIASES
             .iter()
             .find(|(written, _)| *written == in_lower_case);
         known()
-            .find(|unit| unit.name.replace(' ', "") == plain)
+            .find(|unit| unit.name.replace(' ', "") == name)
             .or_else(|| known().find(|unit| alias.is_some_and(|(_, end)| unit.end == *end)))
             .or_else(|| {
                 known().find(|unit| unit.name.replace(' ', "").to_lowercase() == in_lower_case)
@@ -127,8 +127,8 @@ impl Unit {
 
     /// Splits the name of a column into the name alone and the unit that it states: `x (cm)`, `t [ms]`, `x / cm`, `x in cm`,
     /// `gx_dps`.
-    pub fn split(name: &str) -> Option<(&str, &'static Self)> {
-        let name = name.trim();
+    pub fn split(text: &str) -> Option<(&str, &'static Self)> {
+        let name = text.trim();
         let in_brackets = || {
             let opening = match name.chars().last()? {
                 ')' => '(',
@@ -137,8 +137,8 @@ impl Unit {
                 _ => return None,
             };
             let (stem, unit) = name[..name.len() - 1].rsplit_once(opening)?;
-            let stem = stem.trim_end().trim_end_matches('/');
-            Some((stem, Self::written(unit)?))
+            let name_alone = stem.trim_end().trim_end_matches('/');
+            Some((name_alone, Self::written(unit)?))
         };
         let behind = |sign: &str| {
             let (stem, unit) = name.split_once(sign)?;
@@ -260,7 +260,7 @@ pub fn with_word(name: &str, word: &str) -> String {
         Some((name, place)) if place.parse::<usize>().is_ok() => (name, format!(".{place}")),
         _ => (name, String::new()),
     };
-    let end = Unit::of(name).map_or("", |unit| unit.end);
+    let end = Unit::from_name(name).map_or("", |unit| unit.end);
     let stem = &name[..name.len() - end.len()];
     format!("{stem}_{word}{end}{place}")
 }
@@ -279,12 +279,12 @@ mod tests {
             ("nutation_per_min", "1/min"),
             ("spin_rad_per_s", "rad/s"),
         ] {
-            assert_eq!(Unit::anybodys(name).map(|unit| unit.name), Some(unit));
+            assert_eq!(Unit::anybodys(name).map(|found| found.name), Some(unit));
         }
-        assert_eq!(Unit::of("kappa"), None);
+        assert_eq!(Unit::from_name("kappa"), None);
         // Found first, it is found right.
         for end in OURS.iter().map(|unit| unit.end).chain(["spin_rad_per_s"]) {
-            assert_eq!(Unit::of(end), Unit::anybodys(end), "{end}");
+            assert_eq!(Unit::from_name(end), Unit::anybodys(end), "{end}");
         }
     }
 
@@ -309,7 +309,7 @@ mod tests {
             ("spin (U/min)", "spin", "rpm"),
             ("Lz (J s)", "Lz", "J s"),
         ] {
-            let found = Unit::split(name).map(|(stem, unit)| (stem, unit.name));
+            let found = Unit::split(name).map(|(front, own)| (front, own.name));
             assert_eq!(found, Some((stem, unit)), "{name}");
         }
         for name in [
@@ -341,7 +341,7 @@ mod tests {
 
     #[test]
     fn one_unit_becomes_another_of_its_kind() {
-        let times = |from: &str, to: &str| Unit::anybodys(from)?.times(Unit::of(to)?);
+        let times = |from: &str, to: &str| Unit::anybodys(from)?.times(Unit::from_name(to)?);
         assert_eq!(times("t_min", "t_s"), Some(60.0));
         assert_eq!(times("spin_Hz", "spin_rpm"), Some(60.0));
         assert_eq!(times("x_cm", "x_m"), Some(0.01));

@@ -11,12 +11,12 @@ pub fn columns(text: &str) -> usize {
 /// spaces, is broken where the line ends. An empty text is one empty line.
 pub fn wrapped(text: &str, width: usize) -> Vec<String> {
     let words: Vec<&str> = text.split_whitespace().collect();
-    let text = words.join(" ");
+    let joined = words.join(" ");
     let options = Options::new(width.max(1))
         .word_separator(WordSeparator::AsciiSpace)
         .word_splitter(WordSplitter::NoHyphenation)
         .wrap_algorithm(WrapAlgorithm::FirstFit);
-    let lines = textwrap::wrap(&text, options);
+    let lines = textwrap::wrap(&joined, options);
     lines.into_iter().map(Into::into).collect()
 }
 

@@ -129,7 +129,7 @@ impl DataComparison {
     /// Follows a run to `step`, or until `enough` returns true.
     pub(super) fn follow(&mut self, step: u64, mut enough: impl FnMut() -> bool) {
         while self.is_behind(step) {
-            let gone_on = self.reader.take(&self.simulation);
+            let gone_on = self.reader.read_to_next_step(&self.simulation);
             if gone_on.is_err() || self.simulation.step().is_err() {
                 self.has_broken = true;
                 return;
@@ -141,7 +141,7 @@ impl DataComparison {
         }
         if !self.has_broken && self.simulation.step_number() <= step {
             // The value measured at this very step. Where the next step breaks down, the run says so.
-            self.has_broken = self.reader.take(&self.simulation).is_err();
+            self.has_broken = self.reader.read_to_next_step(&self.simulation).is_err();
         }
     }
 
@@ -149,7 +149,7 @@ impl DataComparison {
         let now = self.simulation.now();
         let values: Vec<f64> = self
             .recorded_here()
-            .map(|(_, quantity)| quantity.of(now))
+            .map(|(_, quantity)| quantity.value_at(now))
             .collect();
         let (time_s, axle_height) = (now.time_s(), now.after().axle().z);
         for (values, recording) in values.chunks(IN_A_RECORDING).zip(&mut self.recorded) {

@@ -76,7 +76,7 @@ impl LiveRun {
     /// When the numbers stop being finite; the run then stays at the step before.
     pub fn step(&mut self) -> Result<(), NotFinite> {
         let step = self.simulation.step()?;
-        self.monitor.follow(step);
+        self.monitor.record(step);
         self.pictures.record(step);
         self.checkpoints.offer(&self.simulation, &self.monitor);
         Ok(())

@@ -41,7 +41,7 @@ use crate::trig::round;
 use crate::workings::{Listener, Nobody};
 use core::f64::consts::TAU;
 use nalgebra::{Complex, Matrix3, Quaternion, UnitQuaternion, Vector3};
-use start::{InFrame, cayley_klein, frame_along, quaternion, start, up};
+use start::{InFrame, cayley_klein, frame_along, quaternion, start_in, up};
 
 /// One Cayley-Klein parameter as a function of time.
 #[derive(Clone, Copy, Debug)]
@@ -128,9 +128,13 @@ impl LagrangeTop {
         momentum: Vector3<f64>,
     ) -> Self {
         let axle: Vector3<f64> = orientation.column(2).into();
-        let up = up(load, momentum, axle);
-        let vertical = frame_along(up.normalize());
-        let start = start(across, load, &InFrame { vertical, up }, axle, momentum);
+        let upward = up(load, momentum, axle);
+        let vertical = frame_along(upward.normalize());
+        let frame = InFrame {
+            vertical,
+            up: upward,
+        };
+        let start = start_in(across, load, &frame, axle, momentum);
         let turning = Turning::new(&start);
         let (m, one_minus_m) = turning.parameters(&start);
         let lattice = Lattice::new(m, one_minus_m, 0.5 * turning.whole.sqrt());

@@ -60,12 +60,16 @@ impl ExactMotion {
     /// When a push is on a point that `body` does not have.
     pub fn new(body: &Body, loads: &Loads, state: &State) -> Self {
         let (turn, momentum) = (state.orientation, state.momentum);
-        let top = SymmetricTop::of(body);
+        let top = SymmetricTop::from_body(body);
         let damping = Damping::new(body, &loads.friction);
         let force = top.and_then(|top| Some((top, loads.on_axle(body, &top)?)));
         let solution = match force.filter(|_| damping.is_none()) {
-            Some((top, force)) => ExactSolution::Closed(Box::new(LagrangeTop::new(
-                top.across, top.along, force, turn, momentum,
+            Some((around, force)) => ExactSolution::Closed(Box::new(LagrangeTop::new(
+                around.across,
+                around.along,
+                force,
+                turn,
+                momentum,
             ))),
             None => {
                 let moment = loads.moment(body);
@@ -93,7 +97,7 @@ impl ExactMotion {
         let (orientation, momentum) = match &mut self.solution {
             ExactSolution::Closed(top) => top.at_heard(t, listener),
             ExactSolution::Integrated(motion) => {
-                let now = motion.advance(t);
+                let now = motion.state_at(t);
                 listener.hear(|| phases::integrated(t, motion.time, &now));
                 now
             }

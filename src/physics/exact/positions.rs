@@ -26,8 +26,9 @@ impl LagrangeTop {
         at: &Vector3<f64>,
         times: &[f64; AT_ONCE],
     ) -> Option<[[f64; AT_ONCE]; 3]> {
-        let per_s = [&self.alpha, &self.beta].map(|part| part.turns_per_s.abs());
-        let per_s = per_s[0].max(per_s[1]).max(self.lattice.per_period);
+        let per_s = (self.alpha.turns_per_s.abs())
+            .max(self.beta.turns_per_s.abs())
+            .max(self.lattice.per_period);
         let latest = times.iter().fold(0.0_f64, |latest, t| latest.max(t.abs()));
         if self.lattice.pulsed || (latest + self.since_origin.abs()) * per_s > MOST_PHASE_TURNS {
             return None;
@@ -41,9 +42,9 @@ impl LagrangeTop {
         let vertical = self.vertical.to_rotation_matrix();
         let mut positions = [[0.0; AT_ONCE]; 3];
         for (place, t) in times.iter().enumerate() {
-            let at = self.position_near(*t, period, at, vertical.matrix());
+            let position = self.position_near(*t, period, at, vertical.matrix());
             for axis in 0..3 {
-                positions[axis][place] = at[axis];
+                positions[axis][place] = position[axis];
             }
         }
         Some(positions)

@@ -27,7 +27,7 @@ struct LoadClock {
 }
 
 impl LoadClock {
-    fn advance(&mut self, time_step_s: f64) -> f64 {
+    fn next_time(&mut self, time_step_s: f64) -> f64 {
         if time_step_s != self.time_step_s {
             *self = Self {
                 before_s: self.time_s(),
@@ -76,7 +76,7 @@ impl Exact {
             ExactMethod::Closed => self.kinds.0 = true,
             ExactMethod::Integrated | ExactMethod::Rubbing => self.kinds.1 = true,
         }
-        let now = motion.at_heard(self.pace.advance(dt), listener);
+        let now = motion.at_heard(self.pace.next_time(dt), listener);
         (state.orientation, state.momentum) = (now.orientation, now.momentum);
         let work = motion.friction_work();
         self.step_work = work - self.work;

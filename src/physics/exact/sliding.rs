@@ -92,10 +92,10 @@ impl Sliding {
             return;
         }
         *momentum -= matrix.column(2) * (along * omega.z);
-        let omega = self.omega(matrix, momentum);
+        let slowed = self.omega(matrix, momentum);
         let load = axial(&(matrix * self.moment));
-        let swing = self.swing(&omega);
-        let gyration = omega.cross(&(self.damping.inertia * omega));
+        let swing = self.swing(&slowed);
+        let gyration = slowed.cross(&(self.damping.inertia * slowed));
         let hold = self.hold(&(matrix.tr_mul(&load) + swing - gyration));
         let is_strong_enough = match was {
             Contact::Holds => !ends,

@@ -136,7 +136,7 @@ impl AccurateMotion {
     /// on from an earlier time. Not a number for a time that is not finite, or that is too far for the turning of the body
     /// to be told apart by it, or with friction before the start; nor from the first time on to which the body turns by more
     /// than 2e5 to 6e5 rad from the time asked for before: then it has given up.
-    pub fn advance(&mut self, t: f64) -> (Matrix3<f64>, Vector3<f64>) {
+    pub fn state_at(&mut self, t: f64) -> (Matrix3<f64>, Vector3<f64>) {
         if t < self.time || t - self.time > self.radius {
             self.go_to_centre(t);
         }
@@ -166,8 +166,8 @@ impl AccurateMotion {
         if step == 0.0 || !t.is_finite() || (step < 0.0 && self.friction.is_some()) {
             return false;
         }
-        let (turn, change) = self.evaluate(step);
-        let change = change + self.carry;
+        let (turn, change_of_step) = self.evaluate(step);
+        let change = change_of_step + self.carry;
         let momentum = self.momentum[0] + change;
         self.carry = change - (momentum - self.momentum[0]);
         self.time = next;
@@ -214,10 +214,10 @@ impl AccurateMotion {
         (self.turn[0], self.momentum[0]) = (turn, momentum);
         if let Some(rubbing) = &mut self.friction {
             rubbing.keep(self.time, turn, momentum, self.carry);
-            let momentum = &mut self.momentum[0];
+            let series = &mut self.momentum[0];
             rubbing
                 .sliding
-                .begin(&rotation(turn), momentum, self.momentum_unit);
+                .begin(&rotation(turn), series, self.momentum_unit);
         }
         for k in 0..SERIES_ORDER {
             matrix[k] = convolve(k, |i, j| product_matrix(&self.turn[i], &self.turn[j]));

@@ -17,7 +17,7 @@ impl ReportScheme {
         (0..count).map(|index| {
             let (pair, lane) = (&points[index / LANES], index % LANES);
             let of = |lanes: f64x2| lanes.to_array()[lane];
-            let m = Moments::of(pair);
+            let m = Moments::from_pair(pair);
             let moments = [m.x, m.y, m.z, m.xx, m.yy, m.zz, m.xy, m.xz, m.yz];
             let at = [pair.x, pair.y, pair.z].map(of);
             (index, of(pair.mass), at, moments.map(of))
@@ -50,8 +50,11 @@ impl ReportScheme {
                 "I = Σ m (|X|² E − X Xᵀ) − F a aᵀ = (Sxx + Syy + Szz) E − S − F a aᵀ, S = Σ m X Xᵀ, F the moment about the axle a of what does not spin"
             },
         );
-        let phase = phase.with("X", "", table);
-        let phase = phase.with("S", "kg m²", Moments::of_all(&self.points).second());
+        let phase = phase.with("X", "", table).with(
+            "S",
+            "kg m²",
+            Moments::from_pairs(&self.points).second(),
+        );
         if whole_spins {
             phase.with("I", "kg m²", inertia)
         } else {
@@ -91,8 +94,15 @@ impl ReportScheme {
             ("(X × F)z", "N m"),
         ]);
         for push in &self.pushes {
-            let (force, torque) = (push.force, self.push_torque(push));
-            let row = [force.x, force.y, force.z, torque.x, torque.y, torque.z];
+            let (force, push_torque) = (push.force, self.push_torque(push));
+            let row = [
+                force.x,
+                force.y,
+                force.z,
+                push_torque.x,
+                push_torque.y,
+                push_torque.z,
+            ];
             pushes.add(push.point, row);
         }
         Phase::new(PhaseName::Torque, "τ = Σ X × F at the new positions: the weight's (−g Σ m y, g Σ m x, 0), and each push's").with("m X", "", points).with("Σ m X", "kg m", *first_moment).with("g", "m/s²", self.gravity).with("τ of the weight", "N m", self.weight_torque(first_moment)).with("F", "", pushes).with("τ", "N m", *torque)

@@ -61,7 +61,7 @@ impl Moments {
     };
 
     #[inline]
-    pub fn of(pair: &Pair) -> Self {
+    pub fn from_pair(pair: &Pair) -> Self {
         let (x, y, z) = (pair.x, pair.y, pair.z);
         let (mx, my, mz) = (pair.mass * x, pair.mass * y, pair.mass * z);
         Self {
@@ -93,8 +93,11 @@ impl Moments {
     }
 
     #[inline]
-    pub fn of_all(points: &[Pair]) -> Self {
-        points.iter().map(Self::of).fold(Self::NONE, Self::and)
+    pub fn from_pairs(points: &[Pair]) -> Self {
+        points
+            .iter()
+            .map(Self::from_pair)
+            .fold(Self::NONE, Self::and)
     }
 
     /// Σ m X, kg m.
@@ -112,7 +115,7 @@ impl Moments {
 }
 
 impl Inertia {
-    pub fn of(matrix: &Matrix3<f64>) -> Self {
+    pub fn from_matrix(matrix: &Matrix3<f64>) -> Self {
         let m = |row, column| matrix[(row, column)];
         Self {
             xx_yy: f64x2::new([m(0, 0), m(1, 1)]),
@@ -124,7 +127,7 @@ impl Inertia {
 
     /// Σ m (|X|²E − XXᵀ) from Σ m XXᵀ.
     #[inline]
-    pub fn of_points(moments: &Moments) -> Self {
+    pub fn from_moments(moments: &Moments) -> Self {
         let (xx, yy, zz) = (moments.xx, moments.yy, moments.zz);
         let diagonal = add_up_both(yy, xx);
         Self {
@@ -161,7 +164,7 @@ impl Inertia {
 
 impl LaneRotation {
     #[inline]
-    pub fn of(rotation: &Matrix3<f64>) -> Self {
+    pub fn from_matrix(rotation: &Matrix3<f64>) -> Self {
         Self([0, 1, 2].map(|row| [0, 1, 2].map(|column| f64x2::splat(rotation[(row, column)]))))
     }
 

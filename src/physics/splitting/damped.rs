@@ -1,7 +1,7 @@
 //! The splitting of order 2 with friction: half a kick, the free motion, half a kick, where friction acts during the kicks.
 //!
 //! A kick leaves the body where it is. What torque and friction together do to L meanwhile is known in closed form
-//! ([`Damping::act`]), so that dry friction holds the body, and strong friction does not overshoot. The composition stays
+//! ([`Damping::slow`]), so that dry friction holds the body, and strong friction does not overshoot. The composition stays
 //! palindromic, hence of order 2.
 //!
 //! The free motion of a body that is not symmetric about its axle changes ω3 also where dry friction holds it. Friction
@@ -31,7 +31,8 @@ impl DampedStrang {
     /// For `body` under `loads`; `None` where there is no friction.
     pub fn new(body: &Body, loads: &Loads) -> Option<Self> {
         let free = FreeBody::new(&body.inertia());
-        let is_even = matches!(&free, FreeBody::Symmetric(body) if body.axis == Vector3::z());
+        let is_even =
+            matches!(&free, FreeBody::Symmetric(symmetric) if symmetric.axis == Vector3::z());
         Some(Self {
             body: free,
             moment: loads.moment(body),
@@ -43,8 +44,7 @@ impl DampedStrang {
     /// One step of `h` seconds; returns the work of friction, J.
     pub fn step<L: Listener>(&self, state: &mut State, h: f64, listener: &mut L) -> f64 {
         let before = self.kick(0.5 * h, 0.0, state, listener);
-        self.body
-            .advance(&mut state.orientation, &state.momentum, h);
+        self.body.turn(&mut state.orientation, &state.momentum, h);
         listener.hear(|| phases::free_motion(h, &state.momentum, &state.orientation));
         state.orientation = orthonormal(&state.orientation);
         listener.hear(|| phases::orthonormal(&state.orientation));
@@ -60,7 +60,7 @@ impl DampedStrang {
         listener: &mut L,
     ) -> f64 {
         let q = &state.orientation;
-        let torque = torque(q, &self.moment);
+        let load = torque(q, &self.moment);
         let omega = self.damping.inverse_inertia * q.tr_mul(&state.momentum);
         let free_spin = self.gyrates.then(|| FreeSpin {
             gyration: self.damping.gyration(&omega),
@@ -68,9 +68,9 @@ impl DampedStrang {
         });
         let action = self
             .damping
-            .act(&omega, &q.tr_mul(&torque), duration_s, free_spin);
-        state.momentum += torque * duration_s;
-        listener.hear(|| phases::kick(duration_s, &torque, &state.momentum));
+            .slow(&omega, &q.tr_mul(&load), duration_s, free_spin);
+        state.momentum += load * duration_s;
+        listener.hear(|| phases::kick(duration_s, &load, &state.momentum));
         let impulse = q * action.impulse;
         state.momentum += impulse;
         listener.hear(|| friction::phase(duration_s, &omega, &impulse, &state.momentum));

@@ -48,15 +48,10 @@ impl FreeBody {
     /// `momentum` (about the fixed point, world frame, J s) staying as it is. The orientation stays orthonormal to
     /// rounding, which adds up over many calls until `orthonormal` takes it away.
     #[inline]
-    pub fn advance(
-        &self,
-        orientation: &mut Matrix3<f64>,
-        momentum: &Vector3<f64>,
-        duration_s: f64,
-    ) {
+    pub fn turn(&self, orientation: &mut Matrix3<f64>, momentum: &Vector3<f64>, duration_s: f64) {
         match self {
-            Self::Symmetric(body) => body.advance(orientation, momentum, duration_s),
-            Self::Lopsided(body) => body.advance(orientation, momentum, duration_s),
+            Self::Symmetric(body) => body.turn(orientation, momentum, duration_s),
+            Self::Lopsided(body) => body.turn(orientation, momentum, duration_s),
         }
     }
 }
@@ -90,12 +85,12 @@ impl SymmetricBody {
     }
 
     #[inline]
-    fn advance(&self, orientation: &mut Matrix3<f64>, momentum: &Vector3<f64>, duration_s: f64) {
+    fn turn(&self, orientation: &mut Matrix3<f64>, momentum: &Vector3<f64>, duration_s: f64) {
         let axis = *orientation * self.axis;
         // L.axis from world vectors, as |L|: taken from body components the errors of a carried matrix would feed on themselves.
         let spin = RotationByVector::new(axis * (self.excess * axis.dot(momentum) * duration_s));
         let precession = RotationByVector::new(momentum * (self.across * duration_s));
-        *orientation = precession.of_columns(&spin.of_columns(orientation));
+        *orientation = precession.apply_to_columns(&spin.apply_to_columns(orientation));
     }
 }
 
@@ -130,7 +125,7 @@ impl LopsidedBody {
         }
     }
 
-    fn advance(&self, orientation: &mut Matrix3<f64>, momentum: &Vector3<f64>, duration_s: f64) {
+    fn turn(&self, orientation: &mut Matrix3<f64>, momentum: &Vector3<f64>, duration_s: f64) {
         let size = momentum.norm();
         // The only body that does not turn; below the smallest squares it turns by nothing, either.
         if size == 0.0 {
@@ -313,7 +308,7 @@ mod tests {
             Vector3::from_fn(|_, _| self.number())
         }
         fn rotation(&mut self) -> Matrix3<f64> {
-            RotationByVector::new(self.vector() * 3.0).of_columns(&Matrix3::identity())
+            RotationByVector::new(self.vector() * 3.0).apply_to_columns(&Matrix3::identity())
         }
         /// From 0.1 to 10, evenly in the logarithm.
         fn size(&mut self) -> f64 {
@@ -357,7 +352,7 @@ mod tests {
         fn advanced(&self) -> Matrix3<f64> {
             let Self(inertia, start, momentum, t) = self;
             let mut q = *start;
-            FreeBody::new(inertia).advance(&mut q, momentum, *t);
+            FreeBody::new(inertia).turn(&mut q, momentum, *t);
             q
         }
 
@@ -390,8 +385,8 @@ mod tests {
             [1e-3, 1.0, 1.001],
         ];
         moments.extend(thin_flat_and_extreme.repeat(20));
-        for moments in moments {
-            let inertia = Matrix3::from_diagonal(&moments.into());
+        for principal in moments {
+            let inertia = Matrix3::from_diagonal(&principal.into());
             let (start, momentum) = (random.rotation(), random.vector() * random.size());
             let t = 20.0 * random.number() * inertia.diagonal().min() / momentum.norm();
             FreeMotion(inertia, start, momentum, t).is_as_integrated(1e-13);
@@ -471,7 +466,7 @@ mod tests {
                     m[i] = -1.5;
                     let axis: Vector3<f64> = start.column(i).into();
                     let expected =
-                        RotationByVector::new(axis * (-1.5 / moment * t)).of_columns(&start);
+                        RotationByVector::new(axis * (-1.5 / moment * t)).apply_to_columns(&start);
                     let rate = if is_unstable { 0.5 } else { 0.0 };
                     let growth = libm::exp(rate * t.abs());
                     let bound = 4e-15 * (growth + t.abs()) + 10.0 * offset * growth;
@@ -492,7 +487,7 @@ mod tests {
             let (start, momentum) = (random.rotation(), random.vector());
             let body = FreeBody::new(&inertia);
             let mut in_parts = start;
-            (0..8).for_each(|_| body.advance(&mut in_parts, &momentum, 256.0));
+            (0..8).for_each(|_| body.turn(&mut in_parts, &momentum, 256.0));
             // Each part begins with a rounded L in the body, and keeps its slightly different rates to the end.
             let phase = 2048.0 * momentum.norm() / inertia.diagonal().min();
             FreeMotion(inertia, start, momentum, 2048.0).is_near(&in_parts, 1e-14 * phase);

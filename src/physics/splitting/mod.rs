@@ -221,8 +221,8 @@ impl AxleTop {
             momentum += change;
             listener.hear(|| phases::axle_kick(kick * h, &self.force, &axle, &change, &momentum));
             let turn = RotationByVector::new(momentum * (self.body.across * (free * h)));
-            axle = turn.of(axle);
-            side = turn.of(side);
+            axle = turn.apply(axle);
+            side = turn.apply(side);
             listener.hear(|| phases::axle_turn(free * h, &turn, &axle, &side));
         }
         axle *= to_unit;
@@ -275,7 +275,7 @@ impl AnyTop {
         for &(kick, free) in stages {
             self.kick(kick * h, state, listener);
             self.body
-                .advance(&mut state.orientation, &state.momentum, free * h);
+                .turn(&mut state.orientation, &state.momentum, free * h);
             listener.hear(|| phases::free_motion(free * h, &state.momentum, &state.orientation));
         }
         state.orientation = orthonormal(&state.orientation);
@@ -285,9 +285,9 @@ impl AnyTop {
 
     #[inline]
     fn kick<L: Listener>(&self, duration_s: f64, state: &mut State, listener: &mut L) {
-        let torque = torque(&state.orientation, &self.moment);
-        state.momentum += torque * duration_s;
-        listener.hear(|| phases::kick(duration_s, &torque, &state.momentum));
+        let load = torque(&state.orientation, &self.moment);
+        state.momentum += load * duration_s;
+        listener.hear(|| phases::kick(duration_s, &load, &state.momentum));
     }
 }
 

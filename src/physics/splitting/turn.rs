@@ -35,15 +35,15 @@ impl RotationByVector {
 
     /// The vector turned.
     #[inline]
-    pub fn of(&self, v: Vector3<f64>) -> Vector3<f64> {
+    pub fn apply(&self, v: Vector3<f64>) -> Vector3<f64> {
         let across = self.vector.cross(&v);
         v + across * self.sine + self.vector.cross(&across) * self.versine
     }
 
     /// Every column turned.
     #[inline]
-    pub fn of_columns(&self, m: &Matrix3<f64>) -> Matrix3<f64> {
-        Matrix3::from_columns(&[0, 1, 2].map(|j| self.of(m.column(j).into())))
+    pub fn apply_to_columns(&self, m: &Matrix3<f64>) -> Matrix3<f64> {
+        Matrix3::from_columns(&[0, 1, 2].map(|j| self.apply(m.column(j).into())))
     }
 }
 

@@ -312,7 +312,7 @@ pub fn exact(
         if !state.is_finite() {
             break; // what comes after it is no number either
         }
-        azimuth.follow(&state.axle());
+        azimuth.turn_to(&state.axle());
         let sample = sample(scenario, &state, &azimuth, truth.loads().gravity);
         recorder.take(time_s, 0.0, &sample.position, || sample);
         if number.is_multiple_of(look_every) && watch(number, count).is_break() {

@@ -66,7 +66,7 @@ fn of_momentum(scenario: &toml::Table, key: &str) -> Option<ChartAxis> {
         Some("body") => (part + 1).to_string(),
         _ => VECTOR_PARTS[part].1.to_owned(),
     };
-    let unit = unit_markup(Unit::of("momentum_Js").map_or("", |unit| unit.name));
+    let unit = unit_markup(Unit::from_name("momentum_Js").map_or("", |unit| unit.name));
     Some(ChartAxis::new(at_start(&format!("*L*_{{{index}}}")), unit))
 }
 
@@ -82,7 +82,7 @@ fn at_start(symbol: &str) -> String {
 pub fn words(name: &str) -> (String, &'static str) {
     let mut unit = "";
     let mut in_words = |part: &str| -> String {
-        let (bare, of_part) = match Unit::of(part) {
+        let (bare, of_part) = match Unit::from_name(part) {
             Some(unit) => (&part[..part.len() - unit.end.len()], unit.name),
             None => (part, ""),
         };

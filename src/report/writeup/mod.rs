@@ -91,7 +91,7 @@ impl Writeup {
         let lasting = READOUTS.iter();
         let lasting = lasting.filter(|readout| readout.source != ReadoutSource::Clock);
         let named = lasting.map(|readout| {
-            let value = serde_json::to_value(readout.of(&self.readouts));
+            let value = serde_json::to_value(readout.read_from(&self.readouts));
             (readout.name.to_owned(), value.unwrap_or(Value::Null))
         });
         let mut object: Map<_, _> = named.collect();

@@ -41,7 +41,7 @@ pub fn rows(readouts: &Readouts, since_s: Option<f64>) -> Vec<QuantityRow> {
 
 /// The number of the run that a readout is, in its unit.
 fn number(readout: Option<&Readout>, readouts: &Readouts) -> Option<f64> {
-    readout.and_then(|readout| readout.of(readouts).number())
+    readout.and_then(|readout| readout.read_from(readouts).number())
 }
 
 /// The readout with the theory of the exact motion. (The swing that the report's scheme makes has a formula, which is none.)
@@ -127,7 +127,7 @@ fn words(readout: &Readout, is_strobed: bool, since_s: Option<f64>) -> (String, 
 /// The `name` of a measured number in words.
 fn bare(name: &str) -> String {
     let bare = name.strip_prefix(MEASURED_NAME_PREFIX).unwrap_or(name);
-    let end = Unit::of(bare).map_or("", |unit| unit.end);
+    let end = Unit::from_name(bare).map_or("", |unit| unit.end);
     bare[..bare.len() - end.len()].replace('_', " ")
 }
 

@@ -103,11 +103,11 @@ impl Chart {
             chart.limit(Rule::Least(place), &unit(place), key.from);
             chart.limit(Rule::Greatest(place), &-unit(place), -key.to);
         }
-        for ((part, moments), second) in moments.iter().zip(second.chunks(3)) {
-            let sum: DVector<f64> = moments.iter().map(|row| &row.slopes).sum();
-            let sum_at_zero: f64 = moments.iter().map(|row| row.at_zero).sum();
+        for ((part, rows), row) in moments.iter().zip(second.chunks(3)) {
+            let sum: DVector<f64> = rows.iter().map(|row| &row.slopes).sum();
+            let sum_at_zero: f64 = rows.iter().map(|row| row.at_zero).sum();
             for axis in 0..3 {
-                let (part, of_second, of_moment) = (*part, &second[axis], &moments[axis]);
+                let (part, of_second, of_moment) = (*part, &row[axis], &rows[axis]);
                 let rule = Rule::SecondMoment { part, axis };
                 chart.limit(rule, &of_second.slopes, -of_second.at_zero);
                 let slopes = &of_moment.slopes - LEAST_MOMENT * &sum;
@@ -201,8 +201,15 @@ fn parts(free: &[Free]) -> BTreeSet<usize> {
 
 /// The three moments of `part` about its center as functions of the keys.
 fn of_part(free: &[Free], part: usize, scenario: &Scenario) -> [Row; 3] {
-    let own = scenario.file.body.part.get(part);
-    let own = Vector3::from(own.and_then(|part| part.moments_kg_m2).unwrap_or_default());
+    let own = Vector3::from(
+        scenario
+            .file
+            .body
+            .part
+            .get(part)
+            .and_then(|part| part.moments_kg_m2)
+            .unwrap_or_default(),
+    );
     let about_center = scenario
         .body
         .parts
@@ -210,11 +217,7 @@ fn of_part(free: &[Free], part: usize, scenario: &Scenario) -> [Row; 3] {
         .map_or(own, PlacedSolid::moments);
     let shift = own - about_center; // 0, unless the file gives the moments about the pivot
     [0, 1, 2].map(|axis| {
-        let is_it = |free: &Free| {
-            free.keys
-                .iter()
-                .any(|key| moment(key) == Some((part, axis)))
-        };
+        let is_it = |key: &Free| key.keys.iter().any(|key| moment(key) == Some((part, axis)));
         let is_free = free.iter().any(is_it);
         Row {
             slopes: DVector::from_fn(free.len(), |row, _| f64::from(u8::from(is_it(&free[row])))),

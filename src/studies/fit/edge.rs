@@ -83,14 +83,16 @@ impl Edge {
                 let (key, value) = key(place);
                 let [at_68, at_95] =
                     [at_68, at_95].map(|it| significant(keys[place].value + it, 2));
-                let most = most(at_68, at_95);
-                format!("{key} is at {value}, the least that it can be{most}.")
+                format!(
+                    "{key} is at {value}, the least that it can be{}.",
+                    most(at_68, at_95)
+                )
             }
             (Rule::SecondMoment { part, axis }, _) => {
                 let (sum, moment) = FLAT[axis].split_once(" = ").unwrap_or_default();
-                let most = self.percents().map(|[a, b]| most(percent(a), percent(b)));
-                let most = most.map_or(String::new(), |most| {
-                    format!(" {sum} is above {moment} by{}", &most[1..])
+                let most = self.percents().map_or(String::new(), |[a, b]| {
+                    let percents = most(percent(a), percent(b));
+                    format!(" {sum} is above {moment} by{}", &percents[1..])
                 });
                 format!(
                     "body.part.{part} is flat: {}, at the physical limit (A, B, C: its moments .0, .1, .2 about its center).{most}{} The other values have the uncertainty of an exactly flat body to one side; to the other, that of the thickness is added in quadrature.",
@@ -101,9 +103,9 @@ impl Edge {
             (Rule::Moment { part, axis }, _) => {
                 let (moment, _) = ROD[axis].split_once(" = ").unwrap_or_default();
                 let other = ["A", "B", "C"][(axis + 1) % 3];
-                let most = self.percents().map(|[a, b]| most(percent(a), percent(b)));
-                let most = most.map_or(String::new(), |most| {
-                    format!(" {moment} is{} of {other}.", &most[1..])
+                let most = self.percents().map_or(String::new(), |[a, b]| {
+                    let percents = most(percent(a), percent(b));
+                    format!(" {moment} is{} of {other}.", &percents[1..])
                 });
                 format!(
                     "body.part.{part} is a rod: {}, at the physical limit (A, B, C: its moments .0, .1, .2 about its center).{most} The other values have the uncertainty of an exact rod to one side; to the other, that of the thickness is added in quadrature.",
@@ -114,8 +116,12 @@ impl Edge {
     }
 
     pub fn json(&self, keys: &[Fitted]) -> Value {
-        let held = keys.iter().zip(&self.holds).filter(|(_, holds)| **holds);
-        let held: Vec<&String> = held.map(|(key, _)| &key.free.key).collect();
+        let held: Vec<&String> = keys
+            .iter()
+            .zip(&self.holds)
+            .filter(|(_, holds)| **holds)
+            .map(|(key, _)| &key.free.key)
+            .collect();
         let (rule, unit) = match self.of_part() {
             Some((_, rule)) => (rule, Some("kg m^2")),
             None => ("bound of the key".to_owned(), None),
@@ -132,11 +138,16 @@ fn percent(percent: f64) -> String {
 }
 
 /// The limits that hold the keys at the `minimum`. `variance` is the factor of the covariances.
-pub fn edges(minimum: &Minimum, chart: &Chart, free: &[Free], variance: Option<f64>) -> Vec<Edge> {
+pub fn edges_at(
+    minimum: &Minimum,
+    chart: &Chart,
+    free: &[Free],
+    variance: Option<f64>,
+) -> Vec<Edge> {
     let keys = chart.keys(&minimum.p);
     let edge = |&place: &usize| {
         let rule = chart.rules[place];
-        let inside = Inside::of(minimum, chart, place);
+        let inside = Inside::new(minimum, chart, place);
         let moves = match &inside {
             Some(inside) => (&chart.inverse * &inside.moves).as_slice().to_vec(),
             None => vec![0.0; free.len()],
@@ -149,7 +160,6 @@ pub fn edges(minimum: &Minimum, chart: &Chart, free: &[Free], variance: Option<f
             }
         };
         let is_of_nature = rule.is_of_nature(free);
-        let inside = inside.filter(|_| is_of_nature);
         let moment = match rule {
             Rule::Least(_) | Rule::Greatest(_) => None,
             Rule::SecondMoment { part, axis } => chart.moment(part, axis, &keys),
@@ -162,6 +172,7 @@ pub fn edges(minimum: &Minimum, chart: &Chart, free: &[Free], variance: Option<f
             holds: (0..free.len()).map(holds).collect(),
             moves,
             most: inside
+                .filter(|_| is_of_nature)
                 .zip(variance)
                 .and_then(|(it, variance)| it.most(variance)),
         }
@@ -180,14 +191,18 @@ struct Inside {
 
 impl Inside {
     /// The distribution for the limit at `place`, the others held; `None` where the data do not say.
-    fn of(minimum: &Minimum, chart: &Chart, place: usize) -> Option<Self> {
+    fn new(minimum: &Minimum, chart: &Chart, place: usize) -> Option<Self> {
         let slopes = &minimum.slopes;
         let unit = |norm: f64| if norm > 0.0 { norm.recip() } else { 1.0 };
         let units = slopes.column_iter().map(|column| unit(column.norm()));
         let units = DVector::from_iterator(slopes.ncols(), units);
-        let scaled = |place: usize| chart.limits[place].normal.component_mul(&units);
-        let others = minimum.held.iter().filter(|other| **other != place);
-        let others: Vec<DVector<f64>> = others.map(|&other| scaled(other)).collect();
+        let scaled = |index: usize| chart.limits[index].normal.component_mul(&units);
+        let others: Vec<DVector<f64>> = minimum
+            .held
+            .iter()
+            .filter(|other| **other != place)
+            .map(|&other| scaled(other))
+            .collect();
         let free = complement(others.iter(), slopes.ncols());
         let columns = slopes * nalgebra::DMatrix::from_diagonal(&units) * &free;
         let svd = columns.svd(true, true);

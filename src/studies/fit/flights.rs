@@ -58,7 +58,7 @@ pub fn find(series: &TimeSeries, scenario: &Scenario) -> Found {
     let Some(recorded) = recorded(series).filter(|_| flies(scenario)) else {
         return Found::NotThrown;
     };
-    let recording = Recording::of(recorded);
+    let recording = Recording::new(recorded);
     let count = recording.times_s.len();
     if count < FEWEST_ROWS || recording.is_one_flight() {
         return Found::Whole;
@@ -144,8 +144,8 @@ impl Squares {
         let sums = self.covariance(&self.sums_sums, &self.sums, &self.sums);
         [0, 1, 2]
             .map(|axis| {
-                let growth = growth[axis];
-                rates[axis] + growth * (growth * sums[axis] - 2.0 * both[axis])
+                let own = growth[axis];
+                rates[axis] + own * (own * sums[axis] - 2.0 * both[axis])
             })
             .into_iter()
             .fold(0.0, f64::max)
@@ -153,7 +153,7 @@ impl Squares {
 }
 
 impl Recording {
-    fn of(recorded: Vec<(f64, Vector3<f64>)>) -> Self {
+    fn new(recorded: Vec<(f64, Vector3<f64>)>) -> Self {
         let (times_s, rates): (Vec<f64>, Vec<Vector3<f64>>) = recorded.into_iter().unzip();
         let product = |w: &Vector3<f64>| Vector3::new(w.y * w.z, w.z * w.x, w.x * w.y);
         let mut sum = Vector3::zeros();
@@ -269,9 +269,9 @@ impl Recording {
         } else {
             rows.end.saturating_sub(margin)
         };
-        let rows = start..end.max(start);
-        let is_long = rows.len() >= FEWEST_ROWS && self.seconds(&rows) >= LEFT * SHORTEST_S;
-        is_long.then_some(rows)
+        let kept = start..end.max(start);
+        let is_long = kept.len() >= FEWEST_ROWS && self.seconds(&kept) >= LEFT * SHORTEST_S;
+        is_long.then_some(kept)
     }
 
     /// `rows` without those at the ends that are off the lines of all by more than `most` standard deviations.
@@ -280,8 +280,7 @@ impl Recording {
         while rows.len() > FEWEST_ROWS {
             let squares = self.squares(rows.clone());
             let growth = squares.growth();
-            let offset = squares.rates - growth.component_mul(&squares.sums);
-            let offset = offset / squares.count;
+            let offset = (squares.rates - growth.component_mul(&squares.sums)) / squares.count;
             let askew = SHARE * squares.speed / squares.count;
             let is_off = |end: Range<usize>| {
                 let count = end.len() as f64;

@@ -53,7 +53,7 @@ impl Free {
 
     fn read(argument: &str, scenario: &Document) -> Result<Self, String> {
         let (key, bounds) = argument.split_once('=').unwrap_or((argument, ".."));
-        let (from, to) = ends(bounds)?;
+        let (lowest, to) = ends(bounds)?;
         let keys: Vec<String> = key.split('+').map(|key| key.trim().to_owned()).collect();
         let (start, nudge, least) = Self::one(&keys[0], scenario)?;
         for other in &keys[1..] {
@@ -67,7 +67,7 @@ impl Free {
                 ));
             }
         }
-        let from = from.max(least);
+        let from = lowest.max(least);
         can_begin(key.trim(), start, from, to)?;
         let width = Some(to - from).filter(|width| width.is_finite());
         let scale = match start.abs() {
@@ -95,8 +95,8 @@ impl Free {
             return Err("no number of a run depends on this key: it cannot be fitted".to_owned());
         }
         let written = dotted::find(scenario.table(), key).cloned();
-        let start = written.or_else(|| row.default.map(toml::Value::from));
-        let start = start.and_then(|value| float(&value)).ok_or_else(|| {
+        let stated = written.or_else(|| row.default.map(toml::Value::from));
+        let start = stated.and_then(|value| float(&value)).ok_or_else(|| {
             format!(
                 "has no value in the scenario, from which the search would begin: give it one by --set {key}=..."
             )

@@ -18,7 +18,7 @@ pub trait LeastSquares {
     fn slopes(&self, p: &[f64]) -> Result<DMatrix<f64>, Stop>;
 
     /// Called after each step, with the number of steps and the sum.
-    fn tell(&self, step: u64, sum: f64);
+    fn on_iteration(&self, step: u64, sum: f64);
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -80,9 +80,9 @@ pub fn search(
     for step in 0.. {
         let slopes = problem.slopes(&p)?;
         let sum = r.norm_squared();
-        problem.tell(step, sum);
-        for (scale, column) in scale.iter_mut().zip(slopes.column_iter()) {
-            *scale = column.norm().max(*scale);
+        problem.on_iteration(step, sum);
+        for (size, column) in scale.iter_mut().zip(slopes.column_iter()) {
+            *size = column.norm().max(*size);
         }
         let linear = Linear::new(&slopes, &scale, &r, limits, &p);
         let held = linear.held();
@@ -153,11 +153,13 @@ impl<'a> Linear<'a> {
         let here: Vec<usize> = (0..self.limits.len())
             .filter(|place| self.limits[*place].least >= -HERE)
             .collect();
-        let cone = here.iter().map(|&place| Limit {
-            least: 0.0,
-            normal: self.limits[place].normal.clone(),
-        });
-        let cone: Vec<Limit> = cone.collect();
+        let cone: Vec<Limit> = here
+            .iter()
+            .map(|&place| Limit {
+                least: 0.0,
+                normal: self.limits[place].normal.clone(),
+            })
+            .collect();
         let down = self.root.tr_mul(&self.along);
         let unit = DMatrix::identity(down.len(), down.len());
         let within = least_squares(&unit, &down, &cone);
@@ -179,7 +181,7 @@ impl<'a> Linear<'a> {
         let along = u.tr_mul(&self.along);
         let pairs = svd.singular_values.iter().zip(along.iter());
         let seen = pairs.filter(|(singular, _)| **singular > least);
-        seen.map(|(_, along)| along * along).sum()
+        seen.map(|(_, part)| part * part).sum()
     }
 
     /// Returns where the longest step leads that reduces the sum; `None` where there is none.
@@ -225,10 +227,10 @@ impl<'a> Linear<'a> {
         let along = self.along.clone().resize_vertically(rows + count, 0.0);
         let within = least_squares(&damped, &along, &self.limits);
         let mut step = within.y.component_mul(&self.units);
-        for (step, slopes) in step.iter_mut().zip(self.root.column_iter()) {
+        for (change, slopes) in step.iter_mut().zip(self.root.column_iter()) {
             // What moves no datum stays where it is, and not but for rounding.
             if slopes.amax() == 0.0 {
-                *step = 0.0;
+                *change = 0.0;
             }
         }
         step

@@ -147,9 +147,9 @@ impl Model {
     ) -> Result<Vec<f64>, Stop> {
         let scenario = self.scenario(p).map_err(Stop::Impossible)?;
         self.runs.fetch_add(1, Ordering::Relaxed);
-        let values = at_times(series, &Arc::new(scenario), go_on);
-        let values = values.map_err(|error| Stop::Impossible(error.to_string()))?;
-        let values = values.ok_or(Stop::Interrupted)?;
+        let values = at_times(series, &Arc::new(scenario), go_on)
+            .map_err(|error| Stop::Impossible(error.to_string()))?
+            .ok_or(Stop::Interrupted)?;
         let named = self.data.iter().zip(values.into_iter().flatten());
         named
             .map(|(datum, value)| self.finite(datum, Some(value)))
@@ -165,21 +165,28 @@ impl Model {
     ) -> Result<Vec<f64>, Stop> {
         let document = self.document(p).map_err(Stop::Impossible)?;
         let wanted: Vec<&Readout> = self.columns.iter().map(|column| column.readout).collect();
-        let rows: BTreeSet<usize> = self.data.iter().map(|datum| datum.point.row).collect();
-        let rows: Vec<usize> = rows.into_iter().collect();
+        let rows: Vec<usize> = self
+            .data
+            .iter()
+            .map(|datum| datum.point.row)
+            .collect::<BTreeSet<usize>>()
+            .into_iter()
+            .collect();
         let of_row = |&row: &usize| {
             let impossible = |why| Stop::Impossible(format!("in {}: {why}", self.row(row)));
             let document = with_settings(&document, table, row, changed);
-            let scenario = document.and_then(|document| Ok(document.scenario()?));
-            let scenario = scenario.map_err(impossible)?;
+            let scenario = document
+                .and_then(|document| Ok(document.scenario()?))
+                .map_err(impossible)?;
             self.runs.fetch_add(1, Ordering::Relaxed);
-            let read = readouts::at_end(scenario, &wanted, &|| go_on());
-            let read = read.map_err(impossible)?.ok_or(Stop::Interrupted)?;
+            let read = readouts::at_end(scenario, &wanted, &|| go_on())
+                .map_err(impossible)?
+                .ok_or(Stop::Interrupted)?;
             let values = read.iter().map(readouts::ReadoutValue::number);
             Ok((row, values.collect()))
         };
-        let of_rows: Result<HashMap<usize, Vec<Option<f64>>>, Stop> = cores::map(&rows, of_row);
-        let of_rows = of_rows?;
+        let of_rows: HashMap<usize, Vec<Option<f64>>> =
+            cores::map::<_, _, Result<_, Stop>>(&rows, of_row)?;
         self.data
             .iter()
             .map(|datum| self.finite(datum, of_rows[&datum.point.row][datum.column]))
@@ -249,7 +256,7 @@ fn with_settings(
     row: usize,
     changed: Option<(usize, f64)>,
 ) -> Result<Document, String> {
-    let mut document = document.clone();
+    let mut changed_document = document.clone();
     for (index, setting) in table.settings.iter().enumerate() {
         let Some(value) = &setting.values[row] else {
             continue;
@@ -259,9 +266,9 @@ fn with_settings(
             (Value::Float(number), Some((_, by)), Some(sigma)) => Value::Float(number + by * sigma),
             _ => value.clone(),
         };
-        document.set_value(&setting.key, value)?;
+        changed_document.set_value(&setting.key, value)?;
     }
-    Ok(document)
+    Ok(changed_document)
 }
 
 /// Refuses data whose last row the run of `scenario` takes too many steps to come to.
@@ -302,8 +309,9 @@ fn are_apart(free: &[Free], settings: &[RunSetting]) -> Result<(), Problems> {
     for (index, key) in keys.iter().enumerate() {
         let rule = if keys[..index].iter().any(|other| overlap(key, other)) {
             "is free twice: name it once".to_owned()
-        } else if let Some(column) = settings.iter().find(|it| overlap(key, &it.key)) {
-            let column = &column.key;
+        } else if let Some(RunSetting { key: column, .. }) =
+            settings.iter().find(|it| overlap(key, &it.key))
+        {
             format!("is set by the column {column} in every row: it cannot be free")
         } else {
             continue;

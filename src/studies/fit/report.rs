@@ -185,15 +185,21 @@ impl FitReport<'_> {
             });
             parts.collect::<Vec<_>>()
         });
-        let silent = fit.solution.silent.iter();
-        let silent = silent.map(|&index| &fit.keys[index].free.key);
-        let residuals = fit.residuals.iter().zip(&self.model.data);
-        let residuals = residuals.map(|(residual, datum)| {
-            let mut row = json!(ValueColumns::of(residual));
-            row["row"] = json!(residual.row + 1);
-            row["quantity"] = json!(self.model.columns[datum.column].readout.name);
-            row
-        });
+        let silent = fit
+            .solution
+            .silent
+            .iter()
+            .map(|&index| &fit.keys[index].free.key);
+        let residuals = fit
+            .residuals
+            .iter()
+            .zip(&self.model.data)
+            .map(|(residual, datum)| {
+                let mut row = json!(ValueColumns::from_residual(residual));
+                row["row"] = json!(residual.row + 1);
+                row["quantity"] = json!(self.model.columns[datum.column].readout.name);
+                row
+            });
         let freedom = quality.degrees_of_freedom;
         json!({
             "measured": self.model.measured.origin, "scenario": self.model.title, "scheme": self.model.scheme,
@@ -264,8 +270,7 @@ fn write_table<const N: usize>(
         .filter_map(|column| rows.iter().map(|row| width(&row[column])).max())
         .collect();
     for row in &rows {
-        let cells = row.iter().zip(&widths);
-        let cells = cells.map(|(cell, most)| {
+        let cells = row.iter().zip(&widths).map(|(cell, most)| {
             let room = " ".repeat(most - width(cell));
             format!("  {}{room}", printable(cell))
         });
@@ -338,7 +343,7 @@ pub fn write_csv(
             residual.row + 1,
             at_cells(data, residual.row),
             quantity,
-            ValueColumns::of(residual),
+            ValueColumns::from_residual(residual),
         );
         rows.serialize(row).map_err(io::Error::other)?;
     }
@@ -356,7 +361,7 @@ struct ValueColumns {
 }
 
 impl ValueColumns {
-    fn of(residual: &Residual) -> Self {
+    fn from_residual(residual: &Residual) -> Self {
         Self {
             measured: residual.measured,
             uncertainty: residual.sigma,

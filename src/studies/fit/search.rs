@@ -1,11 +1,11 @@
 //! The whole of a fit: from the start values to the minimum, and what the data say there.
 
 use super::chart::Chart;
-use super::edge::{Edge, edges};
+use super::edge::{Edge, edges_at};
 use super::free::Free;
 use super::levenberg::{self, Failure, LeastSquares, Minimum, Stop};
 use super::model::{FitProgress, Model};
-use super::solution::{FitSolution, Quality, SILENT_KEY, variance};
+use super::solution::{FitSolution, Quality, SILENT_KEY, scatter_variance};
 use super::thrown;
 use super::weights::Weights;
 use super::within::Limit;
@@ -133,9 +133,9 @@ fn starts(
     own: Vec<f64>,
     go_on: FitProgress<'_>,
 ) -> Result<Vec<Vec<f64>>, Stop> {
-    let thrown = thrown::starts(model, &own);
+    let of_flight = thrown::starts(model, &own);
     let mut all = vec![own];
-    all.extend(thrown.into_iter().filter(|start| chart.holds(start)));
+    all.extend(of_flight.into_iter().filter(|start| chart.holds(start)));
     if all.len() == 1 {
         return Ok(all);
     }
@@ -156,8 +156,13 @@ fn fit_from(
     tell: &(dyn Fn(u64, f64) + Sync),
 ) -> Result<Fit, NoFit> {
     let mut weights = Weights::at(model, &p, go_on)?;
-    let changes = model.free.iter().map(|free| SLOPE_CHANGE * free.scale);
-    let changes = Mutex::new(changes.collect::<Vec<f64>>());
+    let changes = Mutex::new(
+        model
+            .free
+            .iter()
+            .map(|free| SLOPE_CHANGE * free.scale)
+            .collect::<Vec<f64>>(),
+    );
     let mut steps = 0;
     for _ in 0..MOST_ROUNDS {
         let start = chart.parameters(&p);
@@ -200,8 +205,11 @@ fn sum_of_squares(model: &Model, p: &[f64], go_on: FitProgress<'_>) -> Result<f6
 impl NoFit {
     /// The search has ended by `failure` at these values of the keys.
     fn at(model: &Model, p: &[f64], failure: Failure) -> Self {
-        let pairs = model.free.iter().zip(p);
-        let pairs = pairs.map(|(free, value)| format!("{} = {}", free.key, significant(*value, 6)));
+        let pairs = model
+            .free
+            .iter()
+            .zip(p)
+            .map(|(free, value)| format!("{} = {}", free.key, significant(*value, 6)));
         let at = pairs.collect::<Vec<_>>().join(", ");
         match failure {
             Failure::TooManySteps => Self::TooLong {
@@ -222,7 +230,7 @@ fn finished(
     go_on: FitProgress<'_>,
 ) -> Result<Fit, NoFit> {
     let p = chart.keys(&minimum.p);
-    let solution = FitSolution::of(minimum, chart, &model.free);
+    let solution = FitSolution::new(minimum, chart, &model.free);
     let values = model.values(&p, None, go_on)?;
     let mut residuals = model.residuals(&values);
     for (residual, sigma) in residuals.iter_mut().zip(&weights.sigma) {
@@ -230,15 +238,16 @@ fn finished(
     }
     let freedom = model.data.len().saturating_sub(solution.rank) as u64;
     let sum = minimum.residuals.norm_squared();
-    let quality = Quality::of(sum, freedom, &weights);
-    let variance = weights
-        .are_stated
-        .then_some(1.0)
-        .or_else(|| variance(sum, freedom));
-    let edges = edges(minimum, chart, &model.free, variance);
+    let quality = Quality::new(sum, freedom, &weights);
+    let variance = if weights.are_stated {
+        Some(1.0)
+    } else {
+        scatter_variance(sum, freedom)
+    };
+    let edges = edges_at(minimum, chart, &model.free, variance);
     let places = model.free.iter().enumerate();
     let keys = places.map(|(index, free)| {
-        let sides = sides(index, p[index], &solution, &edges, variance);
+        let sides = sides_of(index, p[index], &solution, &edges, variance);
         Fitted {
             free: free.clone(),
             value: p[index],
@@ -260,15 +269,17 @@ fn finished(
 }
 
 /// The uncertainties of a key: those along the limits that hold it, and to the inside of each limit as far as it may be.
-fn sides(
+fn sides_of(
     index: usize,
     value: f64,
     solution: &FitSolution,
     edges: &[Edge],
     variance: Option<f64>,
 ) -> Option<Sides> {
-    let along = solution.sigma(index).zip(variance);
-    let along = along.map(|(sigma, variance)| sigma * variance.sqrt());
+    let along = solution
+        .sigma(index)
+        .zip(variance)
+        .map(|(sigma, factor)| sigma * factor.sqrt());
     let mut squares = [along.unwrap_or(0.0).powi(2); 2];
     let is_unknown = along.is_none() && solution.is_moving[index]
         || edges
@@ -346,8 +357,9 @@ impl Weighed<'_> {
             let near = self.before_limits(p, index, change);
             let (slope, width) = self.slope_by(p, index, near)?;
             let moved = slope.iter().zip(&self.weights.resolution);
-            let most = moved.map(|(slope, size)| (slope * width / size).abs());
-            let most = most.fold(0.0, f64::max);
+            let most = moved
+                .map(|(steepness, size)| (steepness * width / size).abs())
+                .fold(0.0, f64::max);
             if most <= LARGE_SLOPE_CHANGE || try_ == TRIES || !most.is_finite() {
                 return Ok((slope, change));
             }
@@ -383,34 +395,38 @@ impl Weighed<'_> {
             )));
         }
         let pairs = above.iter().zip(&below);
-        let slope = pairs.map(|(above, below)| (above - below) / width);
+        let slope = pairs.map(|(up, down)| (up - down) / width);
         Ok((slope.collect(), width))
     }
 }
 
 impl LeastSquares for Weighed<'_> {
     fn residuals(&self, p: &[f64]) -> Result<DVector<f64>, Stop> {
-        let residuals = self.model.residuals(&self.values(p)?);
-        let residuals: Vec<f64> = residuals.iter().map(Residual::value).collect();
+        let residuals: Vec<f64> = self
+            .model
+            .residuals(&self.values(p)?)
+            .iter()
+            .map(Residual::value)
+            .collect();
         let white = self.weights.whitened(&residuals);
         are_numbers(white.norm_squared())?;
         Ok(white)
     }
 
     fn slopes(&self, p: &[f64]) -> Result<DMatrix<f64>, Stop> {
-        let changes = self.kept().clone();
-        let changes: Vec<_> = changes.into_iter().enumerate().collect();
-        let found: Result<Vec<(Vec<f64>, f64)>, Stop> =
-            cores::map(&changes, |(index, change)| self.slope(p, *index, *change));
-        let found = found?;
+        let changes: Vec<(usize, f64)> = self.kept().iter().copied().enumerate().collect();
+        let found: Vec<(Vec<f64>, f64)> =
+            cores::map::<_, _, Result<_, Stop>>(&changes, |(index, change)| {
+                self.slope(p, *index, *change)
+            })?;
         let keys = self.chart.keys(p);
         let column = |(index, (slope, _)): (usize, &(Vec<f64>, f64))| {
-            let column = self.weights.whitened(slope);
+            let whitened = self.weights.whitened(slope);
             // The slope of what does not move is rounding, and would lead anywhere.
-            if column.norm() * self.model.free[index].size(keys[index]) <= SILENT_KEY {
-                DVector::zeros(column.len())
+            if whitened.norm() * self.model.free[index].size(keys[index]) <= SILENT_KEY {
+                DVector::zeros(whitened.len())
             } else {
-                column
+                whitened
             }
         };
         let columns: Vec<DVector<f64>> = found.iter().enumerate().map(column).collect();
@@ -421,7 +437,7 @@ impl LeastSquares for Weighed<'_> {
         Ok(slopes)
     }
 
-    fn tell(&self, step: u64, sum: f64) {
+    fn on_iteration(&self, step: u64, sum: f64) {
         (self.tell)(step, sum);
     }
 }

@@ -41,8 +41,9 @@ fn alike(way: &DVector<f64>, moving: &[usize], units: &[f64]) -> Vec<(usize, f64
         .collect();
     // Of equal ones the first.
     let sizes = parts.iter().copied().rev();
-    let largest = sizes.max_by(|a, b| a.abs().total_cmp(&b.abs()));
-    let largest = largest.unwrap_or_default();
+    let largest = sizes
+        .max_by(|a, b| a.abs().total_cmp(&b.abs()))
+        .unwrap_or_default();
     let places = (0..moving.len()).filter(|&place| way[place].abs() > COMBINATION_ROUNDING);
     let combined = places.map(|place| (moving[place], parts[place] / largest));
     combined.collect()
@@ -55,7 +56,7 @@ struct Way {
 }
 
 /// The directions along which the keys can move, within the limits that hold them.
-fn ways(slopes: &DMatrix<f64>, normals: &[DVector<f64>]) -> Vec<Way> {
+fn singular_ways(slopes: &DMatrix<f64>, normals: &[DVector<f64>]) -> Vec<Way> {
     let free = complement(normals.iter(), slopes.ncols());
     if free.is_empty() {
         return Vec::new();
@@ -74,7 +75,7 @@ fn ways(slopes: &DMatrix<f64>, normals: &[DVector<f64>]) -> Vec<Way> {
 }
 
 impl FitSolution {
-    pub fn of(minimum: &Minimum, chart: &Chart, free: &[Free]) -> Self {
+    pub fn new(minimum: &Minimum, chart: &Chart, free: &[Free]) -> Self {
         let slopes = &minimum.slopes * &chart.matrix;
         let keys = chart.keys(&minimum.p);
         let norms: Vec<f64> = slopes.column_iter().map(|column| column.norm()).collect();
@@ -92,9 +93,10 @@ impl FitSolution {
         if heard.is_empty() {
             return solution;
         }
-        let columns = heard.iter();
-        let columns = columns.map(|&index| slopes.column(index) / norms[index]);
-        let columns = DMatrix::from_columns(&columns.collect::<Vec<DVector<f64>>>());
+        let columns: Vec<DVector<f64>> = heard
+            .iter()
+            .map(|&index| slopes.column(index) / norms[index])
+            .collect();
         let normals: Vec<DVector<f64>> = minimum
             .held
             .iter()
@@ -104,13 +106,15 @@ impl FitSolution {
                 DVector::from_iterator(heard.len(), parts)
             })
             .collect();
-        let ways = ways(&columns, &normals);
+        let ways = singular_ways(&DMatrix::from_columns(&columns), &normals);
         let largest = ways.iter().map(|way| way.singular).fold(0.0, f64::max);
         let (seen, unseen): (Vec<&Way>, Vec<&Way>) =
             (ways.iter()).partition(|way| way.singular > SINGULAR * largest);
         solution.rank = seen.len();
-        let units = heard.iter().map(|&index| norms[index] * size(index));
-        let units: Vec<f64> = units.collect();
+        let units: Vec<f64> = heard
+            .iter()
+            .map(|&index| norms[index] * size(index))
+            .collect();
         let alike = unseen.iter().map(|way| alike(&way.parts, &heard, &units));
         solution.alike = alike.collect();
         for (place, &index) in heard.iter().enumerate() {
@@ -118,17 +122,18 @@ impl FitSolution {
         }
         let known: Vec<usize> = (0..heard.len())
             .filter(|place| {
-                let mut unseen = unseen.iter();
                 solution.is_moving[heard[*place]]
-                    && unseen.all(|way| way.parts[*place].abs() <= COMBINATION_ROUNDING)
+                    && unseen
+                        .iter()
+                        .all(|way| way.parts[*place].abs() <= COMBINATION_ROUNDING)
             })
             .collect();
         for (&i, &j) in known.iter().flat_map(|i| known.iter().map(move |j| (i, j))) {
-            let covariance = seen
+            let sum: f64 = seen
                 .iter()
                 .map(|way| way.parts[i] * way.parts[j] / way.singular.powi(2))
-                .sum::<f64>();
-            let covariance = covariance / (norms[heard[i]] * norms[heard[j]]);
+                .sum();
+            let covariance = sum / (norms[heard[i]] * norms[heard[j]]);
             solution.covariance[heard[i]][heard[j]] =
                 Some(covariance).filter(|covariance| covariance.is_finite());
         }
@@ -171,7 +176,7 @@ pub struct Quality {
 
 /// The variance of data without uncertainties, from their scatter (`sum` is the sum of the squared residuals), times the
 /// square of Student's factor; `None` where it cannot be stated.
-pub(super) fn variance(sum: f64, freedom: u64) -> Option<f64> {
+pub(super) fn scatter_variance(sum: f64, freedom: u64) -> Option<f64> {
     (freedom >= LEAST_FREEDOM).then(|| sum / freedom as f64 * student(freedom).powi(2))
 }
 
@@ -214,7 +219,7 @@ pub fn too_large(chi_squared: f64, freedom: u64) -> Option<String> {
 
 impl Quality {
     /// How well a model fits: `sum` is the sum of the squared residuals in the units of `weights`.
-    pub(super) fn of(sum: f64, freedom: u64, weights: &Weights) -> Self {
+    pub(super) fn new(sum: f64, freedom: u64, weights: &Weights) -> Self {
         let mut quality = Self {
             degrees_of_freedom: freedom,
             ..Self::default()

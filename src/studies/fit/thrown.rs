@@ -45,7 +45,7 @@ pub(super) fn starts(model: &Model, p: &[f64]) -> Vec<Vec<f64>> {
     };
     let scenario = model.scenario(p).ok().filter(flies);
     let own = scenario.and_then(|it| it.file.body.part.first()?.moments_kg_m2);
-    let (Some(own), Some(sums)) = (own, Sums::of(&recorded)) else {
+    let (Some(own), Some(sums)) = (own, Sums::new(&recorded)) else {
         return Vec::new();
     };
     let mut all: Vec<Vector3<f64>> = sums.moments().into_iter().collect();
@@ -70,8 +70,10 @@ fn start(
     moments: &Vector3<f64>,
 ) -> Vec<f64> {
     let axes = |free: &Free| -> Vec<usize> {
-        let axes = free.keys.iter().filter_map(|key| moment(key));
-        axes.filter(|(part, _)| *part == 0)
+        free.keys
+            .iter()
+            .filter_map(|key| moment(key))
+            .filter(|(part, _)| *part == 0)
             .map(|(_, axis)| axis)
             .collect()
     };
@@ -85,19 +87,19 @@ fn start(
     let sum = |of: &Vector3<f64>| held.iter().map(|axis| of[*axis]).sum::<f64>();
     let factor = sum(own) / sum(moments);
     let rates = sums.rates_at_start(moments);
-    let value = |(free, own): (&Free, &f64)| {
-        let axes = axes(free);
-        let rate = free
+    let value = |(free, rate): (&Free, &f64)| {
+        let axes_of_key = axes(free);
+        let axis = free
             .key
             .strip_prefix(START_OMEGA_KEY)
             .and_then(|axis| axis.parse::<usize>().ok());
-        let value = match (&axes[..], rate) {
+        let value = match (&axes_of_key[..], axis) {
             ([_, ..], _) => {
-                let sum: f64 = axes.iter().map(|axis| moments[*axis]).sum();
-                factor * sum / axes.len() as f64
+                let moment: f64 = axes_of_key.iter().map(|axis| moments[*axis]).sum();
+                factor * moment / axes_of_key.len() as f64
             }
             ([], Some(axis)) => rates[axis.min(2)],
-            ([], None) => *own,
+            ([], None) => *rate,
         };
         value.clamp(free.from, free.to)
     };
@@ -107,8 +109,8 @@ fn start(
 /// The moments of a body with these second moments of mass, in which none is too small.
 fn moments_of(second: &Vector3<f64>) -> Vector3<f64> {
     let least = LEAST_SHARE * second.map(|it| it.max(0.0)).sum();
-    let second = second.map(|it| it.max(least));
-    Vector3::repeat(second.sum()) - second
+    let raised = second.map(|it| it.max(least));
+    Vector3::repeat(raised.sum()) - raised
 }
 
 /// Whether nothing turns the body of `scenario`, and its start is stated by rates about its own axes.
@@ -147,7 +149,7 @@ struct Sums {
 }
 
 impl Sums {
-    fn of(recorded: &[(f64, Vector3<f64>)]) -> Option<Self> {
+    fn new(recorded: &[(f64, Vector3<f64>)]) -> Option<Self> {
         let product = |w: &Vector3<f64>| Vector3::new(w.y * w.z, w.z * w.x, w.x * w.y);
         let (mut before_s, mut before) = (0.0, product(&recorded.first()?.1));
         let mut sum = Vector3::zeros();

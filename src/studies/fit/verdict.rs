@@ -96,14 +96,14 @@ impl Fit {
             .filter_map(|residual| Some((residual.row + 1, residual.in_sigmas()?.abs())))
             .collect();
         let (mut rows, mut least, mut worst) = (BTreeSet::new(), f64::INFINITY, 0.0_f64);
-        for (row, sigmas) in all {
-            worst = worst.max(sigmas);
-            if sigmas > FAR_SIGMAS {
+        for (row, off) in all {
+            worst = worst.max(off);
+            if off > FAR_SIGMAS {
                 rows.insert(row);
-                least = least.min(sigmas);
+                least = least.min(off);
             }
         }
-        let [least, worst] = [least, worst].map(|sigmas| significant(sigmas, 2));
+        let [least, worst] = [least, worst].map(|number| significant(number, 2));
         let names = rows.iter().take(MOST_FAR_ROWS).map(ToString::to_string);
         match (&names.collect::<Vec<_>>()[..], rows.len()) {
             ([], _) => match &self.residuals[..] {
@@ -113,13 +113,13 @@ impl Fit {
                 ),
             },
             ([row], _) => format!("row {row} is {worst} sigma off"),
-            ([rows @ .., last], ..=MOST_FAR_ROWS) => {
-                let rows = rows.join(", ");
-                format!("rows {rows} and {last} are {least} to {worst} sigma off")
-            }
-            (rows, count) => {
-                let (rows, more) = (rows.join(", "), count - MOST_FAR_ROWS);
-                format!("rows {rows} and {more} more are {least} to {worst} sigma off")
+            ([first @ .., last], ..=MOST_FAR_ROWS) => format!(
+                "rows {} and {last} are {least} to {worst} sigma off",
+                first.join(", ")
+            ),
+            (first, count) => {
+                let (names, more) = (first.join(", "), count - MOST_FAR_ROWS);
+                format!("rows {names} and {more} more are {least} to {worst} sigma off")
             }
         }
     }
@@ -129,8 +129,8 @@ impl Fit {
         let key = |index: usize| self.keys[index].free.key.as_str();
         let solution = &self.solution;
         let silent = solution.silent.iter().map(|&index| {
-            let key = key(index);
-            format!("The data do not depend on {key}: they say nothing of it.")
+            let name = key(index);
+            format!("The data do not depend on {name}: they say nothing of it.")
         });
         let alike = solution.alike.iter().map(|alike| {
             let names: Vec<_> = alike.iter().map(|(index, _)| key(*index)).collect();
@@ -178,10 +178,11 @@ impl Fit {
         let (points, at): (Vec<MeasuredPoint>, Vec<[f64; 2]>) = of_column
             .map(|(datum, r)| (datum.point, [series.times_s[datum.point.row], r.model]))
             .unzip();
-        let ways = at
+        let ways: Vec<[f64; 2]> = at
             .windows(2)
-            .map(|pair| [0, 1].map(|i| pair[1][i] - pair[0][i]));
-        let ways: Vec<[f64; 2]> = ways.filter(|[time_s, _]| *time_s > 0.0).collect();
+            .map(|pair| [0, 1].map(|i| pair[1][i] - pair[0][i]))
+            .filter(|[time_s, _]| *time_s > 0.0)
+            .collect();
         let apart_s = ways.iter().map(|way| way[0]).reduce(f64::min)?;
         let is_even = |[time_s, _]: &[f64; 2]| {
             let times = time_s / apart_s;

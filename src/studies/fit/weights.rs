@@ -67,9 +67,11 @@ pub fn are_stated(model: &Model) -> Result<bool, String> {
 
 /// The settings with stated uncertainties, by their places.
 fn uncertain_settings(model: &Model) -> impl Iterator<Item = usize> {
-    let settings = settings(&model.measured.data).iter().enumerate();
-    let uncertain = settings.filter(|(_, setting)| setting.sigmas.iter().any(Option::is_some));
-    uncertain.map(|(index, _)| index)
+    settings(&model.measured.data)
+        .iter()
+        .enumerate()
+        .filter(|(_, setting)| setting.sigmas.iter().any(Option::is_some))
+        .map(|(index, _)| index)
 }
 
 /// How far each datum moves with one uncertainty of the setting, which is changed up and down, or at the edge of its range
@@ -87,9 +89,7 @@ fn moved_by(
         (above, below) => ((SETTING_CHANGE, above?), (-SETTING_CHANGE, below?)),
     };
     let pairs = above.iter().zip(&below);
-    Ok(pairs
-        .map(|(above, below)| (above - below) / (high - low))
-        .collect())
+    Ok(pairs.map(|(up, down)| (up - down) / (high - low)).collect())
 }
 
 impl Weights {
@@ -109,8 +109,9 @@ impl Weights {
         };
         // How far each datum moves with one uncertainty of each setting.
         let settings = uncertain_settings(model);
-        let moved = settings.map(|setting| moved_by(setting, model, p, go_on));
-        let moved = moved.collect::<Result<Vec<_>, _>>()?;
+        let moved = settings
+            .map(|setting| moved_by(setting, model, p, go_on))
+            .collect::<Result<Vec<_>, _>>()?;
         if !moved.is_empty() {
             weights.add(model, &moved);
         }

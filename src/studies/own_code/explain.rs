@@ -1,6 +1,6 @@
 //! Which slips make the rows of a file: each alone, then two together.
 
-use super::follow::{ReferenceRun, Rounding, RowAgreement, difference, follow};
+use super::follow::{ReferenceRun, Rounding, RowAgreement, compare_rows, difference};
 use super::plan::{PLAN_PARTS, Plan};
 use super::rows::ProgramRows;
 use super::slips::{Mutations, Other, SLIPS};
@@ -116,7 +116,7 @@ fn changes<'a>(variants: impl IntoIterator<Item = &'a Variant>) -> Mutations {
 
 fn program<T: Real>(plan: &Plan, variants: &[Variant], order: Order) -> MutantStepper<T> {
     let start = variants.iter().find_map(|variant| match &variant.change {
-        SlipChange::Start(plan, _) => Some(&**plan),
+        SlipChange::Start(changed, _) => Some(&**changed),
         _ => None,
     });
     MutantStepper::new(start.unwrap_or(plan), &changes(variants), order)
@@ -202,7 +202,10 @@ impl Variant {
         let mut all: Vec<Self> = Vec::new();
         for preset in STARTS {
             let scenario = Document::open(preset).and_then(|it| it.scenario());
-            let Some(other) = scenario.ok().and_then(|it: Scenario| Plan::of(&it)) else {
+            let Some(other) = scenario
+                .ok()
+                .and_then(|it: Scenario| Plan::from_scenario(&it))
+            else {
                 continue;
             };
             for parts in 1..1_u8 << PLAN_PARTS {
@@ -304,7 +307,12 @@ impl Search<'_> {
                 evidence: 0.0,
             })
         });
-        let lasts = |tried: &Explanation| tried.followed.differs.map_or(0, |differs| differs.step);
+        let lasts = |explanation: &Explanation| {
+            explanation
+                .followed
+                .differs
+                .map_or(0, |differs| differs.step)
+        };
         let (mut found, mut closest) = (Vec::<Explanation>::new(), None);
         let mut most = LASTS.0.max(LASTS.1 * self.first.1) - 1;
         for mut tried in tried.into_iter().flatten() {
@@ -339,11 +347,11 @@ impl Search<'_> {
 
     /// Returns how far the rows agree with the program that has the changes of `variants`.
     fn followed(&self, variants: &[Variant]) -> RowAgreement {
-        let (rows, steps) = (self.rows, steps(self.rows, variants));
+        let (rows, steps) = (self.rows, steps_by(self.rows, variants));
         if self.is_single {
-            follow(rows, steps, single(self.plan, variants))
+            compare_rows(rows, steps, single(self.plan, variants))
         } else {
-            follow(rows, steps, double(self.plan, variants))
+            compare_rows(rows, steps, double(self.plan, variants))
         }
     }
 
@@ -355,7 +363,7 @@ impl Search<'_> {
             _ => vec![Vec::new()],
         };
         let differences = without.iter().map(|variants| {
-            let steps = steps(rows, variants);
+            let steps = steps_by(rows, variants);
             let (count, offset) = (followed.next, followed.offset);
             if self.is_single {
                 let run = single(plan, variants);
@@ -369,7 +377,7 @@ impl Search<'_> {
 }
 
 /// Returns the steps of the rows, by the time step of `variants`.
-fn steps<'a>(rows: &'a ProgramRows, variants: &[Variant]) -> &'a RowSteps {
+fn steps_by<'a>(rows: &'a ProgramRows, variants: &[Variant]) -> &'a RowSteps {
     let others = variants.iter().find_map(|variant| match variant.change {
         SlipChange::TimeStep(_, place) => Some(&rows.times.others[place].1),
         _ => None,
@@ -383,7 +391,7 @@ fn double(
 ) -> ReferenceRun<MutantStepper<f64>, MutantStepper<f64>> {
     let [one, other] =
         [Order::Forward, Order::Backward].map(|order| program(plan, variants, order));
-    ReferenceRun::of(one, vec![other], Rounding::Double)
+    ReferenceRun::new(one, vec![other], Rounding::Double)
 }
 
 /// Returns the run of the program with `variants`, with room for the errors of single precision.
@@ -392,7 +400,7 @@ fn single(
     variants: &[Variant],
 ) -> ReferenceRun<MutantStepper<f64>, MutantStepper<f32>> {
     let run = program(plan, variants, Order::Forward);
-    ReferenceRun::of(run, in_single(plan, variants), Rounding::SingleOfSlip)
+    ReferenceRun::new(run, in_single(plan, variants), Rounding::SingleOfSlip)
 }
 
 /// Returns copies of the program with `variants` that compute in single precision, each in another order.
@@ -415,8 +423,8 @@ pub fn hidden(
         if !go_on() {
             return false;
         }
-        let variants = std::slice::from_ref(variant);
-        let followed = follow(rows, steps(rows, variants), double(plan, variants));
+        let alone = std::slice::from_ref(variant);
+        let followed = compare_rows(rows, steps_by(rows, alone), double(plan, alone));
         // A run that parts from its copy long before the scheme does is another one.
         followed.is_whole()
             && followed

@@ -29,7 +29,7 @@ struct At {
 /// Something that makes rows of six numbers.
 pub trait Stepper {
     fn row(&self) -> [f64; 6];
-    fn advance(&mut self);
+    fn next_step(&mut self);
 }
 
 impl<T: Real> Stepper for MutantStepper<T> {
@@ -37,7 +37,7 @@ impl<T: Real> Stepper for MutantStepper<T> {
         Self::row(self)
     }
 
-    fn advance(&mut self) {
+    fn next_step(&mut self) {
         self.step();
     }
 }
@@ -52,7 +52,7 @@ impl Stepper for Simulation {
         [at.x, at.y, at.z, momentum.x, momentum.y, momentum.z]
     }
 
-    fn advance(&mut self) {
+    fn next_step(&mut self) {
         // The row says it where the run has ended.
         let _ = self.step();
     }
@@ -81,7 +81,7 @@ pub struct ReferenceRun<A, B> {
 }
 
 impl<A: Stepper, B: Stepper> ReferenceRun<A, B> {
-    pub fn of(run: A, copies: Vec<B>, rounding: Rounding) -> Self {
+    pub fn new(run: A, copies: Vec<B>, rounding: Rounding) -> Self {
         let so_far = [[0.0; 2]; 6];
         Self {
             run,
@@ -100,8 +100,9 @@ impl<A: Stepper, B: Stepper> ReferenceRun<A, B> {
             let mut columns = rows.columns.iter().map(|it| (it, values[it.place]));
             let is_known = columns.all(|(column, value)| {
                 let room = PARTED * column.room(value);
-                let mut copies = copies.iter().map(|copy| copy[column.place]);
-                copies.all(|copy| (value - copy).abs() <= room)
+                copies
+                    .iter()
+                    .all(|copy| (value - copy[column.place]).abs() <= room)
             });
             let slack = [0.0; 6];
             return (is_finite && is_known).then_some(At { values, slack });
@@ -137,8 +138,8 @@ impl<A: Stepper, B: Stepper> ReferenceRun<A, B> {
     }
 
     fn step(&mut self) {
-        self.run.advance();
-        self.copies.iter_mut().for_each(Stepper::advance);
+        self.run.next_step();
+        self.copies.iter_mut().for_each(Stepper::next_step);
     }
 }
 
@@ -188,7 +189,7 @@ impl RowAgreement {
     }
 
     /// Takes in what the run is at `step`.
-    fn take(&mut self, rows: &ProgramRows, steps: &RowSteps, step: i64, at: &At) {
+    fn compare_due_rows(&mut self, rows: &ProgramRows, steps: &RowSteps, step: i64, at: &At) {
         let (offset, count) = (self.offset * steps.stride, rows.count);
         // A row before the start repeats the start, or the rows do not begin there.
         while self.next < count
@@ -226,28 +227,28 @@ impl RowAgreement {
 
 /// Follows `run` along the rows, which are the `steps` of it, at each offset at once, and gives the one at which the
 /// most rows agree.
-pub fn follow<A: Stepper, B: Stepper>(
+pub fn compare_rows<A: Stepper, B: Stepper>(
     rows: &ProgramRows,
     steps: &RowSteps,
     mut run: ReferenceRun<A, B>,
 ) -> RowAgreement {
-    let lane = |offset| RowAgreement {
+    let mut lanes = OFFSETS.map(|offset| RowAgreement {
         offset,
         ..RowAgreement::default()
-    };
-    let mut lanes = OFFSETS.map(lane);
+    });
     let count = rows.count;
     let goes_on = |lane: &RowAgreement| lane.next < count && lane.differs.is_none();
     let mut step = 0;
-    let is_found = |lanes: &[RowAgreement]| lanes[0].is_whole() && !goes_on(&lanes[0]);
-    while lanes.iter().any(goes_on) && !is_found(&lanes) {
+    while lanes.iter().any(goes_on) && !(lanes[0].is_whole() && !goes_on(&lanes[0])) {
         let Some(at) = run.now(rows) else {
-            let unfinished = lanes.iter_mut().filter(|lane| goes_on(lane));
-            unfinished.for_each(|lane| lane.parted = Some(step));
+            for lane in lanes.iter_mut().filter(|lane| goes_on(lane)) {
+                lane.parted = Some(step);
+            }
             break;
         };
-        let going = lanes.iter_mut().filter(|lane| goes_on(lane));
-        going.for_each(|lane| lane.take(rows, steps, step, &at));
+        for lane in lanes.iter_mut().filter(|lane| goes_on(lane)) {
+            lane.compare_due_rows(rows, steps, step, &at);
+        }
         run.step();
         step += 1;
     }
@@ -259,9 +260,11 @@ pub fn follow<A: Stepper, B: Stepper>(
         _ => best,
     };
     // That the start stands there twice is no agreement with the run.
-    let says_more = |lane: &RowAgreement| lane.offset >= 0 || lane.moves;
-    let lanes = lanes.into_iter().filter(says_more);
-    lanes.reduce(best).unwrap_or_default()
+    lanes
+        .into_iter()
+        .filter(|lane| lane.offset >= 0 || lane.moves)
+        .reduce(best)
+        .unwrap_or_default()
 }
 
 /// Returns the largest difference between `run` and the first `count` rows, which are the `steps` of it at `offset`, in units

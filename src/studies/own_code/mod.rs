@@ -20,7 +20,7 @@ use crate::engine::scenario::{Document, Problem, Problems, Scenario};
 use crate::physics::workings::{PhaseName, WorkedQuantity};
 use crate::studies::verify::Unverified;
 use explain::{Explanation, MOST_FOR_PAIRS, Search};
-use follow::{ReferenceRun, Rounding, RowAgreement, follow};
+use follow::{ReferenceRun, Rounding, RowAgreement, compare_rows};
 use plan::Plan;
 pub use rows::ProgramRows;
 use rows::{ProgramColumn, SINGLE_DIGITS};
@@ -137,14 +137,17 @@ pub fn compare(
     scenario: &Arc<Scenario>,
     go_on: &(dyn Fn() -> bool + Sync),
 ) -> Result<Verdict, Unverified> {
-    let plan = Plan::of(scenario);
+    let plan = Plan::from_scenario(scenario);
     let copies = plan
         .iter()
         .map(|plan| MutantStepper::<f64>::new(plan, &Mutations::default(), Order::Forward))
         .collect();
-    let run = Simulation::new(Arc::clone(scenario));
-    let run = ReferenceRun::of(run, copies, Rounding::Double);
-    let beside = follow(rows, &rows.times.steps, run);
+    let run = ReferenceRun::new(
+        Simulation::new(Arc::clone(scenario)),
+        copies,
+        Rounding::Double,
+    );
+    let beside = compare_rows(rows, &rows.times.steps, run);
     if beside.differs.is_none() && beside.agreeing == 0 {
         let mut rule = "has no row of a step that there is: steps count from 0".to_owned();
         if let Some(step) = beside.parted {
@@ -247,8 +250,8 @@ impl CheckOutcome<'_> {
             return None;
         };
         let scheme = Simulation::new(Arc::clone(self.scenario));
-        let run = ReferenceRun::of(scheme, explain::in_single(plan, &[]), rounding);
-        Some(follow(self.rows, &self.rows.times.steps, run))
+        let run = ReferenceRun::new(scheme, explain::in_single(plan, &[]), rounding);
+        Some(compare_rows(self.rows, &self.rows.times.steps, run))
     }
 
     /// Returns the precision of the program, after slips have been looked for.
@@ -267,8 +270,8 @@ impl CheckOutcome<'_> {
             return Precision::Unknown;
         }
         let single = explain::in_single(plan, &[]).swap_remove(0);
-        let alone = ReferenceRun::of(single, Vec::<MutantStepper<f64>>::new(), Rounding::Double);
-        match follow(rows, &rows.times.steps, alone).differs {
+        let alone = ReferenceRun::new(single, Vec::<MutantStepper<f64>>::new(), Rounding::Double);
+        match compare_rows(rows, &rows.times.steps, alone).differs {
             Some(_) => Precision::Double,
             None => Precision::Unknown,
         }
@@ -306,8 +309,8 @@ impl CheckOutcome<'_> {
                 &others.find(|(own, _)| *own == dt)?.1
             };
             let none = Vec::<MutantStepper<f64>>::new();
-            let run = ReferenceRun::of(Simulation::new(scenario.into()), none, Rounding::Double);
-            Some(follow(self.rows, steps, run))
+            let run = ReferenceRun::new(Simulation::new(scenario.into()), none, Rounding::Double);
+            Some(compare_rows(self.rows, steps, run))
         };
         let names = PRESETS.iter().map(|preset| preset.name);
         names.into_iter().find(|name| {

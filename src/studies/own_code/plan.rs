@@ -40,7 +40,7 @@ pub(super) const PLAN_PARTS: usize = 5;
 impl Plan {
     /// The plan of `scenario`; `None` where it is more than the report's step does: another scheme, friction, a rotor, edits,
     /// pushes in seconds.
-    pub fn of(scenario: &Scenario) -> Option<Self> {
+    pub fn from_scenario(scenario: &Scenario) -> Option<Self> {
         let body = &scenario.body.mechanics;
         let is_plain = scenario.motion.scheme.name == "report"
             && scenario.friction.is_none()
@@ -156,9 +156,9 @@ impl Plan {
         };
         let (axis, points_alone) = changes.tilt_axis.unwrap_or(([1.0, 0.0, 0.0], false));
         let is_changed = changes.tilt_axis.is_some() || changes.tilt_in_radians;
-        let about = |axis: [f64; 3]| {
+        let about = |direction: [f64; 3]| {
             if start.is_tilt && is_changed {
-                rotation::about(&Vector3::from(axis), angle)
+                rotation::about(&Vector3::from(direction), angle)
             } else {
                 start.orientation
             }

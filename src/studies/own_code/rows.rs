@@ -1,6 +1,6 @@
 //! The file that a program has written: which columns are compared, to how many digits, and which time step each row is.
 
-use super::times::{self, STEP_NAME, TIME_NAME, Times};
+use super::times::{STEP_NAME, TIME_NAME, Times, find_steps};
 use crate::engine::data::{map_option, name_columns, time_like};
 use crate::engine::scenario::csv::{Csv, Naming, Renaming};
 use crate::engine::scenario::problem::{at_line, listed};
@@ -60,7 +60,7 @@ impl ProgramColumn {
             is_fixed: true,
         };
         for (line, texts) in &cells.rows {
-            if column.take(&texts[at], cells.separator).is_none() {
+            if column.read_number(&texts[at], cells.separator).is_none() {
                 found.add(|| at_line(*line, no_number(column.name(), &texts[at])));
             }
         }
@@ -68,11 +68,11 @@ impl ProgramColumn {
     }
 
     /// Takes in a number with a decimal point, or a comma where that does not part the columns.
-    fn take(&mut self, text: &str, separator: char) -> Option<()> {
-        let mut text = text.to_owned();
-        if separator != ',' {
-            text = text.replacen(',', ".", 1);
-        }
+    fn read_number(&mut self, cell: &str, separator: char) -> Option<()> {
+        let text = match separator {
+            ',' => cell.to_owned(),
+            _ => cell.replacen(',', ".", 1),
+        };
         self.values.push(text.parse().ok()?);
         let (mantissa, exponent) = text.split_once(['e', 'E']).unwrap_or((&text, "0"));
         let behind = mantissa.split_once('.').map_or("", |(_, behind)| behind);
@@ -209,7 +209,7 @@ pub fn read(
     let find = |name| others.iter().find(|column| column.name() == name);
     let step = find(STEP_NAME).map(|column| &column.values[..]);
     let time = find(TIME_NAME).map(|it| (&it.values[..], it.unit(it.values[count - 1])));
-    let times = times::of(count, step, time, every, time_step_s, &|row| {
+    let steps = find_steps(count, step, time, every, time_step_s, &|row| {
         cells.rows[row].0
     })?;
     let left_out = cells
@@ -221,7 +221,7 @@ pub fn read(
         columns,
         count,
         not_finite,
-        times,
+        times: steps,
     })
 }
 

@@ -12,7 +12,7 @@ use nalgebra::{Matrix3, RealField, Vector3, convert, convert_unchecked};
 
 /// A floating-point number, f64 or f32.
 pub trait Real: RealField + Copy {
-    fn of(number: f64) -> Self {
+    fn from_double(number: f64) -> Self {
         convert(number)
     }
     fn f64(self) -> f64 {
@@ -65,9 +65,12 @@ pub struct MutantStepper<T> {
 impl<T: Real> MutantStepper<T> {
     pub fn new(plan: &Plan, changes: &Mutations, order: Order) -> Self {
         let (turned, momentum) = plan.start(changes);
-        let points = plan.body(changes).into_iter();
-        let points =
-            points.map(|(at, mass)| ((turned * Vector3::from(at)).map(T::of), T::of(mass)));
+        let points = plan.body(changes).into_iter().map(|(at, mass)| {
+            (
+                (turned * Vector3::from(at)).map(T::from_double),
+                T::from_double(mass),
+            )
+        });
         let count = plan.points.len();
         let mut program = Self {
             changes: *changes,
@@ -78,16 +81,16 @@ impl<T: Real> MutantStepper<T> {
                 Order::EvenThenOdd => (0..count).step_by(2).chain((1..count).step_by(2)).collect(),
             },
             points: points.collect(),
-            momentum: momentum.map(T::of),
-            earlier: momentum.map(T::of),
+            momentum: momentum.map(T::from_double),
+            earlier: momentum.map(T::from_double),
             inertia: Matrix3::zeros(),
             torques: Vector3::zeros(),
             traced: plan.traced,
             rim: plan.rim,
             axle: plan.axle.len(),
             pushes: plan.pushes.clone(),
-            gravity: T::of(changes.gravity.unwrap_or(plan.gravity)),
-            time_step: T::of(changes.time_step_s.unwrap_or(plan.time_step_s)),
+            gravity: T::from_double(changes.gravity.unwrap_or(plan.gravity)),
+            time_step: T::from_double(changes.time_step_s.unwrap_or(plan.time_step_s)),
             clock: 0,
         };
         if !changes.inertia_sums_up {
@@ -99,7 +102,7 @@ impl<T: Real> MutantStepper<T> {
     /// Whether the moments of inertia differ from axis to axis now.
     pub fn has_axes(&self) -> bool {
         const SAME_WITHIN: f64 = 1e-6;
-        let mean = self.inertia.trace() / T::of(3.0);
+        let mean = self.inertia.trace() / T::from_double(3.0);
         let rest = self.inertia - Matrix3::identity() * mean;
         rest.amax().f64() > SAME_WITHIN * mean.f64()
     }
@@ -253,7 +256,7 @@ impl<T: Real> MutantStepper<T> {
             }
             Some(Other::FirstOfRim) => rim().next().copied(),
             Some(Other::CenterOfRim) if self.rim > 0 => {
-                Some(rim().sum::<Vector3<T>>() / T::of(self.rim as f64))
+                Some(rim().sum::<Vector3<T>>() / T::from_double(self.rim as f64))
             }
             Some(Other::CenterOfRim) => None,
         };
@@ -268,19 +271,19 @@ impl<T: Real> MutantStepper<T> {
             None => return omega,
             Some(Along::AxisAlone) => {
                 let [rate, length] =
-                    [&omega, momentum].map(|of| T::of(self.dot(of, of).f64().sqrt()));
+                    [&omega, momentum].map(|of| T::from_double(self.dot(of, of).f64().sqrt()));
                 return momentum * (rate / length);
             }
             Some(Along::OverThird) => Vector3::z(),
             Some(Along::OverFirst) => Vector3::x(),
             Some(Along::OverAxle | Along::OverAcross) => {
                 let at = self.points[self.traced].0;
-                at / T::of(self.dot(&at, &at).f64().sqrt())
+                at / T::from_double(self.dot(&at, &at).f64().sqrt())
             }
         };
         let moment = self.dot(&axle, &(self.inertia * axle));
         if self.changes.along_momentum == Some(Along::OverAcross) {
-            return momentum / ((self.inertia.trace() - moment) * T::of(0.5));
+            return momentum / ((self.inertia.trace() - moment) * T::from_double(0.5));
         }
         momentum / moment
     }
@@ -297,7 +300,7 @@ impl<T: Real> MutantStepper<T> {
     /// R = P + cos(|Omega| dt)(E - P) + sin(|Omega| dt)[u]x; `None` where there is no Omega.
     fn rotation(&self, omega: &Vector3<T>) -> Option<StepRotation<T>> {
         let changes = &self.changes;
-        let rate = T::of(self.dot(omega, omega).f64().sqrt());
+        let rate = T::from_double(self.dot(omega, omega).f64().sqrt());
         if rate.f64() == 0.0 || changes.first_order {
             return None;
         }
@@ -311,7 +314,7 @@ impl<T: Real> MutantStepper<T> {
             angle *= rate;
         }
         if let Some(factor) = changes.angle {
-            angle *= T::of(factor);
+            angle *= T::from_double(factor);
         }
         if changes.rotation_reversed {
             angle = -angle;
@@ -321,14 +324,14 @@ impl<T: Real> MutantStepper<T> {
         if changes.middle_sign == Some(false) {
             cross.row_mut(1).neg_mut();
         }
-        let e = changes.turn_e.map(|e| Matrix3::repeat(T::of(e)));
+        let e = changes.turn_e.map(|e| Matrix3::repeat(T::from_double(e)));
         let (p, e) = (u * u.transpose(), e.unwrap_or_else(Matrix3::identity));
         let along = if changes.without_projector {
             Matrix3::zeros()
         } else {
             p
         };
-        let rotation = along + (e - p) * T::of(cosine) + cross * T::of(sine);
+        let rotation = along + (e - p) * T::from_double(cosine) + cross * T::from_double(sine);
         Some(StepRotation { u, angle, rotation })
     }
 
@@ -380,7 +383,7 @@ impl<T: Real> MutantStepper<T> {
             sum += self.cross(&centre, &weight, true);
         }
         for push in &self.pushes {
-            let force = push.force.map(T::of) * T::of(self.push_factor(push));
+            let force = push.force.map(T::from_double) * T::from_double(self.push_factor(push));
             let at = match changes.centre {
                 Some(true) => centre,
                 _ => self.at(changes.push_point, push.point),
@@ -394,8 +397,8 @@ impl<T: Real> MutantStepper<T> {
     fn weight(&self, k: usize, mass: T) -> T {
         let changes = &self.changes;
         let mass = match changes.without_mass {
-            Some(true) => T::of(1.0),
-            Some(false) if mass.f64() != 0.0 => T::of(1.0),
+            Some(true) => T::from_double(1.0),
+            Some(false) if mass.f64() != 0.0 => T::from_double(1.0),
             _ => mass,
         };
         match (self.is_left_out(k, true), changes.gravity_up) {
@@ -422,9 +425,8 @@ impl<T: Real> MutantStepper<T> {
     }
 
     /// L <- L + dt torque.
-    fn kick(&mut self, torque: Vector3<T>) {
+    fn kick(&mut self, mut torque: Vector3<T>) {
         let changes = &self.changes;
-        let mut torque = torque;
         if changes.sums_up {
             self.torques += torque;
             torque = self.torques;

@@ -33,7 +33,7 @@ pub struct Times {
 }
 
 /// The times of `count` rows. `time` has the times with the unit of their last digit.
-pub(super) fn of(
+pub(super) fn find_steps(
     count: usize,
     step: Option<&[f64]>,
     time: Option<(&[f64], f64)>,
@@ -41,11 +41,11 @@ pub(super) fn of(
     time_step_s: f64,
     line: &dyn Fn(usize) -> u64,
 ) -> Result<Times, Problems> {
-    let every = every.map(|every| every.min(LAST_COMPUTED_STEP as u64) as i64);
+    let stride = every.map(|every| every.min(LAST_COMPUTED_STEP as u64) as i64);
     let times = match (step, time) {
         (Some(step), time) => by_step(step, time, time_step_s, line)?,
-        (None, Some((times, unit))) => by_time(times, unit, every, time_step_s)?,
-        (None, None) => Times::at(RowSteps::evenly(count, 0, every.unwrap_or(1)), time_step_s),
+        (None, Some((times, unit))) => by_time(times, unit, stride, time_step_s)?,
+        (None, None) => Times::at(RowSteps::evenly(count, 0, stride.unwrap_or(1)), time_step_s),
     };
     let last = times.steps.of_rows.last().copied().unwrap_or(0);
     if last as f64 > LAST_COMPUTED_STEP {
@@ -57,8 +57,9 @@ pub(super) fn of(
 
 impl RowSteps {
     fn evenly(count: usize, first: i64, stride: i64) -> Self {
-        let of_rows = (0..count as i64).map(|row| first.saturating_add(row.saturating_mul(stride)));
-        let of_rows = of_rows.collect();
+        let of_rows = (0..count as i64)
+            .map(|row| first.saturating_add(row.saturating_mul(stride)))
+            .collect();
         Self { of_rows, stride }
     }
 }
@@ -104,8 +105,8 @@ fn by_step(
         let (own, off) = ((times[last] - times[0]) / count, unit / count);
         let is_other = count > 0.0 && own > 0.0 && !is_same(own, time_step_s, off);
         all.own_s = is_other.then(|| plain(own, off));
-        if let Some(own) = all.own_s {
-            all.others = vec![(own, all.steps.clone())];
+        if let Some(own_s) = all.own_s {
+            all.others = vec![(own_s, all.steps.clone())];
         }
     }
     Ok(all)
@@ -165,9 +166,9 @@ fn is_same(own: f64, other: f64, off: f64) -> bool {
     (own - other).abs() <= SAME_WITHIN * other + 2.0 * off
 }
 
-/// The number with the fewest digits that is within `off` of `number`.
-fn plain(number: f64, off: f64) -> f64 {
-    let off = off.max(1e-12 * number.abs());
+/// The number with the fewest digits that is within `most_off` of `number`.
+fn plain(number: f64, most_off: f64) -> f64 {
+    let off = most_off.max(1e-12 * number.abs());
     let mut plainer = (1..17).map(|digits| rounded(number, digits));
     plainer
         .find(|plain| (plain - number).abs() <= off)

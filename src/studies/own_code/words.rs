@@ -176,16 +176,19 @@ impl CheckOutcome<'_> {
             "report" => "the report's scheme gives ".to_owned(),
             other => format!("the scheme {other} gives "),
         };
-        let off = differing.iter().map(|(column, yours, scheme)| {
-            let [yours, scheme] =
-                [yours, scheme].map(|value| significant(*value, DIFFERENCE_DIGITS));
-            let (name, unit) = (bare(column.place), COLUMN_UNITS[column.place / 3]);
-            format!(
-                "{name} is {yours} {unit}, {}{scheme}",
-                std::mem::take(&mut whose)
-            )
-        });
-        let off = off.collect::<Vec<_>>().join("; ");
+        let off = differing
+            .iter()
+            .map(|(column, yours, scheme)| {
+                let [yours, scheme] =
+                    [yours, scheme].map(|value| significant(*value, DIFFERENCE_DIGITS));
+                let (name, unit) = (bare(column.place), COLUMN_UNITS[column.place / 3]);
+                format!(
+                    "{name} is {yours} {unit}, {}{scheme}",
+                    std::mem::take(&mut whose)
+                )
+            })
+            .collect::<Vec<_>>()
+            .join("; ");
         let places = self.rows.columns.iter().map(|column| column.place);
         let same = places.filter(|place| differing.iter().all(|(it, ..)| it.place != *place));
         let same = match &same.map(bare).collect::<Vec<_>>()[..] {
@@ -261,9 +264,9 @@ impl CheckOutcome<'_> {
         };
         let differs = self.beside.differs.filter(|_| z.place == 2)?;
         let at = |row: usize| Vector3::new(x.values[row], y.values[row], z.values[row]);
-        let [own, right] = [at(0), Vector3::from_column_slice(&differs.scheme[..3])].map(|at| {
-            let tilt = libm::acos(at.z / at.norm()).to_degrees();
-            let [radius, tilt] = [at.norm(), tilt].map(short);
+        let [own, right] = [at(0), Vector3::from_column_slice(&differs.scheme[..3])].map(|point| {
+            let tilt = libm::acos(point.z / point.norm()).to_degrees();
+            let [radius, tilt] = [point.norm(), tilt].map(short);
             format!("{radius} m from the foot, tilted by {tilt} degrees")
         });
         if differs.step == 0 && own != right {

@@ -40,11 +40,11 @@ fn measured(scenario: &Arc<Scenario>) -> Option<[Both; 3]> {
     let (mut first, mut second) = (whole.clone(), whole.clone());
     while simulation.step_number() < scenario.steps {
         simulation.step().ok()?;
-        whole.follow(simulation.now());
+        whole.record(simulation.now());
         if simulation.step_number() == scenario.steps / 2 {
             (first, second) = (whole.clone(), Instruments::new(simulation.now()));
         } else {
-            second.follow(simulation.now());
+            second.record(simulation.now());
         }
     }
     Some([&whole, &first, &second].map(both))
@@ -278,7 +278,7 @@ fn a_nutation_that_depends_on_which_swings_count_is_not_stated() {
     let mut simulation = Simulation::new(Arc::clone(&uneven));
     let mut instruments = Instruments::new(simulation.now());
     while simulation.step_number() < uneven.steps {
-        instruments.follow(simulation.step().unwrap());
+        instruments.record(simulation.step().unwrap());
     }
     let nutation = instruments.nutation_period_s();
     assert_eq!(nutation, Err(WithoutNutation::Uneven));

@@ -152,7 +152,7 @@ impl Readout {
         matches!(self.source, ReadoutSource::State | ReadoutSource::Exact)
     }
 
-    pub fn of(&self, readouts: &Readouts) -> ReadoutValue {
+    pub fn read_from(&self, readouts: &Readouts) -> ReadoutValue {
         (self.get)(readouts)
     }
 

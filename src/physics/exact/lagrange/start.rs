@@ -65,7 +65,7 @@ fn difference_of_products(a: f64, b: f64, c: f64, d: f64) -> f64 {
 }
 
 /// The state at the start, in the frame along the vertical.
-pub(super) fn start(
+pub(super) fn start_in(
     across: f64,
     load: Vector3<f64>,
     frame: &InFrame,
@@ -94,13 +94,16 @@ pub(super) fn cayley_klein(
     start: &TurningStart,
     turn: UnitQuaternion<f64>,
 ) -> (Complex<f64>, Complex<f64>) {
-    let (alpha, beta) = (Complex::new(turn.w, turn.k), Complex::new(turn.i, turn.j));
     let half_i_axle = start.axle * Complex::new(0.0, 0.5);
     if start.height > 0.0 {
-        let alpha = alpha * ((1.0 - 0.5 * start.below_top()).sqrt() / alpha.norm_sqr().sqrt());
+        let direction = Complex::new(turn.w, turn.k);
+        let alpha =
+            direction * ((1.0 - 0.5 * start.below_top()).sqrt() / direction.norm_sqr().sqrt());
         (alpha, half_i_axle / alpha)
     } else {
-        let beta = beta * ((1.0 - 0.5 * start.above_bottom()).sqrt() / beta.norm_sqr().sqrt());
+        let direction = Complex::new(turn.i, turn.j);
+        let beta =
+            direction * ((1.0 - 0.5 * start.above_bottom()).sqrt() / direction.norm_sqr().sqrt());
         (half_i_axle / beta, beta)
     }
 }

@@ -271,10 +271,10 @@ fn readout_lines(group: PaneGroup, readouts: &Readouts) -> Vec<ParameterLine> {
     {
         let unit = unit.unwrap_or(row.unit);
         let is_lost = row.is_of_body() && !readouts.health.is_a_rotation;
-        let known = row.of(readouts).number().filter(|_| !is_lost);
+        let known = row.read_from(readouts).number().filter(|_| !is_lost);
         lines.push(number(rank, label, known, decimals, unit));
         if let Some(predicted) = row.predicted() {
-            let number_of_theory = predicted.of(readouts).number();
+            let number_of_theory = predicted.read_from(readouts).number();
             lines.push(number(
                 rank + 1,
                 PREDICTED_LABEL,

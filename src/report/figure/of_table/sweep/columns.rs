@@ -180,7 +180,7 @@ pub(super) fn example(quantities: &[QuantityColumns]) -> String {
     let parts = || quantities.iter().flatten();
     let is_measured = |part: &&QuantityColumn| part.role == QuantityOwner::Measured;
     let measured = parts().filter(is_measured);
-    let others = parts().filter(|part| !is_measured(part) && Unit::of(&part.name).is_some());
+    let others = parts().filter(|part| !is_measured(part) && Unit::from_name(&part.name).is_some());
     let names = measured.chain(others).map(|part| part.name.as_str());
     names.take(2).collect::<Vec<_>>().join(",")
 }
