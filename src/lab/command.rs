@@ -325,18 +325,26 @@ mod or_none {
 
 impl Command {
     /// The command called `name` with `value`.
+    ///
+    /// # Errors
+    /// Every rule that the value breaks; the keys of the problems begin with the name.
     pub fn new(name: &str, value: &Value) -> Result<Self, Problems> {
         let Some(row) = COMMANDS.iter().find(|row| row.name == name) else {
             return Err(file::unknown(name, None).into());
         };
-        let table = Table::from_iter([(name.to_owned(), row.form.check(name, value)?)]);
+        let whole = row.form.check(name, value)?;
+        let table = Table::from_iter([(name.to_owned(), whole.clone())]);
         if ViewSettings::has(name) {
             return Ok(Self::Look(table));
         }
-        let read = table.try_into();
-        read.map_err(|error: toml::de::Error| {
-            Problem::with_value(name, value, error.message()).into()
-        })
+        let command = table.try_into();
+        let command: Self = command
+            .map_err(|error: toml::de::Error| Problem::with_value(name, value, error.message()))?;
+        form::check_together(&command).map_err(|problem| {
+            let value = whole.get(&problem.key).unwrap_or(value);
+            Problem::with_value(problem.key, value, problem.rule).inside(name)
+        })?;
+        Ok(command)
     }
 
     /// The command that shows the run as the key `name` of `[view]` says with `value`.

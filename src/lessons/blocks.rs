@@ -12,11 +12,9 @@ use crate::engine::scenario::kind::Range::{Any, Positive};
 use crate::engine::scenario::kind::ValueKind::{self, By, Line, Lines, Number, Paragraph, Whole};
 use crate::engine::scenario::problem::nearest;
 use crate::engine::scenario::schema::{Schema, UNKNOWN_KEY, may, must};
-use crate::engine::scenario::{Document, Problem, Problems};
+use crate::engine::scenario::{Document, Problem, Problems, float};
 use crate::lab::command::{COMMANDS, Command, LocatedCommand};
 use crate::lab::view;
-use serde::Deserialize;
-use serde::de::DeserializeOwned;
 use toml::{Table, Value};
 
 /// The words behind a fence that mean something in a lesson.
@@ -46,16 +44,13 @@ const HEAD: Schema = Schema(&[&[
     may("minutes", Whole(1, LONGEST_LESSON), "how long it takes"),
 ]]);
 
+#[rustfmt::skip]
 const PREDICT: Schema = Schema(&[&[
     must("name", Line, "compare calls the prediction by it"),
     must("ask", MARKDOWN, "the question"),
     may("choices", By(are_choices), "the answers to choose from"),
     may("unit", By(is_unit), "the unit of a number"),
-    may(
-        "right",
-        Number(Any),
-        "the number that comes out, or of the choice",
-    ),
+    may("right", Number(Any), "the number that comes out, or of the choice"),
     may("within", Number(Positive), "how far off is right too"),
 ]]);
 
@@ -74,45 +69,6 @@ const CHECK: Schema = Schema(&[&[
     may("goal", By(is_goal), "what is to be reached"),
     may("hint", MARKDOWN, "help for one who has not got there"),
 ]]);
-
-#[derive(Deserialize)]
-struct HeadKeys {
-    #[serde(default)]
-    about: String,
-    minutes: Option<u32>,
-}
-
-#[derive(Deserialize)]
-struct PredictKeys {
-    name: String,
-    ask: String,
-    choices: Option<Vec<String>>,
-    unit: Option<String>,
-    right: Option<f64>,
-    within: Option<f64>,
-}
-
-#[derive(Deserialize)]
-struct CompareKeys {
-    prediction: String,
-    with: Option<String>,
-    text: String,
-}
-
-#[derive(Deserialize)]
-struct CheckKeys {
-    that: String,
-    goal: Option<Goal>,
-    #[serde(default)]
-    hint: String,
-}
-
-#[derive(Deserialize)]
-#[serde(untagged)]
-enum Goal {
-    Whole(String),
-    Parts(Vec<String>),
-}
 
 fn are_choices(value: &Value) -> Result<(), String> {
     Lines.check(value)?;
@@ -160,6 +116,8 @@ pub(super) struct BlockReader<'a> {
 struct BlockContent<'a> {
     reader: &'a BlockReader<'a>,
     document: Document,
+    /// Its keys. Texts have lost the blanks around them, except for those of commands.
+    keys: Table,
     problems: Vec<Problem>,
 }
 
@@ -170,33 +128,39 @@ impl<'a> BlockContent<'a> {
         let document = Document::parse(&reader.origin, &text).map_err(|problems| problems.list)?;
         let mut content = Self {
             reader,
+            keys: document.table().clone(),
             document,
             problems: Vec::new(),
         };
-        if content.document.table().is_empty() {
+        if content.keys.is_empty() {
             let rule = "holds nothing: its keys stand between the fences";
             content.refuse(Problem::at("", rule));
         }
         Ok(content)
     }
 
-    /// Parses the block, and its keys, which `schema` lists. Texts lose the blanks around them.
-    fn read<T: DeserializeOwned>(
-        reader: &'a BlockReader<'a>,
-        schema: Schema,
-    ) -> BlockResult<(Self, T)> {
+    /// Parses the block, whose keys `schema` lists.
+    fn read(reader: &'a BlockReader<'a>, schema: Schema) -> BlockResult<Self> {
         let mut content = Self::parse(reader)?;
-        let mut table = content.document.table().clone();
-        table.iter_mut().for_each(|(_, value)| trim(value));
-        content.refuse(schema.check(&table));
-        match table.try_into() {
-            Ok(keys) if content.problems.is_empty() => return Ok((content, keys)),
-            Err(error) if content.problems.is_empty() => {
-                content.refuse(Problem::at("", error.message()));
-            }
-            _ => {}
-        }
-        Err(content.problems)
+        content.keys.iter_mut().for_each(|(_, value)| trim(value));
+        content.refuse(schema.check(&content.keys));
+        content.finish(())?;
+        Ok(content)
+    }
+
+    /// The text at `key`, or each text in the list there; none if the key is absent.
+    fn texts(&self, key: &str) -> Vec<String> {
+        let value = self.keys.get(key);
+        let items = match value {
+            Some(Value::Array(items)) => items.as_slice(),
+            other => other.map_or(&[][..], std::slice::from_ref),
+        };
+        let texts = items.iter().filter_map(Value::as_str);
+        texts.map(str::to_owned).collect()
+    }
+
+    fn text(&self, key: &str) -> String {
+        self.texts(key).concat()
     }
 
     /// Adds problems, whose keys are those of the TOML.
@@ -217,15 +181,10 @@ impl<'a> BlockContent<'a> {
         line.unwrap_or(self.reader.line)
     }
 
-    /// Reads the Markdown `source` at `key`.
-    fn text(
-        &mut self,
-        key: &str,
-        source: &str,
-        find: impl Fn(&str) -> Result<(), String>,
-    ) -> LessonText {
+    /// Reads the Markdown at `key`.
+    fn markdown(&mut self, key: &str, find: impl Fn(&str) -> Result<(), String>) -> LessonText {
         let line = self.line_of(key);
-        LessonText::read(source, line, find).unwrap_or_else(|problems| {
+        LessonText::read(&self.text(key), line, find).unwrap_or_else(|problems| {
             let word = self.reader.word;
             self.problems
                 .extend(problems.into_iter().map(|problem| Problem {
@@ -250,11 +209,10 @@ impl<'a> BlockContent<'a> {
     }
 
     /// Returns `Ok(made)` if no problem was found.
-    fn finish<T>(self, made: T) -> BlockResult<T> {
-        if self.problems.is_empty() {
-            Ok(made)
-        } else {
-            Err(self.problems)
+    fn finish<T>(&mut self, made: T) -> BlockResult<T> {
+        match std::mem::take(&mut self.problems) {
+            none if none.is_empty() => Ok(made),
+            problems => Err(problems),
         }
     }
 }
@@ -287,8 +245,10 @@ fn expression(
 
 /// What the lesson is about, and how many minutes it takes.
 pub(super) fn head(reader: &BlockReader<'_>) -> BlockResult<(String, Option<u32>)> {
-    let (_, HeadKeys { about, minutes }) = BlockContent::read(reader, HEAD)?;
-    Ok((about, minutes))
+    let content = BlockContent::read(reader, HEAD)?;
+    let whole = content.keys.get("minutes").and_then(Value::as_integer);
+    let minutes = whole.and_then(|minutes| u32::try_from(minutes).ok());
+    Ok((content.text("about"), minutes))
 }
 
 /// What the lab does: a `lab` or `task` block of page `page`, whose kept numbers are known from the page `known_from` on.
@@ -299,7 +259,7 @@ pub(super) fn setup(
     known_from: usize,
 ) -> BlockResult<Setup> {
     let mut content = BlockContent::parse(reader).inspect_err(|_| names.mark_incomplete())?;
-    let table = content.document.table().clone();
+    let table = content.keys.clone();
     let known: Vec<_> = COMMANDS
         .iter()
         .map(|row| row.name)
@@ -390,34 +350,33 @@ fn predict(
     reader: &BlockReader<'_>,
     find: impl Fn(&str) -> Result<(), String>,
 ) -> BlockResult<Predict> {
-    let (mut content, keys) = BlockContent::read::<PredictKeys>(reader, PREDICT)?;
-    let ask = content.text("ask", &keys.ask, find);
-    let asked = match (keys.choices, keys.unit) {
-        (Some(choices), None) => AnswerKind::Choice(choices),
-        (None, Some(unit)) => AnswerKind::Number { unit },
-        (Some(_), Some(_)) => {
-            let rule = "has no place beside choices: a choice has no unit";
-            content.refuse(Problem::at("unit", rule));
-            return Err(content.problems);
+    let mut content = BlockContent::read(reader, PREDICT)?;
+    let ask = content.markdown("ask", find);
+    let [has_choices, has_unit] = ["choices", "unit"].map(|key| content.keys.contains_key(key));
+    if has_choices && has_unit {
+        let rule = "has no place beside choices: a choice has no unit";
+        content.refuse(Problem::at("unit", rule));
+    } else if !has_choices && !has_unit {
+        let rule =
+            "lacks choices = [\"...\", \"...\"], or unit = \"deg\" where a number is asked for";
+        content.refuse(Problem::at("", rule));
+    }
+    let asked = if has_unit {
+        AnswerKind::Number {
+            unit: content.text("unit"),
         }
-        (None, None) => {
-            let rule =
-                "lacks choices = [\"...\", \"...\"], or unit = \"deg\" where a number is asked for";
-            content.refuse(Problem::at("", rule));
-            return Err(content.problems);
-        }
+    } else {
+        AnswerKind::Choice(content.texts("choices"))
     };
-    let right = match right(keys.right, keys.within, &asked) {
-        Ok(right) => right,
-        Err(rule) => {
-            let key = keys.right.map_or("within", |_| "right");
-            content.refuse(Problem::at(key, rule));
-            None
-        }
-    };
+    let [right, within] = ["right", "within"].map(|key| content.keys.get(key).and_then(float));
+    let right = read_right(right, within, &asked).unwrap_or_else(|rule| {
+        let key = right.map_or("within", |_| "right");
+        content.refuse(Problem::at(key, rule));
+        None
+    });
     content.finish(Predict {
         line: reader.line,
-        name: keys.name,
+        name: content.text("name"),
         ask,
         asked,
         right,
@@ -425,7 +384,7 @@ fn predict(
 }
 
 /// The number of the right choice; or the right number, and how far off an answer may be.
-fn right(
+fn read_right(
     right: Option<f64>,
     within: Option<f64>,
     asked: &AnswerKind,
@@ -450,18 +409,18 @@ fn compare(
     reader: &BlockReader<'_>,
     find: impl Fn(&str) -> Result<(), String>,
 ) -> BlockResult<Compare> {
-    let (mut content, keys) = BlockContent::read::<CompareKeys>(reader, COMPARE)?;
-    let with = keys.with.as_ref();
-    let number = with.and_then(|with| content.expression(WITH, with, false, &find));
-    let text = content.text("text", &keys.text, |name| match name {
-        WITH if with.is_none() => Err("there is no with in this block".to_owned()),
+    let mut content = BlockContent::read(reader, COMPARE)?;
+    let has_with = content.keys.contains_key(WITH);
+    let with = has_with.then(|| content.expression(WITH, &content.text(WITH), false, &find));
+    let text = content.markdown("text", |name| match name {
+        WITH if !has_with => Err("there is no with in this block".to_owned()),
         WITH | PREDICTION => Ok(()),
         name => find(name),
     });
     content.finish(Compare {
         line: reader.line,
-        prediction: keys.prediction,
-        with: number,
+        prediction: content.text(PREDICTION),
+        with: with.flatten(),
         text,
     })
 }
@@ -471,19 +430,15 @@ fn check(
     reader: &BlockReader<'_>,
     find: impl Fn(&str) -> Result<(), String>,
 ) -> BlockResult<Check> {
-    let (mut content, keys) = BlockContent::read::<CheckKeys>(reader, CHECK)?;
-    let Some(that) = content.expression("that", &keys.that, true, find) else {
+    let mut content = BlockContent::read(reader, CHECK)?;
+    let Some(that) = content.expression("that", &content.text("that"), true, find) else {
         return Err(content.problems);
     };
     if that.names().next().is_none() {
         let rule = "names no number of the run: it holds always or never";
         content.refuse(Problem::with_value("that", &that.text().into(), rule));
     }
-    let goals = match keys.goal {
-        None => Vec::new(),
-        Some(Goal::Whole(goal)) => vec![goal],
-        Some(Goal::Parts(goals)) => goals,
-    };
+    let goals = content.texts("goal");
     let parts = that.conjuncts(|_| None).len();
     if goals.len() > 1 && goals.len() != parts {
         let rule = format!(
@@ -496,6 +451,6 @@ fn check(
         line: reader.line,
         that,
         goals,
-        hint: keys.hint,
+        hint: content.text("hint"),
     })
 }

@@ -16,38 +16,14 @@ use serde::{Deserialize, Serialize};
 use std::num::NonZeroU64;
 
 /// The options of a CSV, as commands and the command line have them.
+#[rustfmt::skip]
 pub const LAYOUT_KEYS: &[SchemaRow] = &[
-    may(
-        "every",
-        Whole(1, i64::MAX),
-        "Write every N-th row only, and the last",
-    )
-    .or(DefaultValue::Whole(1)),
-    may(
-        "columns",
-        Lines,
-        "Write these columns only, in this order; gyrolab man csv lists them",
-    ),
-    may(
-        "from_s",
-        Number(NotNegative),
-        "Leave out the rows before this time, s; the run begins at 0 all the same",
-    ),
-    may(
-        "to_s",
-        Number(NotNegative),
-        "Leave out the rows after this time, s; the run goes on to its end all the same",
-    ),
-    may(
-        "points",
-        Flag,
-        "Write a row for each point of the body at each step: its name, mass, place and velocity",
-    ),
-    may(
-        "excel",
-        Flag,
-        "Write decimal commas, with semicolons between the columns, for Excel in German and other such languages",
-    ),
+    may("every", Whole(1, i64::MAX), "Write every N-th row only, and the last").or(DefaultValue::Whole(1)),
+    may("columns", Lines, "Write these columns only, in this order; gyrolab man csv lists them"),
+    may("from_s", Number(NotNegative), "Leave out the rows before this time, s; the run begins at 0 all the same"),
+    may("to_s", Number(NotNegative), "Leave out the rows after this time, s; the run goes on to its end all the same"),
+    may("points", Flag, "Write a row for each point of the body at each step: its name, mass, place and velocity"),
+    may("excel", Flag, "Write decimal commas, with semicolons between the columns, for Excel in German and other such languages"),
 ];
 
 /// A layout as the user states it, or as a header holds it, before it is checked.

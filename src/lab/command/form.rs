@@ -1,7 +1,7 @@
 //! What the value of a command may be.
 
-use super::{CursorTo, SeekTarget};
-use crate::engine::export::layout::{LAYOUT_KEYS, LayoutFile};
+use super::{Command, CursorTo, Force, PushChoice, SeekTarget};
+use crate::engine::export::layout::LAYOUT_KEYS;
 use crate::engine::journal::expression::Expression;
 use crate::engine::journal::next_push::Toward;
 use crate::engine::scenario::dotted::join;
@@ -30,19 +30,12 @@ pub(super) enum ValueSchema {
     View(&'static str),
     /// Dotted keys of the scenario and their values.
     Keys,
-    Fields(Fields),
-}
-
-/// A table.
-pub(super) struct Fields {
-    schema: Schema,
-    shorthand: Shorthand,
-    /// What several fields must fulfil: the field that is refused, and why.
-    rule: fn(&Table) -> Result<(), Problem>,
+    /// A table with these fields, or its shorthand.
+    Fields(Schema, Shorthand),
 }
 
 /// What may stand in the place of a table.
-enum Shorthand {
+pub(super) enum Shorthand {
     Nothing,
     /// `true` stands for the empty table.
     True,
@@ -50,7 +43,8 @@ enum Shorthand {
     Field(&'static str),
 }
 
-use ValueSchema::Is;
+use Shorthand::{Field, Nothing, True};
+use ValueSchema::{Fields, Is};
 
 pub(super) const TRUE: ValueSchema = Is(By(|value| match value.as_bool() {
     Some(true) => Ok(()),
@@ -83,30 +77,17 @@ pub(super) const SINCE: ValueSchema = Is(By(|value| match value.as_str() {
     _ => Number(NotNegative).check(value),
 }));
 pub(super) const MAGNIFY: ValueSchema = Is(Number(Within((1.0, MOST_MAGNIFIED))));
-pub(super) const NUDGE: ValueSchema = ValueSchema::Fields(Fields {
-    schema: Schema(&[&[
-        must("key", Text(can_be_nudged), "the dotted key that is nudged"),
-        may("times", By(|value| not_zero(value, MOST_TIMES)), ""),
-    ]]),
-    shorthand: Shorthand::Field("key"),
-    rule: |_| Ok(()),
-});
-pub(super) const PUSH_SCHEMA: ValueSchema = ValueSchema::Fields(Fields {
-    schema: Schema(&[OF_PUSH]),
-    shorthand: Shorthand::True,
-    rule: has_one_direction,
-});
-pub(super) const NEXT_PUSH_SCHEMA: ValueSchema = ValueSchema::Fields(Fields {
-    schema: Schema(&[OF_PUSH]),
-    shorthand: Shorthand::Nothing,
-    rule: |table| {
-        if table.is_empty() {
-            let rule = "must hold one of point, force_N, toward, from_s, for_s";
-            return Err(Problem::at("", rule));
-        }
-        has_one_direction(table)
-    },
-});
+pub(super) const NUDGE: ValueSchema = Fields(Schema(&[OF_NUDGE]), Field("key"));
+pub(super) const PUSH_SCHEMA: ValueSchema = Fields(Schema(&[OF_PUSH]), True);
+pub(super) const NEXT_PUSH_SCHEMA: ValueSchema = Fields(Schema(&[OF_PUSH]), Nothing);
+pub(super) const EXPORT: ValueSchema = Fields(Schema(&[OF_FILE, LAYOUT_KEYS]), Field("path"));
+pub(super) const FIGURE: ValueSchema = Fields(Schema(&[OF_FILE, OF_FIGURE]), Field("path"));
+pub(super) const SAVE: ValueSchema = Fields(Schema(&[OF_FILE, OF_SAVE]), Field("path"));
+
+const OF_NUDGE: &[SchemaRow] = &[
+    must("key", Text(can_be_nudged), "the dotted key that is nudged"),
+    may("times", By(|value| not_zero(value, MOST_TIMES)), ""),
+];
 const OF_PUSH: &[SchemaRow] = &[
     may("point", Line, ""),
     may("force_N", By(is_force), ""),
@@ -120,45 +101,44 @@ const OF_FILE: &[SchemaRow] = &[
     may("to_step", Whole(1, i64::MAX), "the last step in it"),
     may("force", Flag, "whether an existing file is replaced"),
 ];
-pub(super) const EXPORT: ValueSchema = ValueSchema::Fields(Fields {
-    schema: Schema(&[OF_FILE, LAYOUT_KEYS]),
-    shorthand: Shorthand::Field("path"),
-    rule: |table| {
-        let mut layout = table.clone();
-        layout.retain(|key, _| OF_FILE.iter().all(|row| row.path != key));
-        let layout: LayoutFile = layout.try_into().unwrap_or_default();
-        layout.check().map(drop)
-    },
-});
-pub(super) const FIGURE: ValueSchema = ValueSchema::Fields(Fields {
-    schema: Schema(&[
-        OF_FILE,
-        &[
-            may("kind", Text(|name| FigureKind::named(name).map(drop)), ""),
-            may("exact", Flag, ""),
-        ],
-    ]),
-    shorthand: Shorthand::Field("path"),
-    rule: |table| {
-        let path = table.get("path").and_then(Value::as_str);
-        let format = PageFormat::of(Path::new(path.unwrap_or_default()));
-        format
-            .map(drop)
-            .map_err(|refusal| Problem::at("", refusal.to_string()))
-    },
-});
-pub(super) const SAVE: ValueSchema = ValueSchema::Fields(Fields {
-    schema: Schema(&[OF_FILE, &[may("from_here", Flag, "")]]),
-    shorthand: Shorthand::Field("path"),
-    rule: |table| {
-        let is_from_here = table.get("from_here").and_then(Value::as_bool);
-        if is_from_here == Some(true) && table.contains_key("to_step") {
-            let rule = "has no place beside from_here, which saves the present state";
-            return Err(Problem::at("to_step", rule));
-        }
-        Ok(())
-    },
-});
+const OF_FIGURE: &[SchemaRow] = &[
+    may("kind", Text(|name| FigureKind::named(name).map(drop)), ""),
+    may("exact", Flag, ""),
+];
+const OF_SAVE: &[SchemaRow] = &[may("from_here", Flag, "")];
+
+/// Checks what several fields of `command` must fulfil. The key of a problem is that of the field which is refused.
+pub(super) fn check_together(command: &Command) -> Result<(), Problem> {
+    match command {
+        Command::Export(export) => export.layout.clone().check().map(drop),
+        Command::Figure(figure) => match PageFormat::of(Path::new(&figure.path)) {
+            Ok(_) => Ok(()),
+            Err(refusal) => Err(Problem::at("", refusal.to_string())),
+        },
+        Command::Save(save) if save.from_here && save.to_step.is_some() => Err(Problem::at(
+            "to_step",
+            "has no place beside from_here, which saves the present state",
+        )),
+        Command::NextPush(choice) if *choice == PushChoice::default() => Err(Problem::at(
+            "",
+            "must hold one of point, force_N, toward, from_s, for_s",
+        )),
+        Command::Push(PushChoice {
+            force_N: Some(Force::Vector(_)),
+            toward: Some(_),
+            ..
+        })
+        | Command::NextPush(PushChoice {
+            force_N: Some(Force::Vector(_)),
+            toward: Some(_),
+            ..
+        }) => Err(Problem::at(
+            "toward",
+            "has no place beside a force of three numbers, which has a direction",
+        )),
+        _ => Ok(()),
+    }
+}
 
 impl ValueSchema {
     /// Checks `value`, that of the command `name`, and returns it with a shorthand written out.
@@ -169,28 +149,19 @@ impl ValueSchema {
                 .map_err(|rule| Problem::with_value(name, value, rule))?,
             Self::View(path) => SCENARIO.check_part(value, path, name).or(())?,
             Self::Keys => are_keys(name, value)?,
-            Self::Fields(fields) => return fields.check(name, value),
+            Fields(schema, shorthand) => {
+                let whole = match (shorthand, value) {
+                    (True, Value::Boolean(true)) => Table::new().into(),
+                    (Field(field), Value::String(_)) => {
+                        Table::from_iter([((*field).to_owned(), value.clone())]).into()
+                    }
+                    _ => value.clone(),
+                };
+                schema.check_part(&whole, "", name).or(())?;
+                return Ok(whole);
+            }
         }
         Ok(value.clone())
-    }
-}
-
-impl Fields {
-    fn check(&self, name: &str, value: &Value) -> Result<Value, Problems> {
-        let whole = match (&self.shorthand, value) {
-            (Shorthand::True, Value::Boolean(true)) => Table::new().into(),
-            (Shorthand::Field(field), Value::String(_)) => {
-                Table::from_iter([((*field).to_owned(), value.clone())]).into()
-            }
-            _ => value.clone(),
-        };
-        self.schema.check_part(&whole, "", name).or(())?;
-        let fulfilled = whole.as_table().map_or(Ok(()), self.rule);
-        fulfilled.map_err(|Problem { key, rule, .. }| {
-            let value = whole.get(&key).unwrap_or(value);
-            Problem::with_value(key, value, rule).inside(name)
-        })?;
-        Ok(whole)
     }
 }
 
@@ -228,15 +199,6 @@ fn can_be_nudged(key: &str) -> Result<(), String> {
         (row, _) if row.lab.is_some() => Ok(()),
         _ => Err("cannot be nudged".to_owned()),
     }
-}
-
-fn has_one_direction(table: &Table) -> Result<(), Problem> {
-    let is_vector = table.get("force_N").is_some_and(Value::is_array);
-    if is_vector && table.contains_key("toward") {
-        let rule = "has no place beside a force of three numbers, which has a direction";
-        return Err(Problem::at("toward", rule));
-    }
-    Ok(())
 }
 
 /// Checks `value`, that of the command `name`: dotted keys of the scenario, each with a value that it may have.

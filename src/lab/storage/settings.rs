@@ -21,22 +21,11 @@ const LONGEST_SETTINGS: usize = 1 << 20;
 
 const SETTINGS_HEADER: &str = "# What was chosen in the lab. gyrolab writes this file; config.toml in the configuration folder is yours, and wins.\n";
 
+#[rustfmt::skip]
 pub const SETTINGS_KEYS: &[SchemaRow] = &[
-    may(
-        "marker",
-        OneOf(&["braille", "half-block", "dot", "ascii"]),
-        "what dots are made of",
-    ),
-    may(
-        "colour",
-        OneOf(&["auto", "always", "never"]),
-        "whether there are colours",
-    ),
-    may(
-        "background",
-        OneOf(&["dark", "light"]),
-        "what screen the colours are for",
-    ),
+    may("marker", OneOf(&["braille", "half-block", "dot", "ascii"]), "what dots are made of"),
+    may("colour", OneOf(&["auto", "always", "never"]), "whether there are colours"),
+    may("background", OneOf(&["dark", "light"]), "what screen the colours are for"),
     may("fps", Whole(1, 60), "frames a second at most"),
     may("mouse", Flag, "whether the lab takes the mouse"),
 ];

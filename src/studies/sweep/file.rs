@@ -54,6 +54,7 @@ pub struct VaryFile {
     pub count: Option<u64>,
 }
 
+#[rustfmt::skip]
 const SWEEP_SCHEMA: Schema = Schema(&[&[
     may("gyrolab", Line, "version of gyrolab that wrote the file"),
     may("title", Line, "name of the sweep"),
@@ -63,18 +64,10 @@ const SWEEP_SCHEMA: Schema = Schema(&[&[
     may("measure", Lines, "the readouts"),
     must("vary.*.key", Line, "the dotted key that varies"),
     may("vary.*.values", By(is_list), "its values"),
-    may(
-        "vary.*.from",
-        Number(Range::Any),
-        "the first of evenly spaced values",
-    ),
+    may("vary.*.from", Number(Range::Any), "the first of evenly spaced values"),
     may("vary.*.to", Number(Range::Any), "the last of them"),
     may("vary.*.count", Whole(0, i64::MAX), "how many there are"),
-    must(
-        "scenario",
-        By(is_scenario),
-        "a preset's name, a file's path, or a table [scenario] with the scenario itself",
-    ),
+    must("scenario", By(is_scenario), "a preset's name, a file's path, or a table [scenario] with the scenario itself"),
 ]]);
 
 fn is_list(value: &Value) -> Result<(), String> {
