@@ -5,7 +5,7 @@ use super::votes::{SeatStatus, Tally, present, seat_statuses};
 use super::{login, unix_ms};
 use crate::engine::text::number::counted;
 use crate::engine::text::wrap::{columns, wrapped};
-use crate::lessons::page::told;
+use crate::lessons::page::for_teacher;
 use crate::lessons::{Predict, reading};
 use chrono::Local;
 
@@ -40,9 +40,9 @@ pub fn lines(folder: &ClassFolder, width: usize) -> Vec<String> {
             } else if state.shown.is_none() {
                 board.push("the class does not follow: k 3 in the teacher's lab".to_owned());
             }
-            board.extend(of_page(&state, &seats));
+            board.extend(page_lines(&state, &seats));
             board.push(String::new());
-            board.extend(of_seats(&state, &seats, width));
+            board.extend(seat_lines(&state, &seats, width));
         }
     }
     let mut lines = Vec::new();
@@ -57,10 +57,10 @@ pub fn lines(folder: &ClassFolder, width: usize) -> Vec<String> {
 }
 
 /// The page in words, with the votes on its questions.
-fn of_page(state: &ClassState, seats: &[SeatStatus]) -> Vec<String> {
+fn page_lines(state: &ClassState, seats: &[SeatStatus]) -> Vec<String> {
     let told = match reading::open_again(&state.lesson) {
-        Ok(lesson) => told(&lesson, state.page, |predict| {
-            of_rounds(predict, state, seats)
+        Ok(lesson) => for_teacher(&lesson, state.page, |predict| {
+            round_lines(predict, state, seats)
         }),
         Err(problems) => problems.to_string(),
     };
@@ -68,7 +68,7 @@ fn of_page(state: &ClassState, seats: &[SeatStatus]) -> Vec<String> {
 }
 
 /// The votes on `predict`, a round after the other. While a round goes on nobody's choice is shown.
-fn of_rounds(predict: &Predict, state: &ClassState, seats: &[SeatStatus]) -> String {
+fn round_lines(predict: &Predict, state: &ClassState, seats: &[SeatStatus]) -> String {
     let question = state.question(&predict.name);
     let mut text = String::new();
     for round in 1..=question.round() {
@@ -84,7 +84,7 @@ fn of_rounds(predict: &Predict, state: &ClassState, seats: &[SeatStatus]) -> Str
 }
 
 /// The seats in columns.
-fn of_seats(state: &ClassState, seats: &[SeatStatus], width: usize) -> Vec<String> {
+fn seat_lines(state: &ClassState, seats: &[SeatStatus], width: usize) -> Vec<String> {
     let mut cells = Vec::new();
     for seat in seats {
         let place = seat.lessons.get(&state.lesson);

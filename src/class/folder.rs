@@ -6,7 +6,7 @@ use crate::lab::Snapshot;
 use crate::lab::storage::confined::SESSIONS;
 use crate::lab::storage::shared;
 use crate::lessons::KeptNumbers;
-use crate::lessons::taken::FollowedLesson;
+use crate::lessons::open_lesson::ClassPage;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -210,8 +210,8 @@ impl QuestionState {
 
 impl ClassState {
     /// What its lesson shows; `is_there` says whether the run has come where the teacher's is.
-    pub(super) fn followed(&self, is_there: bool) -> FollowedLesson<'_> {
-        FollowedLesson {
+    pub(super) fn followed(&self, is_there: bool) -> ClassPage<'_> {
+        ClassPage {
             lesson: &self.lesson,
             page: self.page,
             kept: &self.kept,

@@ -5,7 +5,7 @@ use super::{ago, unix_ms};
 use crate::engine::text::printable::PrintablePath;
 use crate::lab::storage::confined::SESSIONS;
 use crate::lab::storage::shared;
-use crate::lessons::class::KeptLessons;
+use crate::lessons::state::KeptLessons;
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::io::{self, ErrorKind};

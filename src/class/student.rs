@@ -10,9 +10,9 @@ use crate::lab::playback::pace::Speed;
 use crate::lab::storage::shared;
 use crate::lab::view::HideablePart;
 use crate::lab::{Lab, Player, Snapshot};
+use crate::lessons::open_lesson::OpenLesson;
 use crate::lessons::page::ClassOverlay;
 use crate::lessons::predictions::Predictions;
-use crate::lessons::taken::OpenLesson;
 use crate::lessons::{Lessons, Setup};
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -70,7 +70,7 @@ type PlaybackSnapshot = (
 
 fn playback_snapshot(lab: &Lab, lessons: &Lessons) -> PlaybackSnapshot {
     let player = lab.player();
-    let open = lessons.taken();
+    let open = lessons.open_lesson();
     (
         lab.runs().depth(),
         player.step_number(),
@@ -210,7 +210,7 @@ impl Student {
         if self.shown.exact.replace(shows_exact) != Some(shows_exact) {
             let _ = lab.carry_out(&Command::Exact(shows_exact));
         }
-        let hidden = hidden(&presented.look.hide, lessons.taken());
+        let hidden = hidden(&presented.look.hide, lessons.open_lesson());
         if hidden != self.shown.hidden {
             let _ = lab.carry_out(&Command::look("hide", &hidden));
             self.shown.hidden = hidden;
@@ -219,31 +219,26 @@ impl Student {
 
     /// What the class adds to the page.
     fn overlay(&self, lessons: &Lessons) -> ClassOverlay {
-        let Some(taken) = lessons.taken().filter(|_| self.has_begun) else {
+        let Some(open) = lessons.open_lesson().filter(|_| self.has_begun) else {
             return ClassOverlay::default();
         };
         let Some(state) = self.class() else {
             return ClassOverlay {
-                framed: self.title(taken, false),
+                framed: self.title(open, false),
                 ..ClassOverlay::default()
             };
         };
-        let page = taken.page().filter(|_| taken.lesson.name == state.lesson);
+        let page = open.page().filter(|_| open.lesson.name == state.lesson);
         let asked = page.and_then(|page| votes::question(page, state));
         let mut overlay = ClassOverlay {
-            framed: self.title(taken, asked.is_some()),
+            framed: self.title(open, asked.is_some()),
             is_followed: self.follows(),
             ..ClassOverlay::default()
         };
         if overlay.is_followed {
             overlay.border = "k: step aside".to_owned();
         }
-        for (name, question) in state
-            .questions
-            .get(&taken.lesson.name)
-            .into_iter()
-            .flatten()
-        {
+        for (name, question) in state.questions.get(&open.lesson.name).into_iter().flatten() {
             let is_closed = question.stage == VoteStage::Closed;
             let round = (question.round(), is_closed);
             overlay.rounds.insert(name.clone(), round);
@@ -257,9 +252,9 @@ impl Student {
     }
 
     /// The title of the page, a form a line; `asks` says whether the page has a question.
-    fn title(&self, taken: &OpenLesson, asks: bool) -> String {
-        let page = taken.place.page;
-        let of = format!("{page} of {}", taken.lesson.pages.len());
+    fn title(&self, open: &OpenLesson, asks: bool) -> String {
+        let page = open.place.page;
+        let of = format!("{page} of {}", open.lesson.pages.len());
         let Some(state) = self.class() else {
             let is_over = self.state.as_ref().is_some_and(|state| !state.is_on);
             let gone = ["teacher's lab gone", "class over"][usize::from(is_over)];
@@ -306,8 +301,8 @@ impl Student {
 
     /// What the header of an export says: the seat, and the page beside which it was made.
     fn note_for_exports(&self, lessons: &Lessons) -> Option<String> {
-        let taken = lessons.taken().filter(|_| self.record.is_aside)?;
-        let (page, lesson) = (taken.place.page, &taken.lesson.name);
+        let open = lessons.open_lesson().filter(|_| self.record.is_aside)?;
+        let (page, lesson) = (open.place.page, &open.lesson.name);
         let (seat, lesson) = (&self.seat.word, self.folder.short(lesson));
         Some(format!("seat {seat}, beside page {page} of {lesson}"))
     }
@@ -402,8 +397,8 @@ impl ClassRole for Student {
 
 /// What is hidden where the teacher's lab hides `presented`: what the page hides stays so until the predictions here are
 /// locked, whatever the teacher sees.
-fn hidden(presented: &[HideablePart], taken: Option<&OpenLesson>) -> Vec<HideablePart> {
-    let page = taken.and_then(|taken| Some((taken.page()?, &taken.place.predictions)));
+fn hidden(presented: &[HideablePart], open: Option<&OpenLesson>) -> Vec<HideablePart> {
+    let page = open.and_then(|open| Some((open.page()?, &open.place.predictions)));
     let Some((page, predictions)) = page.filter(|(page, _)| page.predicts().next().is_some())
     else {
         return presented.to_vec();

@@ -9,8 +9,8 @@ use crate::engine::text::printable::PrintablePath;
 use crate::lab::action::LessonKey;
 use crate::lab::sheet::{Paragraph, SheetLineKind};
 use crate::lab::{Lab, Snapshot};
+use crate::lessons::open_lesson::OpenLesson;
 use crate::lessons::page::ClassOverlay;
-use crate::lessons::taken::OpenLesson;
 use crate::lessons::{LessonPage, Lessons};
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -85,16 +85,16 @@ impl Teacher {
             }
             Err(trouble) => self.trouble = Some(trouble),
         }
-        if let Some(taken) = lessons.taken() {
-            self.state.lesson.clone_from(&taken.lesson.name);
-            self.state.page = taken.place.page;
-            self.state.kept.clone_from(&taken.place.kept);
-            self.state.has_arrived = !taken.is_under_way();
+        if let Some(open) = lessons.open_lesson() {
+            self.state.lesson.clone_from(&open.lesson.name);
+            self.state.page = open.place.page;
+            self.state.kept.clone_from(&open.place.kept);
+            self.state.has_arrived = !open.is_under_way();
         }
         self.state.shown = self.is_followed.then(|| self.shown(lab)).flatten();
         self.state.here = present(&self.seats).0;
         self.state.answered = 0;
-        let page = lessons.taken().and_then(|taken| taken.page());
+        let page = lessons.open_lesson().and_then(|open| open.page());
         if let Some((predict, question)) = page.and_then(|page| votes::question(page, &self.state))
         {
             let (lesson, round) = (&self.state.lesson, question.round());
@@ -142,18 +142,18 @@ impl Teacher {
     /// What the class adds to the page.
     fn overlay(&self, lessons: &Lessons) -> ClassOverlay {
         let (here, counts) = present(&self.seats);
-        let framed = lessons.taken().map(|taken| {
-            let (page, pages) = (taken.place.page, taken.lesson.pages.len());
+        let framed = lessons.open_lesson().map(|open| {
+            let (page, pages) = (open.place.page, open.lesson.pages.len());
             let lead = if self.is_followed {
                 ""
             } else {
                 "not followed · "
             };
             let of = format!("{lead}{page} of {pages}");
-            let title = &taken.lesson.title;
+            let title = &open.lesson.title;
             format!("{of} · {counts} · {title}\n{of} · {counts}\n{of} · {here} here")
         });
-        let page = lessons.taken().and_then(|taken| taken.page());
+        let page = lessons.open_lesson().and_then(|open| open.page());
         let border = match (self.menu, self.is_followed) {
             (ClassMenu::Closed, _) => "k: show, again, follow, seats\nk: class",
             (ClassMenu::Open, true) => "1 show 2 again 3 unfollow 4 seats",
@@ -237,16 +237,16 @@ impl Teacher {
     }
 
     /// Does what the menu has under `digit`.
-    fn choose(&mut self, digit: u8, lab: &mut Lab, taken: Option<&OpenLesson>) {
+    fn choose(&mut self, digit: u8, lab: &mut Lab, open: Option<&OpenLesson>) {
         self.menu = ClassMenu::Closed;
         match digit {
             1 | 2 => {
-                let page = taken.and_then(OpenLesson::page);
+                let page = open.and_then(OpenLesson::page);
                 let asked = page.and_then(|page| votes::question(page, &self.state));
                 let Some((predict, _)) = asked else {
                     return lab.refuse("this page asks nothing");
                 };
-                let is_seen = taken.is_some_and(|it| it.place.seen.contains(&predict.name));
+                let is_seen = open.is_some_and(|it| it.place.seen.contains(&predict.name));
                 let question = self.state.question_mut(&predict.name);
                 if digit == 2 {
                     question.earlier_rounds = question.round();
@@ -291,7 +291,7 @@ impl Teacher {
 
 impl ClassRole for Teacher {
     fn advance(&mut self, now: Duration, lab: &mut Lab, lessons: &mut Lessons) -> ControlFlow<()> {
-        let is_new = lessons.taken().is_some_and(|open| {
+        let is_new = lessons.open_lesson().is_some_and(|open| {
             (&open.lesson.name, open.place.page) != (&self.state.lesson, self.state.page)
         });
         if now >= self.next_look || is_new {
@@ -317,7 +317,7 @@ impl ClassRole for Teacher {
         match (self.menu, key) {
             (ClassMenu::Closed, _) => return false,
             (ClassMenu::Open, LessonKey::Digit(digit)) => {
-                self.choose(digit, lab, lessons.taken());
+                self.choose(digit, lab, lessons.open_lesson());
             }
             (ClassMenu::Seats(selected), LessonKey::Move(direction)) => {
                 let last = self.entries().len().saturating_sub(1);

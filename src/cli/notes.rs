@@ -10,10 +10,10 @@ use crate::engine::text::wrap::wrapped;
 use crate::lab::lessons_in;
 use crate::lab::storage::confined::Confined;
 use crate::lab::storage::session::{self, ListedSession};
-use crate::lessons::class::KeptLessons;
 use crate::lessons::clock;
-use crate::lessons::page::told;
+use crate::lessons::page::for_teacher;
 use crate::lessons::predictions::LessonProgress;
+use crate::lessons::state::KeptLessons;
 use crate::lessons::{Lesson, handout, reading};
 use anyhow::{bail, ensure};
 use std::io::{self, IsTerminal, Stdout, Write};
@@ -127,7 +127,7 @@ fn watch_session(
             if let Some((lesson, place)) = &now
                 && now.as_ref().map(page) != open.as_ref().map(page)
             {
-                tell(line, &told(lesson, place.page, |_| String::new()))?;
+                tell(line, &for_teacher(lesson, place.page, |_| String::new()))?;
             }
             open = now;
         }

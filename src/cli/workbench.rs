@@ -159,7 +159,7 @@ fn open_lessons(
         lab.tell(format!("the lesson cannot be taken again: {reason}"));
     }
     if let Some((lesson, page)) = lesson {
-        let open = lessons.taken();
+        let open = lessons.open_lesson();
         if open.is_none_or(|open| (&open.lesson.name, open.place.page) != (&lesson.name, page)) {
             lessons
                 .open(&lesson.name, Some(page), lab)

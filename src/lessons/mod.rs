@@ -9,17 +9,17 @@
 //! - [`stage`]: what to carry out to stand on a page.
 //! - [`play`]: a lesson played to its end without a screen, and whether its checks do what they should.
 //! - [`handout`]: a lesson on paper, and what was predicted beside what came out; [`paper`]: its sheets as PDF.
-//! - [`class`]: the lessons of a lab; [`taken`]: the one that is open, with what its page has stated; [`page`]: what stands
+//! - [`state`]: the lessons of a lab; [`open_lesson`]: the one that is open, with what its page has stated; [`page`]: what stands
 //!   beside the panes, of [`markdown`]; [`clock`] and [`watch`]: the time, and a file that changes.
 //! - [`shipped`]: the lessons that come with the program.
 
 mod blocks;
-pub mod class;
 pub mod clock;
 pub mod handout;
 pub mod lesson;
 pub mod markdown;
 pub mod names;
+pub mod open_lesson;
 mod opening;
 pub mod page;
 pub mod paper;
@@ -28,14 +28,14 @@ pub mod predictions;
 pub mod reading;
 pub mod shipped;
 pub mod stage;
+pub mod state;
 mod structure;
-pub mod taken;
 pub mod text;
 pub mod watch;
 
-pub use class::Lessons;
 pub use lesson::{
     AnswerKind, Check, CodeBlock, Compare, Keep, Lesson, LessonBlock, LessonPage, Predict,
     PredictionAnswer, Setup,
 };
 pub use names::KeptNumbers;
+pub use state::Lessons;

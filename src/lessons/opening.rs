@@ -3,18 +3,16 @@
 use super::lesson::{Lesson, LessonBlock};
 use super::reading::read;
 use super::shipped;
-use super::structure::on_line;
 use crate::engine::export::Destination;
+use crate::engine::scenario::head::read_whole;
 use crate::engine::scenario::problem::nearest;
 use crate::engine::scenario::{Problem, Problems, presets};
-use crate::engine::text::advice::unread;
 use crate::lab::command::Command;
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 
 /// The longest file that is read as a lesson, bytes.
 pub const LONGEST_LESSON_FILE: u64 = 1 << 20;
+const TOO_LONG: &str = "is longer than 1 MiB, the most of a lesson";
 
 /// Opens what NAME names: a shipped lesson, or else a file: one whose name holds a `/` or ends in `.md`.
 pub fn open(name: &str) -> Result<Lesson, Problems> {
@@ -62,7 +60,8 @@ pub fn full_name(name: &str) -> String {
 /// Reads the lesson in the file at `path`. The files that it opens are looked for in its folder.
 pub fn read_file(path: &Path) -> Result<Lesson, Problems> {
     let origin = path.display().to_string();
-    let text = text_of(path).map_err(|problem| Problems::one(origin.clone(), problem))?;
+    let text = read_whole(path, LONGEST_LESSON_FILE, TOO_LONG)
+        .map_err(|problem| Problems::one(origin.clone(), problem))?;
     let mut lesson = read(&origin, &text)?;
     if let Some(folder) = path.parent().filter(|folder| *folder != Path::new("")) {
         look_in(folder, &mut lesson);
@@ -94,31 +93,4 @@ fn look_in(folder: &Path, lesson: &mut Lesson) {
             }
         }
     }
-}
-
-fn text_of(path: &Path) -> Result<String, Problem> {
-    let whole = |rule: String| Problem::at("", rule);
-    let cannot = |error: std::io::Error| whole(unread(&error));
-    if path.is_dir() {
-        return Err(whole("is a folder: name a file in it".to_owned()));
-    }
-    let file = File::open(path).map_err(cannot)?;
-    let length = file.metadata().map_or(0, |file| file.len());
-    let mut bytes = Vec::new();
-    if length <= LONGEST_LESSON_FILE {
-        let mut start = file.take(LONGEST_LESSON_FILE + 1);
-        start.read_to_end(&mut bytes).map_err(cannot)?;
-    }
-    let length = length.max(bytes.len() as u64);
-    if length > LONGEST_LESSON_FILE {
-        return Err(whole(format!(
-            "is {length} bytes long: a lesson has at most 1 MiB ({LONGEST_LESSON_FILE} bytes)"
-        )));
-    }
-    String::from_utf8(bytes).map_err(|error| {
-        let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
-        let line = good.iter().filter(|&&byte| byte == b'\n').count() + 1;
-        let rule = "is not text in UTF-8: save the file in that encoding";
-        on_line(line, Problem::at("", rule))
-    })
 }

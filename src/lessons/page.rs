@@ -2,8 +2,8 @@
 
 use super::lesson::{AnswerKind, Check, Compare, Lesson, LessonBlock, LessonPage, Predict};
 use super::markdown::paragraphs;
+use super::open_lesson::OpenLesson;
 use super::predictions::{LessonProgress, Tried, without};
-use super::taken::OpenLesson;
 use super::text::LessonText;
 use super::{names, reading};
 use crate::engine::text::number;
@@ -79,12 +79,12 @@ pub(super) fn list(
     sheet
 }
 
-/// The page that is open in `taken`; `now` is the time since the lab was opened.
-pub(super) fn sheet(taken: &OpenLesson, overlay: &ClassOverlay, now: Duration, lab: &Lab) -> Sheet {
-    let lesson = &taken.lesson;
-    let (page, pages) = (taken.place.page, lesson.pages.len());
+/// The page of `open`; `now` is the time since the lab was opened.
+pub(super) fn sheet(open: &OpenLesson, overlay: &ClassOverlay, now: Duration, lab: &Lab) -> Sheet {
+    let lesson = &open.lesson;
+    let (page, pages) = (open.place.page, lesson.pages.len());
     let mut writer = Writer {
-        taken,
+        open,
         overlay,
         lab,
         sheet: Sheet {
@@ -92,7 +92,7 @@ pub(super) fn sheet(taken: &OpenLesson, overlay: &ClassOverlay, now: Duration, l
             border: overlay.border.clone(),
             title: format!("{page} of {pages} · {}", lesson.title),
             has_next: page < pages && !overlay.is_followed,
-            plays: taken.plays(),
+            plays: open.plays(),
             ..Sheet::default()
         },
     };
@@ -108,7 +108,7 @@ pub(super) fn sheet(taken: &OpenLesson, overlay: &ClassOverlay, now: Duration, l
 
 /// The page `number` in words for the one who teaches: its questions, each with what `after` says of it, its notes, and
 /// the next page.
-pub fn told(lesson: &Lesson, number: usize, after: impl Fn(&Predict) -> String) -> String {
+pub fn for_teacher(lesson: &Lesson, number: usize, after: impl Fn(&Predict) -> String) -> String {
     let mut text = format!("\n== {number} of {} · {}", lesson.pages.len(), lesson.title);
     if let Some(page) = lesson.page(number) {
         text += &format!("\n{}\n", page.heading);
@@ -137,7 +137,7 @@ fn unfilled(text: &LessonText) -> String {
 }
 
 struct Writer<'a> {
-    taken: &'a OpenLesson,
+    open: &'a OpenLesson,
     overlay: &'a ClassOverlay,
     lab: &'a Lab,
     sheet: Sheet,
@@ -145,15 +145,15 @@ struct Writer<'a> {
 
 impl Writer<'_> {
     fn page(&mut self) {
-        let Some(page) = self.taken.page() else {
+        let Some(page) = self.open.page() else {
             return;
         };
         self.add(Paragraph::new(SheetLineKind::Heading, page.heading.clone()));
         if page.number == 1 {
-            self.blocks(&self.taken.lesson.introduction);
+            self.blocks(&self.open.lesson.introduction);
         }
         let mut blocks = page.blocks.as_slice();
-        if self.taken.plays() {
+        if self.open.plays() {
             let mut parts = blocks.split(|block| matches!(block, LessonBlock::Lab(_)));
             blocks = parts.next().unwrap_or_default();
         }
@@ -175,10 +175,10 @@ impl Writer<'_> {
         for block in blocks {
             match block {
                 LessonBlock::Text(text) => {
-                    let mut source = match self.taken.stated(text.line) {
+                    let mut source = match self.open.stated(text.line) {
                         Some(source) => source.to_owned(),
-                        None if self.taken.is_under_way() => unfilled(text),
-                        None => text.with_numbers(self.lab, &self.taken.place.kept),
+                        None if self.open.is_under_way() => unfilled(text),
+                        None => text.with_numbers(self.lab, &self.open.place.kept),
                     };
                     if self.overlay.is_followed {
                         // Who follows is not told the keys that leave the class.
@@ -196,7 +196,7 @@ impl Writer<'_> {
                         self.sheet.seen = None;
                         self.is_seen_from(first);
                     }
-                    if self.taken.is_open(predict) {
+                    if self.open.is_open(predict) {
                         return true;
                     }
                 }
@@ -214,10 +214,10 @@ impl Writer<'_> {
     /// What is to be reached, each part with whether it holds now and the number that decides it.
     fn goals(&mut self, check: &Check) {
         let first = self.sheet.paragraphs.len();
-        let page = self.taken.page();
-        let tried = page.and_then(|page| self.taken.place.tasks.get(&page.heading));
+        let page = self.open.page();
+        let tried = page.and_then(|page| self.open.place.tasks.get(&page.heading));
         let was_done = matches!(tried, Some(Tried::Done | Tried::DoneAfterHint));
-        let is_reached = was_done || self.taken.has_reached(check.line);
+        let is_reached = was_done || self.open.has_reached(check.line);
         let how = tried.filter(|tried| **tried != Tried::Hint);
         if is_reached || check.goals.len() < 2 {
             let state = if is_reached {
@@ -232,7 +232,7 @@ impl Writer<'_> {
             };
             self.add(Paragraph::new(SheetLineKind::Goal { is_reached }, text));
         } else {
-            let (lab, kept) = (self.lab, &self.taken.place.kept);
+            let (lab, kept) = (self.lab, &self.open.place.kept);
             let parts = check.that.conjuncts(|name| names::number(name, lab, kept));
             for (goal, part) in check.goals.iter().zip(parts) {
                 let is_reached = part.holds;
@@ -243,7 +243,7 @@ impl Writer<'_> {
                 self.add(Paragraph::new(SheetLineKind::Goal { is_reached }, text));
             }
         }
-        if !is_reached && self.taken.shows_hints && !check.hint.is_empty() {
+        if !is_reached && self.open.shows_hints && !check.hint.is_empty() {
             self.add(Paragraph::new(
                 SheetLineKind::Hint,
                 format!("Hint: {}", check.hint),
@@ -253,13 +253,13 @@ impl Writer<'_> {
     }
 
     fn comparison(&mut self, compare: &Compare) {
-        let (lesson, place) = (&self.taken.lesson, &self.taken.place);
+        let (lesson, place) = (&self.open.lesson, &self.open.place);
         let first = self.sheet.paragraphs.len();
-        if self.taken.is_under_way() {
+        if self.open.is_under_way() {
             self.add(Paragraph::new(SheetLineKind::Result, SOON));
             return;
         }
-        let source = match self.taken.stated(compare.line) {
+        let source = match self.open.stated(compare.line) {
             Some(source) => source.to_owned(),
             None => compare.filled(lesson, &place.predictions, self.lab, &place.kept),
         };
@@ -277,15 +277,15 @@ impl Writer<'_> {
     }
 
     fn question(&mut self, predict: &Predict) {
-        let place = &self.taken.place;
+        let place = &self.open.place;
         let kept = &place.kept;
         let first = self.sheet.paragraphs.len();
         let ask = predict.ask.with_numbers(self.lab, kept);
         self.extend(paragraphs(&ask, &SheetLineKind::Question));
-        let is_open = self.taken.is_open(predict);
+        let is_open = self.open.is_open(predict);
         let last = place.predictions.to(predict).next_back();
         let given = last.filter(|_| !is_open).map(|given| &given.answer);
-        let pointed = self.taken.pointed.get(&predict.name);
+        let pointed = self.open.pointed.get(&predict.name);
         let (at, is_marked) = pointed.filter(|_| is_open).copied().unzip();
         if let AnswerKind::Choice(choices) = &predict.asked {
             for (index, choice) in choices.iter().enumerate() {
@@ -304,7 +304,7 @@ impl Writer<'_> {
             self.keys_of(predict, is_marked == Some(true));
         }
         // The question that is open now, or the last one where none is.
-        if is_open || self.taken.has_answered {
+        if is_open || self.open.has_answered {
             self.sheet.seen = None;
         }
         self.is_seen_from(first);
@@ -312,9 +312,9 @@ impl Writer<'_> {
 
     /// Says what was locked, and whether a class asks for another answer.
     fn rounds_of(&mut self, predict: &Predict) {
-        let said = self.taken.place.predictions.in_words(predict);
-        let round = self.taken.rounds.get(&predict.name);
-        let text = match (said, round, self.taken.is_open(predict)) {
+        let said = self.open.place.predictions.in_words(predict);
+        let round = self.open.rounds.get(&predict.name);
+        let text = match (said, round, self.open.is_open(predict)) {
             (said, Some((round @ 2.., _)), true) => {
                 let before = said.map_or(String::new(), |said| format!(" You said: {said}."));
                 format!("Round {round}: your teacher asks again.{before}")
@@ -338,15 +338,15 @@ impl Writer<'_> {
     }
 
     fn next(&mut self, page: usize) {
-        let has_task = self.taken.page().is_some_and(|page| page.task().is_some());
-        let is_last = page == self.taken.lesson.pages.len();
-        let text = match (self.taken.is_under_way(), has_task, is_last) {
+        let has_task = self.open.page().is_some_and(|page| page.task().is_some());
+        let is_last = page == self.open.lesson.pages.len();
+        let text = match (self.open.is_under_way(), has_task, is_last) {
             (_, true, _) if self.overlay.is_followed => "k steps aside to try it; h: a hint.",
             _ if self.overlay.is_followed => return,
-            _ if self.taken.has_left() => "b: the page again; n goes on.",
-            _ if self.taken.plays() => "The run plays: space stops it, n goes to its end.",
+            _ if self.open.has_left() => "b: the page again; n goes on.",
+            _ if self.open.plays() => "The run plays: space stops it, n goes to its end.",
             (true, ..) => "The run is on its way; space pauses it.",
-            (false, true, _) if !self.taken.shows_hints => {
+            (false, true, _) if !self.open.shows_hints => {
                 "h: a hint; b: the page again; n: next page."
             }
             (false, true, false) => "h shows how it is done; b: the page again; n: next page.",
@@ -359,20 +359,20 @@ impl Writer<'_> {
 
     /// What the teacher sees: the clock, the notes, and the next page.
     fn notes(&mut self, now: Duration) {
-        let Some(time) = self.taken.time(now) else {
+        let Some(time) = self.open.time(now) else {
             return;
         };
         self.add(Paragraph::new(
             SheetLineKind::Heading,
             format!("For the class: {time}"),
         ));
-        let lesson = &self.taken.lesson;
-        let page = self.taken.page();
+        let lesson = &self.open.lesson;
+        let page = self.open.page();
         for notes in page.into_iter().flat_map(LessonPage::notes) {
-            let source = notes.with_numbers(self.lab, &self.taken.place.kept);
+            let source = notes.with_numbers(self.lab, &self.open.place.kept);
             self.extend(paragraphs(&source, &SheetLineKind::Note));
         }
-        let next = match lesson.page(self.taken.place.page + 1) {
+        let next = match lesson.page(self.open.place.page + 1) {
             Some(page) => format!("Next page: {}", page.heading),
             None => "This is the last page.".to_owned(),
         };

@@ -321,7 +321,7 @@ fn a_file_that_is_too_long_is_refused_with_its_length() {
     for (text, words) in [
         (
             pages(1_000_000),
-            "long.md: is 11000000 bytes long: a lesson has at most 1 MiB",
+            "long.md: is longer than 1 MiB, the most of a lesson",
         ),
         (lines, "at most 20000"),
         (pages(4_000), "more than 1000 pages and blocks"),

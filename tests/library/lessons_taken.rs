@@ -102,7 +102,7 @@ fn with(text: &str) -> (Stage, tempfile::TempDir, String) {
 
 /// The answer to the question "finer".
 fn answer_in(class: &Lessons) -> PredictionAnswer {
-    let mut all = class.taken().unwrap().place.predictions.all();
+    let mut all = class.open_lesson().unwrap().place.predictions.all();
     all.find(|(name, _)| *name == "finer")
         .unwrap()
         .1
@@ -200,7 +200,7 @@ fn a_task_is_done_by_hand_or_shown() {
     stage.press("g3.95 s\n").arrive();
     stage.shows("[x] done").shows_no("Hint");
     stage.press("n").shows("You were at 4.0 s");
-    let kept = &stage.class.taken().unwrap().place.kept;
+    let kept = &stage.class.open_lesson().unwrap().place.kept;
     assert!((kept["mine"] - 3.95).abs() < 0.01, "{kept:?}");
     stage
         .press("N")
@@ -219,7 +219,7 @@ fn the_session_keeps_page_and_predictions() {
     let content = stage.lab.content(stage.class.kept());
     let (class, taken) = Lessons::resumed(lessons_in(&content), &mut resumed(&content));
     taken.unwrap();
-    let place = &class.taken().unwrap().place;
+    let place = &class.open_lesson().unwrap().place;
     assert_eq!(place.page, 2);
     assert_eq!(
         answer_in(&class),
@@ -306,10 +306,10 @@ fn each_page_opens_with_what_matters_and_is_the_same_after_wandering() {
                 if page == 1 {
                     stage.lesson(lesson.name, 1);
                 }
-                while page > 1 && stage.class.taken().unwrap().place.page < page {
+                while page > 1 && stage.class.open_lesson().unwrap().place.page < page {
                     stage.press("n");
                 }
-                if stage.class.taken().unwrap().plays() {
+                if stage.class.open_lesson().unwrap().plays() {
                     let sheet = stage.lab.view().sheet.clone().unwrap();
                     assert!(
                         !sheet.paragraphs.iter().any(|one| is_needed(&one.kind)),
@@ -318,7 +318,10 @@ fn each_page_opens_with_what_matters_and_is_the_same_after_wandering() {
                     stage.press("n");
                 }
                 stage.arrive();
-                assert!(!stage.class.taken().unwrap().is_under_way(), "{place}");
+                assert!(
+                    !stage.class.open_lesson().unwrap().is_under_way(),
+                    "{place}"
+                );
             }
             let of = |stage: &Stage| stage.lab.view().sheet.clone().unwrap();
             assert_eq!(of(&stage), of(&wanderer), "{place}");
@@ -377,7 +380,7 @@ fn what_became_of_tasks_and_late_predictions_is_kept() {
         .press("↓\n\n");
     stage.press("nn").arrive().press("n").arrive();
     stage.press("hg4 s\n").arrive().shows("done: be at 4 s");
-    let place = &stage.class.taken().unwrap().place;
+    let place = &stage.class.open_lesson().unwrap().place;
     let late = place
         .predictions
         .all()
@@ -403,7 +406,7 @@ fn lessons_are_chosen_from_a_list_and_left_where_they_stand() {
     };
     stage.press("L").shows(&format!("> [ ] {}", title(0)));
     stage.press("↓↓↑↓\n").arrive();
-    assert_eq!(stage.class.taken().unwrap().lesson.title, title(2));
+    assert_eq!(stage.class.open_lesson().unwrap().lesson.title, title(2));
     stage.press("nn").arrive().shows("2 of ");
     stage.press("L").shows("2 of 9)");
     stage.press("\n").arrive().shows("2 of ");

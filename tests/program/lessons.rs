@@ -171,11 +171,7 @@ fn check_tells_what_is_wrong_with_a_lesson_and_plays_it() {
             "Ω",
             "holds the control or invisible character U+001B",
         ),
-        (
-            "long.md",
-            "",
-            "is 10000000 bytes long: a lesson has at most 1 MiB",
-        ),
+        ("long.md", "", "is longer than 1 MiB, the most of a lesson"),
     ] {
         let place = match line {
             "" => file.to_owned(),

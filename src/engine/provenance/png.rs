@@ -1,6 +1,7 @@
 //! PNG: the text is the last chunk before the end, a compressed iTXt with the keyword `gyrolab`.
 
 use super::parted::{Extracted, NO_RUN_TEXT, TWO, packed, unpacked};
+use crate::text::checksum::crc32;
 
 pub const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
 const KEYWORD: &[u8] = b"iTXtgyrolab\0";
@@ -13,7 +14,7 @@ pub const IEND_CHUNK: &[u8] = b"\0\0\0\0IEND\xae\x42\x60\x82";
 pub fn carrier(text: &str) -> Option<Vec<u8>> {
     let chunk = [KEYWORD, COMPRESSED, &packed(text.as_bytes())].concat();
     let length = u32::try_from(chunk.len() - 4).ok()?.to_be_bytes();
-    let sum = crc32fast::hash(&chunk).to_be_bytes();
+    let sum = crc32(&chunk).to_be_bytes();
     Some([&length, chunk.as_slice(), &sum].concat())
 }
 

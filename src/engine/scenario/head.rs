@@ -100,6 +100,15 @@ fn without_mark(line: &[u8]) -> &[u8] {
     line.strip_prefix(BYTE_ORDER_MARK).unwrap_or(line)
 }
 
+/// Reads the text of the file at `path`. One of more than `most` bytes is refused as `too_long`.
+pub fn read_whole(path: &Path, most: u64, too_long: &str) -> Result<String, Problem> {
+    if path.is_dir() {
+        return Err(Problem::at("", "is a folder: name a file in it"));
+    }
+    let file = File::open(path).map_err(|error| cannot_read(&error))?;
+    utf8(bytes_of(file, most, too_long)?, "")
+}
+
 /// The text of a scenario, the run file in the header of a CSV, of which no more is read, or the one in a figure.
 pub(super) fn read_text(path: &Path) -> Result<String, Problem> {
     if path.is_dir() {

@@ -2,6 +2,7 @@
 //!
 //! - [`advice`]: why a file cannot be read or written.
 //! - [`ascii`]: formulas for terminals without UTF-8.
+//! - [`checksum`]: the CRC-32 of a file's content.
 //! - [`ladder`]: the numbers 1, 2 and 5 times a power of ten.
 //! - [`number`]: numbers in as few digits as a reader needs.
 //! - [`printable`]: text with nothing in it that steers a terminal.
@@ -11,6 +12,7 @@
 
 pub mod advice;
 pub mod ascii;
+pub mod checksum;
 pub mod ladder;
 pub mod number;
 pub mod printable;

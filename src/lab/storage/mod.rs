@@ -5,8 +5,8 @@
 pub mod at_exit;
 pub mod confined;
 pub mod exporting;
-mod own;
+mod private_files;
 pub mod session;
+mod session_file;
 pub mod settings;
 pub mod shared;
-mod slot;

@@ -5,9 +5,9 @@
 //! place in it, which changes all the time.
 
 use super::at_exit::{self, Registered};
-use super::own::make_folder;
-use super::slot::{self, Slot};
-pub use super::slot::{SessionContent, SharedText, later};
+use super::private_files::make_folder;
+use super::session_file::{self, HeldSession};
+pub use super::session_file::{SessionContent, SharedText, later};
 use crate::engine::text::printable::PrintablePath;
 use etcetera::{BaseStrategy, base_strategy::Xdg};
 use std::io;
@@ -119,16 +119,16 @@ pub fn resume<T>(
         in_use_by: Vec::new(),
     };
     for name in names {
-        let reason = match Slot::take(folder, &name) {
+        let reason = match HeldSession::lock(folder, &name) {
             Ok(None) => {
-                found.in_use_by.extend(slot::owner(folder, &name));
+                found.in_use_by.extend(session_file::owner(folder, &name));
                 continue;
             }
-            Ok(Some(slot)) => {
-                let stored = slot::stored(folder, &name);
+            Ok(Some(held)) => {
+                let stored = session_file::stored(folder, &name);
                 match stored.and_then(|content| Ok((read(&content)?, content))) {
                     Ok((what, content)) => {
-                        found.resumed = Some((Session::start(slot, Some(content))?, what));
+                        found.resumed = Some((Session::start(held, Some(content))?, what));
                         break;
                     }
                     Err(reason) => reason,
@@ -136,7 +136,7 @@ pub fn resume<T>(
             }
             Err(error) => error.to_string(),
         };
-        let path = slot::file(folder, &name, "session");
+        let path = session_file::file(folder, &name, "session");
         found.left_alone.push(LeftAlone { path, reason });
     }
     Ok(found)
@@ -157,23 +157,23 @@ pub fn look_at(folder: &Path, name: &str) -> Option<ListedSession> {
 }
 
 fn listed(folder: &Path, name: String) -> ListedSession {
-    let is_in_use = slot::is_in_use(folder, &name);
+    let is_in_use = session_file::is_in_use(folder, &name);
     ListedSession {
-        written: slot::written_at(folder, &name),
+        written: session_file::written_at(folder, &name),
         is_in_use,
-        owner: slot::owner(folder, &name).filter(|_| is_in_use),
-        content: slot::stored(folder, &name),
+        owner: session_file::owner(folder, &name).filter(|_| is_in_use),
+        content: session_file::stored(folder, &name),
         name,
     }
 }
 
 /// The names of all sessions in `folder`, the one saved last first; none where there is no such folder.
 fn sessions(folder: &Path) -> io::Result<Vec<String>> {
-    let found = slot::sessions(folder);
-    found.map_err(|error| told(&error, "cannot look for sessions in", folder))
+    let found = session_file::sessions(folder);
+    found.map_err(|error| error_about(&error, "cannot look for sessions in", folder))
 }
 
-fn told(error: &io::Error, what: &str, folder: &Path) -> io::Error {
+fn error_about(error: &io::Error, what: &str, folder: &Path) -> io::Error {
     io::Error::new(
         error.kind(),
         format!("{what} {}: {error}", PrintablePath(folder)),
@@ -185,18 +185,18 @@ impl Session {
     /// Nothing is saved before the first [`note`](Self::note).
     pub fn begin(folder: &Path) -> io::Result<Self> {
         let begun = make_folder(folder).and_then(|()| {
-            slot::prune(folder);
-            Slot::new(folder)
+            session_file::prune(folder);
+            HeldSession::new(folder)
         });
         match begun {
-            Ok(slot) => Self::start(slot, None),
-            Err(error) => Err(told(&error, "sessions cannot be kept in", folder)),
+            Ok(held) => Self::start(held, None),
+            Err(error) => Err(error_about(&error, "sessions cannot be kept in", folder)),
         }
     }
 
-    /// The session of `slot`, of which the disk holds `kept`.
-    fn start(slot: Slot, kept: Option<SessionContent>) -> io::Result<Self> {
-        let name = slot.name().to_owned();
+    /// The session of `held`, of which the disk holds `kept`.
+    fn start(held: HeldSession, kept: Option<SessionContent>) -> io::Result<Self> {
+        let name = held.name().to_owned();
         let state = Arc::new(Mutex::new(SaveState {
             kept,
             ..SaveState::default()
@@ -205,7 +205,7 @@ impl Session {
         let (of_writer, at_end) = (Arc::clone(&state), flushes.clone());
         let writer = thread::Builder::new()
             .name("session".to_owned())
-            .spawn(move || keep_writing(slot, &of_writer, &received))?;
+            .spawn(move || keep_writing(held, &of_writer, &received))?;
         Ok(Self {
             name,
             state,
@@ -291,12 +291,16 @@ fn flush(flushes: &Flushes, patience: Duration, ends: bool) -> bool {
 }
 
 /// The body of the writer. It returns when the session is closed; one that was never saved leaves nothing.
-fn keep_writing(slot: Slot, state: &Mutex<SaveState>, flushes: &Receiver<(Sender<()>, bool)>) {
+fn keep_writing(
+    held: HeldSession,
+    state: &Mutex<SaveState>,
+    flushes: &Receiver<(Sender<()>, bool)>,
+) {
     loop {
         let flushed = flushes.recv_timeout(SAVE_INTERVAL);
         // A flush saves even what has not changed, so that the session left last has the newest file.
         if flushed.is_ok() || locked(state).is_news {
-            save(&slot, state);
+            save(&held, state);
         }
         match flushed {
             Err(RecvTimeoutError::Timeout) => {}
@@ -310,18 +314,18 @@ fn keep_writing(slot: Slot, state: &Mutex<SaveState>, flushes: &Receiver<(Sender
         }
     }
     if locked(state).kept.is_none() {
-        slot.remove();
+        held.remove();
     }
 }
 
-fn save(slot: &Slot, state: &Mutex<SaveState>) {
+fn save(held: &HeldSession, state: &Mutex<SaveState>) {
     let noted = {
         let mut state = locked(state);
         state.is_news = false;
         state.noted.clone()
     };
     let Some(content) = noted else { return };
-    let saved = slot.save(&content);
+    let saved = held.save(&content);
     let mut state = locked(state);
     match saved {
         Ok(()) => (state.kept, state.trouble) = (Some(content), None),

@@ -4,7 +4,7 @@
 //! in the lab. `config.toml` in the configuration folder is the user's: it wins, and is never written. Both are checked as a
 //! scenario is, by the table [`SETTINGS_KEYS`]; a setting that breaks a rule is not used, the others are.
 
-use super::own;
+use super::private_files;
 use crate::engine::scenario::kind::ValueKind::{Flag, OneOf, Whole};
 use crate::engine::scenario::schema::{Schema, SchemaRow, may};
 use crate::engine::scenario::{Document, Problem, Problems};
@@ -99,7 +99,7 @@ pub fn config() -> Option<PathBuf> {
 pub fn read_config(path: &Path) -> SettingsFile {
     let bytes = match fs::metadata(path) {
         Ok(there) if !there.is_file() => Err(io::Error::other("it is not a file")),
-        _ => File::open(path).and_then(|file| own::read_at_most(file, LONGEST_SETTINGS)),
+        _ => File::open(path).and_then(|file| private_files::read_at_most(file, LONGEST_SETTINGS)),
     };
     checked(path, bytes)
 }
@@ -107,7 +107,7 @@ pub fn read_config(path: &Path) -> SettingsFile {
 /// Reads the file that the program has written in `folder`, if it is the user's own; no symbolic link is followed.
 pub fn read(folder: &Path) -> SettingsFile {
     let path = folder.join(SETTINGS_FILE);
-    checked(&path, own::read(&path, LONGEST_SETTINGS))
+    checked(&path, private_files::read(&path, LONGEST_SETTINGS))
 }
 
 /// Replaces the setting `key` in the file of `folder`, which is created if it does not exist. What is wrong in the file is
@@ -115,15 +115,15 @@ pub fn read(folder: &Path) -> SettingsFile {
 pub fn remember(folder: &Path, key: &str, value: Value) -> Result<(), String> {
     let path = folder.join(SETTINGS_FILE);
     let remembered = || -> io::Result<()> {
-        own::make_folder(folder)?;
-        let mut table = match own::read(&path, LONGEST_SETTINGS) {
+        private_files::make_folder(folder)?;
+        let mut table = match private_files::read(&path, LONGEST_SETTINGS) {
             // What is no TOML was reported when the lab was opened.
             Ok(bytes) => sifted(&toml::from_slice(&bytes).unwrap_or_default()).0,
             Err(error) if error.kind() == ErrorKind::NotFound => Table::new(),
             Err(error) => return Err(error),
         };
         table.insert(key.to_owned(), value);
-        own::replace(&path, &format!("{SETTINGS_HEADER}{table}"))
+        private_files::replace(&path, &format!("{SETTINGS_HEADER}{table}"))
     };
     remembered().map_err(|error| {
         let path = PrintablePath(&path);

@@ -2,7 +2,7 @@
 //! explicitly, whatever the umask is. A file is read only if it belongs to the user or to the owner of its folder: others
 //! may be able to write in that folder too.
 
-use super::own::{self, refused};
+use super::private_files::{self, refused};
 use std::fs::{self, File, OpenOptions, Permissions};
 use std::io::{self, ErrorKind};
 use std::os::unix::fs::{MetadataExt, PermissionsExt};
@@ -43,25 +43,25 @@ pub fn read_of_anyone(path: &Path, most: usize) -> io::Result<Option<String>> {
 }
 
 fn opened(path: &Path) -> io::Result<Option<File>> {
-    match own::open_regular(path, OpenOptions::new().read(true)) {
+    match private_files::open_regular(path, OpenOptions::new().read(true)) {
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
         file => file.map(Some),
     }
 }
 
 fn text_of(file: File, most: usize) -> io::Result<String> {
-    String::from_utf8(own::read_at_most(file, most)?).map_err(io::Error::other)
+    String::from_utf8(private_files::read_at_most(file, most)?).map_err(io::Error::other)
 }
 
 /// Replaces the file at `path` by one that contains `text`. The file is complete at any moment; where the new one cannot be
 /// written, the old one stays.
 pub fn replace(path: &Path, text: &str) -> io::Result<()> {
-    own::replace_with_mode(path, text, 0o640)
+    private_files::replace_with_mode(path, text, 0o640)
 }
 
 /// Sets the time of the user's own file at `path` to now. It needs no room on the disk.
 pub fn touch(path: &Path) -> io::Result<()> {
-    own::open(path, OpenOptions::new().write(true))?.set_modified(SystemTime::now())
+    private_files::open(path, OpenOptions::new().write(true))?.set_modified(SystemTime::now())
 }
 
 /// When the file was written or touched last; `None` where it is not there.

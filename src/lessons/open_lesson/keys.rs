@@ -24,8 +24,8 @@ impl OpenLesson {
             LessonKey::Before => self.before(lab),
             LessonKey::Again => {
                 self.turn_to(self.place.page);
-                let stood = self.stand(false, lab);
-                told(stood, lab);
+                let stood = self.replay_page(false, lab);
+                report(stood, lab);
             }
             LessonKey::ShowTask => return self.show_task(lab),
             LessonKey::Notes => self.shows_notes ^= true,
@@ -44,12 +44,12 @@ impl OpenLesson {
     fn next(&mut self, lab: &mut Lab) {
         if self.plays() {
             // To the end of the page's run at once.
-            let stood = self.stand(true, lab);
+            let stood = self.replay_page(true, lab);
             if stood.is_err() {
                 // The page is shown as far as it came; n turns it.
                 self.place.stated = Some(BTreeMap::new());
             }
-            return told(stood, lab);
+            return report(stood, lab);
         }
         if self.place.page >= self.lesson.pages.len() {
             lab.refuse("this is the last page: L lists the lessons, N turns back");
@@ -76,8 +76,8 @@ impl OpenLesson {
             .page()
             .is_some_and(|page| page.lab().is_some() || has_wandered && page.states_numbers(kept));
         if needs_its_run {
-            let stood = self.stand(false, lab);
-            told(stood, lab);
+            let stood = self.replay_page(false, lab);
+            report(stood, lab);
         }
     }
 
@@ -106,7 +106,7 @@ impl OpenLesson {
         }
         let page = self.place.page - 1;
         let stood = self.go_to(Some(page), lab);
-        told(stood, lab);
+        report(stood, lab);
         lab.view_mut().turn_to_sheet();
     }
 
@@ -123,7 +123,7 @@ impl OpenLesson {
         match lesson.task_of(page, &self.place.predictions) {
             Some(stage) => {
                 self.note_tried(Tried::Shown);
-                self.begin(&stage, PendingBlock::Task(page), lab);
+                self.start_block(&stage, PendingBlock::Task(page), lab);
             }
             None => lab.refuse("this page has no task"),
         }
@@ -258,7 +258,7 @@ impl OpenLesson {
 }
 
 /// Says why a page could not be carried out.
-fn told(stood: Result<(), String>, lab: &mut Lab) {
+fn report(stood: Result<(), String>, lab: &mut Lab) {
     if let Err(reason) = stood {
         lab.tell(reason);
     }

@@ -17,7 +17,8 @@
 //! disk: sessions must survive the death of the process, not of the machine.
 
 use super::confined::SESSIONS;
-use super::{own, shared};
+use super::{private_files, shared};
+use crate::engine::text::checksum::crc32;
 use rustix::io::Errno;
 use rustix::process::{Pid, test_kill_process};
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -64,7 +65,7 @@ impl SessionContent {
 }
 
 /// A session that this process holds as long as this value lives.
-pub(super) struct Slot {
+pub(super) struct HeldSession {
     folder: PathBuf,
     name: String,
     lock: File,
@@ -100,13 +101,13 @@ pub(super) fn written_at(folder: &Path, name: &str) -> SystemTime {
 }
 
 pub(super) fn is_in_use(folder: &Path, name: &str) -> bool {
-    let lock = own::open(&file(folder, name, "lock"), OpenOptions::new().read(true));
+    let lock = private_files::open(&file(folder, name, "lock"), OpenOptions::new().read(true));
     lock.is_ok_and(|lock| matches!(lock.try_lock_shared(), Err(TryLockError::WouldBlock)))
 }
 
 /// The number of the process that holds, or last held, the session; `None` where its lock file does not tell.
 pub(super) fn owner(folder: &Path, name: &str) -> Option<u32> {
-    let bytes = own::read(&file(folder, name, "lock"), LONGEST_LOCK).ok()?;
+    let bytes = private_files::read(&file(folder, name, "lock"), LONGEST_LOCK).ok()?;
     str::from_utf8(&bytes).ok()?.parse().ok()
 }
 
@@ -117,7 +118,7 @@ fn is_running(process: u32) -> bool {
 
 /// Reads the session, whether or not a process holds it.
 pub(super) fn stored(folder: &Path, name: &str) -> Result<SessionContent, String> {
-    let bytes = own::read(&file(folder, name, "session"), LONGEST_SESSION)
+    let bytes = private_files::read(&file(folder, name, "session"), LONGEST_SESSION)
         .map_err(|error| error.to_string())?;
     let text = String::from_utf8(bytes).unwrap_or_default();
     let (format, rest) = text.split_once('\n').unwrap_or_default();
@@ -148,7 +149,7 @@ fn content(text: &str) -> Option<SessionContent> {
 }
 
 fn sum_of(text: &str) -> String {
-    format!("sum {:08x}", crc32fast::hash(text.as_bytes()))
+    format!("sum {:08x}", crc32(text.as_bytes()))
 }
 
 /// Removes all but the newest unused sessions, and lock files without a session. What is another user's stays.
@@ -161,20 +162,20 @@ pub(super) fn prune(folder: &Path) {
     };
     for name in sessions(folder).unwrap_or_default() {
         let path = file(folder, &name, "session");
-        if own::open(&path, OpenOptions::new().read(true)).is_ok()
-            && let Ok(Some(slot)) = Slot::take(folder, &name)
+        if private_files::open(&path, OpenOptions::new().read(true)).is_ok()
+            && let Ok(Some(held)) = HeldSession::lock(folder, &name)
         {
             match left.checked_sub(1) {
                 Some(less) => left = less,
-                None => slot.remove(),
+                None => held.remove(),
             }
         }
     }
     for name in names(folder, "lock").unwrap_or_default() {
         if !exists(&file(folder, &name, "session"))
-            && let Ok(Some(slot)) = Slot::take(folder, &name)
+            && let Ok(Some(held)) = HeldSession::lock(folder, &name)
         {
-            slot.remove();
+            held.remove();
         }
     }
 }
@@ -184,7 +185,7 @@ fn exists(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok()
 }
 
-impl Slot {
+impl HeldSession {
     /// A new session. Its name is the number above the largest in the folder.
     pub(super) fn new(folder: &Path) -> io::Result<Self> {
         let used = [names(folder, "session")?, names(folder, "lock")?].concat();
@@ -194,20 +195,20 @@ impl Slot {
             number = number.wrapping_add(1);
             let name = number.to_string();
             // Another process may have taken the number meanwhile.
-            if let Some(slot) = Self::take(folder, &name)?
+            if let Some(held) = Self::lock(folder, &name)?
                 && !exists(&file(folder, &name, "session"))
             {
-                return Ok(slot);
+                return Ok(held);
             }
         }
     }
 
     /// Locks the session; `None` if a running process holds it. A file system without locks refuses nobody.
-    pub(super) fn take(folder: &Path, name: &str) -> io::Result<Option<Self>> {
+    pub(super) fn lock(folder: &Path, name: &str) -> io::Result<Option<Self>> {
         let path = file(folder, name, "lock");
         let mut options = OpenOptions::new();
         options.write(true).create(true).truncate(false).mode(0o600);
-        let mut lock = own::open(&path, &mut options)?;
+        let mut lock = private_files::open(&path, &mut options)?;
         let begin = Instant::now();
         while let Err(TryLockError::WouldBlock) = lock.try_lock() {
             let has_ended = owner(folder, name).is_some_and(|process| !is_running(process));
@@ -238,7 +239,7 @@ impl Slot {
 
     /// Writes `content`. If writing fails, the old file is unchanged.
     pub(super) fn save(&self, content: &SessionContent) -> io::Result<()> {
-        own::make_folder(&self.folder)?; // somebody may have removed it
+        private_files::make_folder(&self.folder)?; // somebody may have removed it
         let SessionContent { place, work } = content;
         let texts = format!("place {}\n{place}{}", place.len(), work.as_str());
         let path = file(&self.folder, &self.name, "session");
@@ -248,7 +249,7 @@ impl Slot {
                 "it would be longer than {LONGEST_SESSION} bytes, the most that is read of a session"
             )));
         }
-        own::replace(&path, &text)
+        private_files::replace(&path, &text)
     }
 
     /// Removes the session's files, the lock file last: until then no other process can take the session.
@@ -259,7 +260,7 @@ impl Slot {
     }
 }
 
-impl Drop for Slot {
+impl Drop for HeldSession {
     /// Unlocks explicitly: closing alone keeps the lock while a child process that is just being started still has the
     /// file open.
     fn drop(&mut self) {

@@ -1,8 +1,8 @@
-//! The lessons of a lab: the list of them, the one that is taken, and where the others were left.
+//! The lessons of a lab: the list of them, the open one, and where the others were left.
 
+use super::open_lesson::{ClassPage, OpenLesson};
 use super::page::ClassOverlay;
 use super::predictions::LessonProgress;
-use super::taken::{FollowedLesson, OpenLesson};
 use super::{page, reading, shipped};
 use crate::lab::Lab;
 use crate::lab::action::{Direction, LessonKey};
@@ -17,7 +17,7 @@ use toml::Table;
 #[derive(Debug, Default)]
 pub struct Lessons {
     shown: LessonDialog,
-    /// Where the lessons were left that are not taken now, by their names.
+    /// Where the lessons were left that are not open now, by their names.
     left: BTreeMap<String, LessonProgress>,
     /// Which lesson was selected when the list was closed.
     selected: usize,
@@ -114,17 +114,17 @@ impl Lessons {
     /// Opens the lesson that NAME names, on the page `page` (from 1) or where it was left, and makes the lab stand there.
     pub fn open(&mut self, name: &str, page: Option<usize>, lab: &mut Lab) -> Result<(), String> {
         self.load(name, lab)?;
-        if let LessonDialog::Lesson(taken) = &mut self.shown {
-            taken.go_to(page, lab)?;
+        if let LessonDialog::Lesson(open) = &mut self.shown {
+            open.go_to(page, lab)?;
         }
         self.show(lab);
         lab.view_mut().turn_to_sheet();
         Ok(())
     }
 
-    pub fn taken(&self) -> Option<&OpenLesson> {
+    pub fn open_lesson(&self) -> Option<&OpenLesson> {
         match &self.shown {
-            LessonDialog::Lesson(taken) => Some(taken),
+            LessonDialog::Lesson(open) => Some(open),
             _ => None,
         }
     }
@@ -138,17 +138,17 @@ impl Lessons {
         let lesson = reading::open_again(&name).map_err(|problems| problems.to_string())?;
         self.leave(lab);
         let place = self.left.remove(&lesson.name).unwrap_or_default();
-        let mut taken = OpenLesson::new(lesson, place, self.now);
-        taken.go_on(lab);
-        self.shown = LessonDialog::Lesson(Box::new(taken));
+        let mut open = OpenLesson::new(lesson, place, self.now);
+        open.resume_page(lab);
+        self.shown = LessonDialog::Lesson(Box::new(open));
         Ok(())
     }
 
     /// Keeps where the lesson stands, and takes it no longer.
     fn leave(&mut self, lab: &mut Lab) {
-        if let LessonDialog::Lesson(taken) = std::mem::take(&mut self.shown) {
-            let name = taken.lesson.name.clone();
-            self.left.insert(name, taken.into_place());
+        if let LessonDialog::Lesson(open) = std::mem::take(&mut self.shown) {
+            let name = open.lesson.name.clone();
+            self.left.insert(name, open.into_place());
             lab.set_undo_floor(false);
         }
         self.has_changed = true;
@@ -163,8 +163,8 @@ impl Lessons {
                 // Back to the page; the run was left as it was.
                 let from = from.take();
                 self.shown = LessonDialog::Nothing;
-                let taken = from.map_or(Ok(()), |name| self.load(&name, lab));
-                tell(taken, lab);
+                let open = from.map_or(Ok(()), |name| self.load(&name, lab));
+                tell(open, lab);
             }
             (_, LessonKey::List) => self.open_list(lab),
             (LessonDialog::List { selected, .. }, LessonKey::Leave) => {
@@ -189,7 +189,7 @@ impl Lessons {
                 lab.refuse("Enter opens the selected lesson, L goes back, Esc leaves the lessons");
             }
             (LessonDialog::Nothing, _) => lab.refuse("no lesson is open: L lists them"),
-            (LessonDialog::Lesson(taken), key) => scrolls = taken.on_key(key, lab),
+            (LessonDialog::Lesson(open), key) => scrolls = open.on_key(key, lab),
         }
         self.show(lab);
         if key == LessonKey::List {
@@ -200,7 +200,7 @@ impl Lessons {
 
     /// Leaves the lesson for the list; it is selected there.
     fn open_list(&mut self, lab: &mut Lab) {
-        let here = self.taken().map(|taken| taken.lesson.name.clone());
+        let here = self.open_lesson().map(|open| open.lesson.name.clone());
         self.leave(lab);
         let folder = lab.files().confined().map(Confined::lessons);
         self.own = folder.map(files_in).unwrap_or_default();
@@ -226,11 +226,11 @@ impl Lessons {
     }
 
     pub fn set_overlay(&mut self, overlay: ClassOverlay, lab: &mut Lab) {
-        if let LessonDialog::Lesson(taken) = &mut self.shown {
-            taken.was_asked |= overlay.is_of_teacher;
-            taken.rounds.clone_from(&overlay.rounds);
+        if let LessonDialog::Lesson(open) = &mut self.shown {
+            open.was_asked |= overlay.is_of_teacher;
+            open.rounds.clone_from(&overlay.rounds);
             if !overlay.is_followed {
-                taken.leave_class();
+                open.leave_class();
             }
         }
         if self.overlay != overlay {
@@ -240,19 +240,15 @@ impl Lessons {
     }
 
     /// Shows the page of `class`: the run is not touched, and the page's numbers are stated once the class has arrived.
-    pub fn show_class_page(
-        &mut self,
-        class: &FollowedLesson<'_>,
-        lab: &mut Lab,
-    ) -> Result<(), String> {
+    pub fn show_class_page(&mut self, class: &ClassPage<'_>, lab: &mut Lab) -> Result<(), String> {
         if self
-            .taken()
-            .is_none_or(|taken| taken.lesson.name != class.lesson)
+            .open_lesson()
+            .is_none_or(|open| open.lesson.name != class.lesson)
         {
             self.load(class.lesson, lab)?;
         }
-        if let LessonDialog::Lesson(taken) = &mut self.shown
-            && taken.show_class_page(class)
+        if let LessonDialog::Lesson(open) = &mut self.shown
+            && open.show_class_page(class)
         {
             self.show(lab);
             lab.view_mut().turn_to_sheet();
@@ -262,8 +258,8 @@ impl Lessons {
 
     /// Takes `number` as the answer to the question that was asked last.
     pub fn answer(&mut self, number: f64, lab: &mut Lab) {
-        if let LessonDialog::Lesson(taken) = &mut self.shown {
-            taken.answer(number, lab);
+        if let LessonDialog::Lesson(open) = &mut self.shown {
+            open.answer(number, lab);
         }
         self.show(lab);
     }
@@ -272,21 +268,21 @@ impl Lessons {
     pub fn update(&mut self, now: Duration, lab: &mut Lab) {
         let second = now.as_secs() != self.now.as_secs();
         self.now = now;
-        let LessonDialog::Lesson(taken) = &mut self.shown else {
+        let LessonDialog::Lesson(open) = &mut self.shown else {
             if self.has_changed {
                 self.show(lab);
             }
             return;
         };
-        let is_new = taken.update(now, lab);
-        if is_new || self.has_changed || lab.has_changed() || (second && taken.shows_notes) {
+        let is_new = open.update(now, lab);
+        if is_new || self.has_changed || lab.has_changed() || (second && open.shows_notes) {
             self.show(lab);
         }
     }
 
     /// How long the caller may wait until the page is looked at again; `None` where nothing waits.
     pub fn wait(&self) -> Option<Duration> {
-        self.taken().map(|_| Duration::from_secs(1))
+        self.open_lesson().map(|_| Duration::from_secs(1))
     }
 
     /// Writes the sheet, and what the session keeps.
@@ -302,15 +298,15 @@ impl Lessons {
         match &mut self.shown {
             LessonDialog::Nothing => None,
             LessonDialog::List { selected, .. } => Some(page::list(&names, *selected, &self.left)),
-            LessonDialog::Lesson(taken) => Some(page::sheet(taken, &self.overlay, self.now, lab)),
+            LessonDialog::Lesson(open) => Some(page::sheet(open, &self.overlay, self.now, lab)),
         }
     }
 
     fn to_keep(&self) -> KeptLessons {
         let mut lessons = self.left.clone();
-        let open = self.taken().map(|taken| {
-            let name = taken.lesson.name.clone();
-            lessons.insert(name.clone(), taken.place.clone());
+        let open = self.open_lesson().map(|open| {
+            let name = open.lesson.name.clone();
+            lessons.insert(name.clone(), open.place.clone());
             name
         });
         KeptLessons { open, lessons }

@@ -1,4 +1,4 @@
-//! A lesson that is taken: its page, the predictions of the one who takes it, and what the lab does for it.
+//! The open lesson: its page, the predictions of its reader, and what the lab does for it.
 
 mod keys;
 
@@ -36,7 +36,7 @@ pub struct OpenLesson {
     /// The lines of the checks of this page that have held.
     reached: BTreeSet<usize>,
     /// Where the lab stood when it had carried out the blocks that the page stands on: depth of its history, and step.
-    stands: Option<((usize, usize), u64)>,
+    arrived_at: Option<((usize, usize), u64)>,
     /// Whether the hints of the page's checks are shown.
     pub shows_hints: bool,
     under_way: Option<PendingBlock>,
@@ -57,7 +57,7 @@ pub struct OpenLesson {
 /// What a class that is followed shows of a lesson: its name, the page, the numbers that were kept, and whether its run
 /// has arrived where the page wants it.
 #[derive(Clone, Copy, Debug)]
-pub struct FollowedLesson<'a> {
+pub struct ClassPage<'a> {
     pub lesson: &'a str,
     pub page: usize,
     pub kept: &'a KeptNumbers,
@@ -91,7 +91,7 @@ impl OpenLesson {
             pointed: BTreeMap::new(),
             has_answered: false,
             reached: BTreeSet::new(),
-            stands: None,
+            arrived_at: None,
             shows_hints: false,
             under_way: None,
             follows: None,
@@ -134,7 +134,7 @@ impl OpenLesson {
     }
 
     /// Shows the page of `class` without touching the run. Returns whether that is new.
-    pub(super) fn show_class_page(&mut self, class: &FollowedLesson<'_>) -> bool {
+    pub(super) fn show_class_page(&mut self, class: &ClassPage<'_>) -> bool {
         let page = class.page.clamp(1, self.lesson.pages.len().max(1));
         let before = self.follows.replace(class.has_arrived);
         let is_new = self.place.page != page || before.is_none();
@@ -172,7 +172,7 @@ impl OpenLesson {
     }
 
     /// Goes on with a page whose run was on its way when the page was left, or had been left before it arrived.
-    pub(super) fn go_on(&mut self, lab: &Lab) {
+    pub(super) fn resume_page(&mut self, lab: &Lab) {
         if self.is_under_way() && !lab.script().is_done() {
             self.under_way = Some(PendingBlock::Lab(self.place.page));
         } else if self.plays() {
@@ -182,7 +182,7 @@ impl OpenLesson {
 
     /// Whether the student has left the place where the page's numbers were stated.
     fn has_wandered(&self, lab: &Lab) -> bool {
-        self.stands != Some(place_of(lab))
+        self.arrived_at != Some(place_of(lab))
     }
 
     /// The text at this line of the file with its numbers, where it is one that the student's own run does not change.
@@ -208,12 +208,12 @@ impl OpenLesson {
             return Err(format!("{name} has the pages 1 to {pages}, not {page}"));
         }
         self.turn_to(page);
-        self.stand(false, lab)
+        self.replay_page(false, lab)
     }
 
     /// Makes the lab stand on the page, whatever was done before: what the pages before it do is done at once, what the page
     /// itself does as time passes; `at_once` the same way.
-    fn stand(&mut self, at_once: bool, lab: &mut Lab) -> Result<(), String> {
+    fn replay_page(&mut self, at_once: bool, lab: &mut Lab) -> Result<(), String> {
         let lesson = Arc::clone(&self.lesson);
         let page = self.place.page;
         let mut stages = lesson.stages_to(page, &self.place.kept, &self.place.predictions);
@@ -233,9 +233,9 @@ impl OpenLesson {
             }
         }
         match last {
-            Some(stage) => self.begin(&stage, PendingBlock::Lab(page), lab),
+            Some(stage) => self.start_block(&stage, PendingBlock::Lab(page), lab),
             None => {
-                self.has_come(lab);
+                self.arrive(lab);
                 lab.view_mut().turn_to_sheet();
             }
         }
@@ -243,13 +243,13 @@ impl OpenLesson {
     }
 
     /// Takes note that the lab stands where the page wants it.
-    fn has_come(&mut self, lab: &mut Lab) {
+    fn arrive(&mut self, lab: &mut Lab) {
         self.under_way = None;
-        self.stands = Some(place_of(lab));
+        self.arrived_at = Some(place_of(lab));
         lab.set_undo_floor(true);
     }
 
-    fn begin(&mut self, stage: &Stage<'_>, block: PendingBlock, lab: &mut Lab) {
+    fn start_block(&mut self, stage: &Stage<'_>, block: PendingBlock, lab: &mut Lab) {
         let commands = stage.commands(lab);
         self.under_way = Some(block);
         lab.take_commands(commands);
@@ -273,7 +273,7 @@ impl OpenLesson {
             }
             return true;
         }
-        self.has_come(lab);
+        self.arrive(lab);
         lab.set_undo_floor(matches!(block, PendingBlock::Lab(_)));
         lab.forget_message_of_script();
         let lesson = Arc::clone(&self.lesson);
@@ -391,7 +391,7 @@ impl OpenLesson {
     }
 }
 
-/// Where the lab stands: the depth of its history, and the step.
+/// Where the lab arrived_at: the depth of its history, and the step.
 fn place_of(lab: &Lab) -> ((usize, usize), u64) {
     (lab.runs().depth(), lab.player().step_number())
 }
