@@ -69,34 +69,36 @@ impl Recording {
     /// Removes all moments after the first `moments`, and a few more where the small blocks that are needed there have
     /// been dropped. Returns how many remain; the caller pushes the missing ones again.
     pub fn cut_back(&mut self, moments: u64) -> u64 {
-        let moments = self.moments().min(moments);
+        let wanted = self.moments().min(moments);
         let mut levels = self.levels.iter().rev();
-        let stuck = levels.find(|level| !level.can_be_cut_to(moments / level.moments));
-        let whole = stuck.map_or(1, Level::moments_in_next);
-        let moments = moments - moments % whole;
+        let stuck = levels.find(|level| !level.can_be_cut_to(wanted / level.moments));
+        let remaining = wanted - wanted % stuck.map_or(1, Level::moments_in_next);
         for level in &mut self.levels {
-            let count = moments / level.moments;
+            let count = remaining / level.moments;
             let kept = count.saturating_sub(level.dropped);
             level.blocks.truncate(kept as usize);
             level.dropped = level.dropped.min(count);
         }
         self.levels.retain(|level| level.count() > 0);
         self.before = None; // a turn at the newest moment that is left is not counted
-        moments
+        remaining
     }
 
     /// The moment from which on the run should be recorded again, if some stretch up to now is coarse.
     pub fn coarse_since(&self) -> Option<u64> {
         let moments = self.moments();
-        let lengths = (0..u64::BITS).map(|power| 1 << power);
-        let lengths = lengths.take_while(|&length| length < moments);
-        let coarse = lengths.chain([moments]).filter(|length| {
-            let begin = moments - length;
-            let mut levels = self.levels.iter();
-            let finest = levels.find(|level| level.has_from(begin / level.moments));
-            finest.is_some_and(|level| level.moments > 1 && length / level.moments < COARSE)
-        });
-        coarse.last().map(|length| moments - length)
+        (0..u64::BITS)
+            .map(|power| 1 << power)
+            .take_while(|&length| length < moments)
+            .chain([moments])
+            .filter(|length| {
+                let begin = moments - length;
+                let mut levels = self.levels.iter();
+                let finest = levels.find(|level| level.has_from(begin / level.moments));
+                finest.is_some_and(|level| level.moments > 1 && length / level.moments < COARSE)
+            })
+            .last()
+            .map(|length| moments - length)
     }
 
     /// The whole recording as one block; `None` while nothing is recorded.
@@ -188,9 +190,9 @@ impl Recording {
         let levels = self.levels.iter().enumerate().rev();
         levels.flat_map(move |(size, level)| {
             let smaller = size.checked_sub(1).map(|size| &self.levels[size]);
-            let end = smaller.map_or(u64::MAX, |smaller| smaller.dropped * smaller.moments);
+            let since = smaller.map_or(u64::MAX, |smaller| smaller.dropped * smaller.moments);
             let begin = covered / level.moments;
-            let end = end.div_ceil(level.moments).clamp(begin, level.count());
+            let end = since.div_ceil(level.moments).clamp(begin, level.count());
             covered = end * level.moments;
             (begin..end).filter_map(|number| level.get(number).copied())
         })

@@ -233,8 +233,8 @@ impl Player {
     }
 
     /// The step that `text` means, seen from the present step.
-    pub(super) fn step_meant(&self, text: &str) -> Result<u64, String> {
-        let text = text.trim();
+    pub(super) fn step_meant(&self, typed: &str) -> Result<u64, String> {
+        let text = typed.trim();
         let (here, here_s) = (self.step_number(), self.run().now().time_s);
         let sign = text.chars().next().filter(|sign| "+-".contains(*sign));
         let size = SeekTarget::parse(&text[sign.map_or(0, char::len_utf8)..]);
@@ -257,14 +257,13 @@ impl Player {
         let sources = condition
             .bind(|name| numbers::find(name, Some(run)))
             .map_err(|fault| fault.to_string())?;
-        let condition = condition.clone();
-        let mut numbers = RunNumbers::default();
-        let holds = move |run: &mut LiveRun| {
+        let (expression, mut numbers) = (condition.clone(), RunNumbers::default());
+        let is_played = self.play_until(Box::new(move |run| {
             let mut now = numbers.at(run);
-            let value = condition.value_at(|index| now.value(&sources[index]));
+            let value = expression.value_at(|index| now.value(&sources[index]));
             value.is_some_and(|value| value != 0.0)
-        };
-        Ok(if self.play_until(Box::new(holds)) {
+        }));
+        Ok(if is_played {
             Done::SILENT.going_on(PendingAction::Playing)
         } else {
             Done::saying("it holds already, at this step")
@@ -283,9 +282,10 @@ impl Player {
             return Done::SILENT;
         };
         let wall_s = self.run().simulation().motion().time_step_s / speed;
-        let is_long = wall_s > LONG_STEP_S;
-        let said = || format!("a step takes {wall_s:.0} s at this speed; . takes one now");
-        Done::saying_any(is_long.then(said))
+        Done::saying_any(
+            (wall_s > LONG_STEP_S)
+                .then(|| format!("a step takes {wall_s:.0} s at this speed; . takes one now")),
+        )
     }
 
     /// The speed `notches` places higher, or lower, in the list of speeds.

@@ -47,19 +47,21 @@ impl Ages {
         are_crowded: false,
     };
 
-    /// The ages of the motion that `readouts` tell of: by what was measured, or else by what theory predicts.
-    pub fn of(readouts: &Readouts) -> Self {
-        let measured = readouts.precession.filter(MeasuredNumber::is_settled);
-        let rate = measured
-            .map(|measured| measured.value)
-            .or_else(|| readouts.theory_about_z()?.precession);
+    /// Returns the ages of the motion with these `readouts`: by the measured precession, or else by that of theory.
+    pub fn from_readouts(readouts: &Readouts) -> Self {
+        let rate = match readouts.precession.filter(MeasuredNumber::is_settled) {
+            Some(measured) => Some(measured.value),
+            None => readouts
+                .theory_about_z()
+                .and_then(|theory| theory.precession),
+        };
         let turn_s = rate.map(|rate| TAU / rate.abs());
         Self::new(readouts.swing_s(), turn_s)
     }
 
     pub fn new(swing_s: Option<f64>, turn_s: Option<f64>) -> Self {
-        let is_time = |time_s: &f64| time_s.is_finite() && *time_s > 0.0;
-        let (swing_s, turn_s) = (swing_s.filter(is_time), turn_s.filter(is_time));
+        let [swing_s, turn_s] = [swing_s, turn_s]
+            .map(|time_s| time_s.filter(|time_s| time_s.is_finite() && *time_s > 0.0));
         let by_swings = swing_s.map(|swing_s| RECENT_SWINGS * swing_s);
         let by_turn = turn_s.map(|turn_s| RECENT_TURN * turn_s);
         let recent_s = match (by_swings, by_turn) {

@@ -75,23 +75,28 @@ impl Detail {
         wanted: &DetailRequest,
         before: Option<&Self>,
     ) -> Self {
-        let swing_s = readouts.swing_s();
         let was_x = before.is_some_and(|before| before.curve == RecordedCurve::X);
-        let (chosen, swing_s) = match of_x(run.recording(), wanted.long_s, was_x) {
-            Some(of_x) if was_x || swing_s.is_none() => (RecordedCurve::X, Some(of_x)),
-            _ => (RecordedCurve::Tilt, swing_s),
+        let (chosen, period_s) = match (
+            x_period_s(run.recording(), wanted.long_s, was_x),
+            readouts.swing_s(),
+        ) {
+            (Some(of_x), measured) if was_x || measured.is_none() => (RecordedCurve::X, Some(of_x)),
+            (_, Some(measured)) => (RecordedCurve::Tilt, Some(measured)),
+            (_, None) => (
+                RecordedCurve::Tilt,
+                tilt_period_s(run.recording(), wanted.long_s),
+            ),
         };
-        let swing_s = swing_s.or_else(|| of_tilt(run.recording(), wanted.long_s));
         let curve = wanted.curve.unwrap_or(chosen);
-        let chosen_by_s = swing_s.filter(|_| wanted.window_s.is_none());
         let least_s = LEAST_STEPS * readouts.time_step_s;
         let window_s = wanted.window_s.unwrap_or_else(|| {
-            let before_s = before.map(|before| before.window_s);
-            length_s(swing_s, before_s).map_or(wanted.long_s, |length_s| {
-                length_s.max(least_s).min(wanted.long_s)
+            period_s.map_or(wanted.long_s, |period_s| {
+                length_s(period_s, before.map(|before| before.window_s))
+                    .max(least_s)
+                    .min(wanted.long_s)
             })
         });
-        let swing_s = swing_s.unwrap_or(0.0).min(0.5 * window_s);
+        let swing_s = period_s.unwrap_or(0.0).min(0.5 * window_s);
         let now_s = run.now().time_s;
         let begin_s = match wanted.place {
             Placement::About(about_s) => about_s - 0.5 * window_s,
@@ -107,7 +112,7 @@ impl Detail {
             curve,
             begin_s: begin_s.max(0.0),
             window_s,
-            swing_s: chosen_by_s,
+            swing_s: period_s.filter(|_| wanted.window_s.is_none()),
             is_snapshot: wanted.place == Placement::Latest,
         }
     }
@@ -121,18 +126,20 @@ impl Detail {
             COLUMNS_OF_LARGE
         };
         let swings = self.swing_s.map_or(1.0, |swing_s| self.window_s / swing_s);
-        let parts = swings * least / columns.max(1) as f64;
+        let needed = swings * least / columns.max(1) as f64;
         // A whole part of the window where that has swings enough.
-        let whole = parts.ceil();
-        let parts = if swings >= FEWEST_SEEN * whole {
-            whole
+        let parts = if swings >= FEWEST_SEEN * needed.ceil() {
+            needed.ceil()
         } else {
-            parts
+            needed
         };
-        let parts = parts.min(swings.floor()).max(1.0);
-        let part_s = self.window_s / parts;
-        let at_s = if self.is_snapshot { self.begin_s } else { at_s };
-        let part = Strip::following((at_s - self.begin_s).min(self.window_s), part_s, columns);
+        let part_s = self.window_s / parts.min(swings.floor()).max(1.0);
+        let shown_s = if self.is_snapshot {
+            0.0
+        } else {
+            at_s - self.begin_s
+        };
+        let part = Strip::following(shown_s.min(self.window_s), part_s, columns);
         let begin_s = part.begin_s.min(self.window_s - part_s);
         Strip::new(self.begin_s + begin_s, part_s, columns)
     }
@@ -140,7 +147,7 @@ impl Detail {
 
 /// The period of x, s, where x swings while the tilt hardly does, in a time short beside `long_s` (s); with `was_x` it has
 /// done so before, and the tilt must swing more often to be taken instead.
-fn of_x(recording: &Recording, long_s: f64, was_x: bool) -> Option<f64> {
+fn x_period_s(recording: &Recording, long_s: f64, was_x: bool) -> Option<f64> {
     let (time_s, [x, tilt]) = turns(recording, long_s)?;
     let swing_s = 2.0 * time_s / x;
     let more_often = if was_x { STAYS_X } else { BECOMES_X };
@@ -148,7 +155,7 @@ fn of_x(recording: &Recording, long_s: f64, was_x: bool) -> Option<f64> {
 }
 
 /// The period of the tilt, s, as it was recorded in the last `long_s` (s); `None` where it changes by rounding alone.
-fn of_tilt(recording: &Recording, long_s: f64) -> Option<f64> {
+fn tilt_period_s(recording: &Recording, long_s: f64) -> Option<f64> {
     let (time_s, [_, tilt]) = turns(recording, long_s)?;
     let extent = recording.whole()?.extent(RecordedCurve::Tilt);
     (tilt > 2.0 && extent.max - extent.min > LEAST_DRAWN_SWING_DEG).then_some(2.0 * time_s / tilt)
@@ -167,18 +174,15 @@ fn turns(recording: &Recording, long_s: f64) -> Option<(f64, [f64; 2])> {
     Some((end_s - since_s, turns.map(f64::from)))
 }
 
-/// A length of 1, 2 or 5 times a power of ten for swings of `swing_s`; `before_s` as long as that is right (all s).
-fn length_s(swing_s: Option<f64>, before_s: Option<f64>) -> Option<f64> {
-    let swing_s = swing_s?;
-    Some(
-        before_s
-            .filter(|length_s| {
-                let swings = length_s / swing_s;
-                (FEWEST_SWINGS..=MOST_SWINGS + 1.0).contains(&swings)
-                    && ladder::at_or_below(*length_s) == *length_s
-            })
-            .unwrap_or_else(|| ladder::at_or_below(MOST_SWINGS * swing_s)),
-    )
+/// Returns a length of 1, 2 or 5 times a power of ten for swings of `swing_s`; `before_s` as long as that is right (all
+/// s).
+fn length_s(swing_s: f64, before_s: Option<f64>) -> f64 {
+    before_s
+        .filter(|length_s| {
+            (FEWEST_SWINGS..=MOST_SWINGS + 1.0).contains(&(length_s / swing_s))
+                && ladder::at_or_below(*length_s) == *length_s
+        })
+        .unwrap_or_else(|| ladder::at_or_below(MOST_SWINGS * swing_s))
 }
 
 /// The time between `begin_s - swing_s` and `begin_s` (s) at which `curve` is highest; before the first swing the

@@ -389,12 +389,12 @@ struct Checkpoints {
 
 impl Checkpoint {
     fn new(simulation: &Simulation, monitor: &Monitor) -> Self {
-        let mut simulation = simulation.clone();
-        simulation.keep_workings(false); // they may take much memory, and are found again by a step
-        Self {
-            simulation,
+        let mut stored = Self {
+            simulation: simulation.clone(),
             monitor: monitor.clone(),
-        }
+        };
+        stored.simulation.keep_workings(false); // they may take much memory, and are found again by a step
+        stored
     }
 
     fn step(&self) -> u64 {
@@ -427,9 +427,8 @@ impl Checkpoints {
         self.stored.push(Checkpoint::new(simulation, monitor));
         if self.stored.len() > self.most + 1 {
             self.spacing *= 2;
-            let spacing = self.spacing;
             self.stored
-                .retain(|stored| stored.step().is_multiple_of(spacing));
+                .retain(|stored| stored.step().is_multiple_of(self.spacing));
         }
     }
 

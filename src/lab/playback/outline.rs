@@ -53,16 +53,20 @@ fn own_lines(part: &PlacedSolid) -> Vec<Polyline> {
 }
 
 fn ellipsoid([x, y, z]: [f64; 3]) -> Vec<Polyline> {
-    let round = circle(1.0, 0.0);
-    let turned = |turn: &dyn Fn(&Vector3<f64>) -> Vector3<f64>| Polyline {
-        points: round.points.iter().map(turn).collect(),
-        is_mark: false,
-    };
-    vec![
-        turned(&|at| Vector3::new(x * at.x, y * at.y, 0.0)),
-        turned(&|at| Vector3::new(x * at.x, 0.0, z * at.y)),
-        turned(&|at| Vector3::new(0.0, y * at.x, z * at.y)),
+    [
+        [Vector3::new(x, 0.0, 0.0), Vector3::new(0.0, y, 0.0)],
+        [Vector3::new(x, 0.0, 0.0), Vector3::new(0.0, 0.0, z)],
+        [Vector3::new(0.0, y, 0.0), Vector3::new(0.0, 0.0, z)],
     ]
+    .map(|[right, up]| Polyline {
+        points: circle(1.0, 0.0)
+            .points
+            .iter()
+            .map(|at| at.x * right + at.y * up)
+            .collect(),
+        is_mark: false,
+    })
+    .to_vec()
 }
 
 /// A round solid between two circles, radius and height of each, with the radius of its hole and a mark on top; of a flat
@@ -70,18 +74,20 @@ fn ellipsoid([x, y, z]: [f64; 3]) -> Vec<Polyline> {
 fn round(ends: [(f64, f64); 2], hole: Option<f64>) -> Vec<Polyline> {
     let [(lower, bottom), (upper, top)] = ends;
     let is_flat = bottom == top;
-    let circles = ends.into_iter().skip(usize::from(is_flat));
-    let circles = circles.filter(|(radius, _)| *radius > 0.0);
-    let mut lines: Vec<_> = circles.map(|(radius, z)| circle(radius, z)).collect();
+    let mut lines: Vec<_> = ends
+        .into_iter()
+        .skip(usize::from(is_flat))
+        .filter(|(radius, _)| *radius > 0.0)
+        .map(|(radius, z)| circle(radius, z))
+        .collect();
     if !is_flat {
-        let side = |side: usize| {
+        lines.extend((0..SIDES).map(|side| {
             let (sin, cos) = libm::sincos(TAU * side as f64 / SIDES as f64);
             straight([
                 Vector3::new(lower * cos, lower * sin, bottom),
                 Vector3::new(upper * cos, upper * sin, top),
             ])
-        };
-        lines.extend((0..SIDES).map(side));
+        }));
     }
     lines.extend(hole.map(|inner| circle(inner, top)));
     lines.push(mark(hole.unwrap_or(0.0), upper, top));
@@ -117,25 +123,24 @@ fn straight(ends: [Vector3<f64>; 2]) -> Polyline {
 
 fn block(size: &Vector3<f64>) -> Vec<Polyline> {
     let half = 0.5 * size;
-    let level = |z: f64| Polyline {
-        points: [
-            (1.0, 1.0),
-            (-1.0, 1.0),
-            (-1.0, -1.0),
-            (1.0, -1.0),
-            (1.0, 1.0),
-        ]
-        .map(|(x, y)| Vector3::new(x * half.x, y * half.y, z))
-        .to_vec(),
-        is_mark: false,
-    };
     if half.z == 0.0 {
-        return vec![level(0.0)];
+        return vec![rectangle(half.x, half.y, 0.0)];
     }
-    let (bottom, top) = (level(-half.z), level(half.z));
-    let edges = bottom.points.iter().zip(&top.points).take(4);
-    let edges: Vec<_> = edges.map(|(low, high)| straight([*low, *high])).collect();
+    let bottom = rectangle(half.x, half.y, -half.z);
+    let top = rectangle(half.x, half.y, half.z);
+    let edges: Vec<_> = (0..4)
+        .map(|corner| straight([bottom.points[corner], top.points[corner]]))
+        .collect();
     [vec![bottom, top], edges].concat()
+}
+
+fn rectangle(x: f64, y: f64, z: f64) -> Polyline {
+    Polyline {
+        points: [(x, y), (-x, y), (-x, -y), (x, -y), (x, y)]
+            .map(|(x, y)| Vector3::new(x, y, z))
+            .to_vec(),
+        is_mark: false,
+    }
 }
 
 #[cfg(test)]

@@ -86,10 +86,10 @@ impl Pace {
 
     /// Adds the simulated time for `wall`; returns all simulated time that is now due, s.
     pub fn earn(&mut self, wall: Duration) -> f64 {
-        let wall = wall.min(LONGEST_FRAME).as_secs_f64();
+        let wall_s = wall.min(LONGEST_FRAME).as_secs_f64();
         self.owed_s = match (self.is_running, self.speed) {
             (false, _) => 0.0,
-            (true, Speed::Times(speed)) => self.owed_s + speed * wall,
+            (true, Speed::Times(speed)) => self.owed_s + speed * wall_s,
             (true, Speed::Top) => f64::INFINITY,
         };
         self.owed_s

@@ -66,14 +66,16 @@ impl PathFromAbove {
     }
 
     fn visit(&mut self, step: u64, x: f64, y: f64) {
-        let cell = self.row_or_column(y) * SIDE + self.row_or_column(x);
-        self.visit_cell(step, cell);
+        self.visit_cell(step, self.row_or_column(x), self.row_or_column(y));
     }
 
-    fn visit_cell(&mut self, step: u64, cell: usize) {
+    fn visit_cell(&mut self, step: u64, column: usize, row: usize) {
+        let cell = row * SIDE + column;
         if !std::mem::replace(&mut self.is_visited[cell], true) {
-            let cell = cell as u32;
-            self.visits.push(Visit { step, cell });
+            self.visits.push(Visit {
+                step,
+                cell: cell as u32,
+            });
         }
     }
 
@@ -103,10 +105,9 @@ impl PathFromAbove {
             self.is_visited[visit.cell as usize] = false;
         }
         self.half_width *= 2.0;
-        for Visit { step, cell } in visits {
-            let cell = cell as usize;
-            let halved = |place: usize| SIDE / 4 + place / 2;
-            self.visit_cell(step, halved(cell / SIDE) * SIDE + halved(cell % SIDE));
+        for visit in visits {
+            let [column, row] = visit.place().map(|place| SIDE / 4 + place / 2);
+            self.visit_cell(visit.step, column, row);
         }
     }
 
@@ -119,10 +120,20 @@ impl PathFromAbove {
     }
 
     pub fn dots(&self) -> impl Iterator<Item = (f64, f64)> {
-        let middle =
-            |place: usize| ((place as f64 + 0.5) / SIDE as f64 * 2.0 - 1.0) * self.half_width;
-        let cells = self.visits.iter().map(|visit| visit.cell as usize);
-        cells.map(move |cell| (middle(cell % SIDE), middle(cell / SIDE)))
+        self.visits.iter().map(move |visit| {
+            visit
+                .place()
+                .map(|place| ((place as f64 + 0.5) / SIDE as f64 * 2.0 - 1.0) * self.half_width)
+                .into()
+        })
+    }
+}
+
+impl Visit {
+    /// Returns the column and the row of the cell.
+    fn place(&self) -> [usize; 2] {
+        let cell = self.cell as usize;
+        [cell % SIDE, cell / SIDE]
     }
 }
 

@@ -64,8 +64,9 @@ impl StripScale {
         (0..most)
             .find(|digits| {
                 let unit = libm::exp10(-(*digits as f64));
-                let rest = |end: f64| (end / unit - (end / unit).round()).abs() * unit;
-                rest(self.low).max(rest(self.high)) < 1e-6 * range && unit < 0.5 * range
+                let [low, high] = [self.low, self.high]
+                    .map(|end| (end / unit - (end / unit).round()).abs() * unit);
+                low.max(high) < 1e-6 * range && unit < 0.5 * range
             })
             .unwrap_or(most)
     }
@@ -75,30 +76,32 @@ impl StripScale {
     /// seen to be elsewhere. `None` where that has no room either.
     pub fn in_words_within(&self, width: usize) -> Option<String> {
         let digits = self.decimals();
-        let (middle, half) = (0.5 * (self.low + self.high), 0.5 * (self.high - self.low));
-        let is_true = |value: f64, digits: &usize| {
-            let unit = libm::exp10(-(*digits as f64));
-            (value - (value / unit).round() * unit).abs()
-                <= UNSEEN_TICK_OFFSET * (self.high - self.low)
-        };
-        let mut forms = (0..=digits).rev().flat_map(|digits| {
-            let both = is_true(self.low, &digits) && is_true(self.high, &digits);
-            let words = [" .. ", ".."].map(|between| self.with_digits(digits, between));
-            let both = both.then_some(words).into_iter().flatten();
-            let around = is_true(middle, &digits) && is_true(half, &digits);
-            let about_zero =
-                (around && middle == 0.0).then(|| format!("± {}", fixed(half, digits)));
-            both.chain(
-                around.then(|| format!("{} ± {}", fixed(middle, digits), fixed(half, digits))),
-            )
-            .chain(about_zero)
-        });
-        forms.find(|words| words.chars().count() <= width)
+        (0..=digits)
+            .rev()
+            .flat_map(|digits| self.forms(digits))
+            .find(|words| words.chars().count() <= width)
     }
 
-    fn with_digits(&self, digits: usize, between: &str) -> String {
-        let [low, high] = [self.low, self.high].map(|end| fixed(end, digits));
-        format!("{low}{between}{high}")
+    /// Returns the ways to write both ends with `digits`, the longest first, where no end is seen to be elsewhere.
+    fn forms(&self, digits: usize) -> Vec<String> {
+        let unit = libm::exp10(-(digits as f64));
+        let (middle, half) = (0.5 * (self.low + self.high), 0.5 * (self.high - self.low));
+        let [low_fits, high_fits, middle_fits, half_fits] = [self.low, self.high, middle, half]
+            .map(|value| {
+                (value - (value / unit).round() * unit).abs()
+                    <= UNSEEN_TICK_OFFSET * (self.high - self.low)
+            });
+        let [low, high, middle_text, half_text] =
+            [self.low, self.high, middle, half].map(|value| fixed(value, digits));
+        let mut forms = Vec::new();
+        if low_fits && high_fits {
+            forms.extend([format!("{low} .. {high}"), format!("{low}..{high}")]);
+        }
+        if middle_fits && half_fits {
+            forms.push(format!("{middle_text} ± {half_text}"));
+            forms.extend((middle == 0.0).then(|| format!("± {half_text}")));
+        }
+        forms
     }
 }
 
@@ -116,24 +119,18 @@ pub fn ticks(low: f64, high: f64, most: usize) -> Vec<f64> {
         return Vec::new();
     }
     let first = ladder::rung_below(range / most as f64);
-    let all = |rung: i64| {
+    for rung in first..first + 4 {
         let apart = ladder::rung(rung);
-        let (from, to) = (
-            (low / apart - STRIP_TICK_ROUNDING).ceil(),
-            (high / apart + STRIP_TICK_ROUNDING).floor(),
-        );
-        (apart, from, to)
-    };
-    let Some((apart, from, to)) = (first..first + 4)
-        .map(all)
-        .find(|&(_, from, to)| to - from < most as f64)
-    else {
-        return Vec::new();
-    };
-    let count = (to - from + 1.0).max(0.0) as usize;
-    (0..count)
-        .map(|index| rounded((from + index as f64) * apart, STRIP_TICK_DIGITS))
-        .collect()
+        let from = (low / apart - STRIP_TICK_ROUNDING).ceil();
+        let to = (high / apart + STRIP_TICK_ROUNDING).floor();
+        if to - from < most as f64 {
+            let count = (to - from + 1.0).max(0.0) as usize;
+            return (0..count)
+                .map(|index| rounded((from + index as f64) * apart, STRIP_TICK_DIGITS))
+                .collect();
+        }
+    }
+    Vec::new()
 }
 
 /// The smallest of 1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten that is not below `value` (> 0).

@@ -44,10 +44,13 @@ impl Strip {
     /// The window of `window_s` on `columns` for a run that stands at `now_s` (both s): the first one, or one later by
     /// half its length as often as that is needed.
     pub fn following(now_s: f64, window_s: f64, columns: usize) -> Self {
-        let window_s = window_s.min(LONGEST_S);
+        let first = Self::new(0.0, window_s, columns);
         // A run of exactly one window ends at its right edge.
-        let halves = ((now_s / window_s * (1.0 - 1e-12) - 1.0) / 0.5).ceil();
-        Self::new(halves.max(0.0) * 0.5 * window_s, window_s, columns)
+        let halves = ((now_s / first.window_s * (1.0 - 1e-12) - 1.0) / 0.5).ceil();
+        Self {
+            begin_s: halves.max(0.0) * 0.5 * first.window_s,
+            ..first
+        }
     }
 
     pub fn end_s(&self) -> f64 {
@@ -70,18 +73,21 @@ impl Strip {
         if begin_s >= end_s {
             return 0..0;
         }
-        let share = |time_s: f64| (time_s - self.begin_s) / self.window_s * self.columns as f64;
-        let first =
-            ((share(begin_s) + STRETCH_ROUNDING) as usize).min(self.columns.saturating_sub(1));
+        let [from, to] = [begin_s, end_s].map(|time_s| self.columns_before(time_s));
+        let first = ((from + STRETCH_ROUNDING) as usize).min(self.columns.saturating_sub(1));
         // A stretch that ends where a column begins does not include that column; every stretch has at least one column.
-        let end = ((share(end_s) - STRETCH_ROUNDING).ceil() as usize).max(first + 1);
+        let end = ((to - STRETCH_ROUNDING).ceil() as usize).max(first + 1);
         first..end.min(self.columns)
+    }
+
+    /// Returns the number of columns from the left edge to `time_s` (s), negative before the edge.
+    fn columns_before(&self, time_s: f64) -> f64 {
+        (time_s - self.begin_s) / self.window_s * self.columns as f64
     }
 
     /// The column of a time (s) that is not before the left edge; it may lie beyond the right one.
     fn place(&self, time_s: f64) -> usize {
-        let column = (time_s - self.begin_s) / self.window_s * self.columns as f64;
-        (column.max(0.0) as usize).min(usize::MAX / 2)
+        (self.columns_before(time_s).max(0.0) as usize).min(usize::MAX / 2)
     }
 
     /// Where the blocks of `recording` are on the columns: for all its curves at once.
@@ -187,25 +193,31 @@ impl StripPen<'_> {
 
     /// The columns that have something, up to `reach` columns from the column `index`.
     fn about(&self, index: usize, reach: usize) -> impl Iterator<Item = (usize, &DrawnColumn)> {
-        let first = index.saturating_sub(reach);
-        let columns = self.columns.iter().enumerate();
-        let columns = columns.take(index + reach + 1).skip(first);
-        columns.filter(|(_, drawn)| drawn.extent.is_some())
+        self.columns
+            .iter()
+            .enumerate()
+            .take(index + reach + 1)
+            .skip(index.saturating_sub(reach))
+            .filter(|(_, drawn)| drawn.extent.is_some())
     }
 
     /// How often the curve turns in a column about the column `index`; where slow motion carries it along, how often the
     /// tilt does, which swings with every nutation.
     fn turns(&self, index: usize) -> f64 {
-        let about = || self.about(index, NEIGHBOURS).map(|(_, drawn)| drawn);
-        let columns = about().count().max(1) as f64;
-        let turns: f64 = about().map(|drawn| drawn.turns).sum();
-        let turns_of_tilt: f64 = about().map(|drawn| drawn.turns_of_tilt).sum();
-        let tilt = about().filter_map(|drawn| drawn.tilt).reduce(Extent::and);
+        let (mut columns, mut turns, mut turns_of_tilt, mut tilt) = (0.0, 0.0, 0.0, None);
+        for (_, drawn) in self.about(index, NEIGHBOURS) {
+            columns += 1.0;
+            turns += drawn.turns;
+            turns_of_tilt += drawn.turns_of_tilt;
+            if let Some(extent) = drawn.tilt {
+                include(&mut tilt, extent);
+            }
+        }
         match tilt.map(|stored| RecordedCurve::Tilt.in_its_unit(stored)) {
             Some(tilt) if tilt.max - tilt.min > LEAST_DRAWN_SWING_DEG => {
-                turns.max(turns_of_tilt) / columns
+                f64::max(turns, turns_of_tilt) / columns
             }
-            _ => turns / columns,
+            _ => turns / f64::max(columns, 1.0),
         }
     }
 
@@ -216,25 +228,31 @@ impl StripPen<'_> {
                 include(&mut drawn.extent, self.curve.in_its_unit(stored));
             }
         }
-        let is_drawn = |drawn: &DrawnColumn| drawn.extent.is_some();
-        let first = self.columns.iter().position(is_drawn).unwrap_or(0);
-        let ends = (first, self.columns.iter().rposition(is_drawn).unwrap_or(0));
+        let mut drawn = self.columns.iter().map(|drawn| drawn.extent.is_some());
+        let ends = (
+            drawn.clone().position(|is_drawn| is_drawn).unwrap_or(0),
+            drawn.rposition(|is_drawn| is_drawn).unwrap_or(0),
+        );
         let all = 0..self.columns.len();
         let turns: Vec<_> = all
             .clone()
             .map(|index| self.turns(inside(index, NEIGHBOURS, ends)))
             .collect();
         // A swing has two turns: half of one on either side.
-        let reach = |index: usize| ((1.0 / turns[index]).ceil() as usize).min(NEIGHBOURS);
+        let reach: Vec<_> = turns
+            .iter()
+            .map(|turns| ((1.0 / turns).ceil() as usize).min(NEIGHBOURS))
+            .collect();
         let swings: Vec<_> = all
             .clone()
-            .map(|index| self.extent_about(index, reach(index)))
+            .map(|index| self.extent_about(index, reach[index]))
             .collect();
         let fast: Vec<_> = all
+            .clone()
             .map(|index| is_fast(index, turns[index], &swings, ends))
             .collect();
-        let column = |(index, drawn): (usize, &DrawnColumn)| {
-            let extent = drawn.extent?;
+        all.map(|index| {
+            let extent = self.columns[index].extent?;
             // As most of the columns about it are, lest line and band take turns.
             let about = self.about(inside(index, NEIGHBOURS, ends), NEIGHBOURS);
             let (count, bands) = about.fold((0, 0), |(count, bands), (column, _)| {
@@ -242,13 +260,13 @@ impl StripPen<'_> {
             });
             // The mean of the extremes of all swings that have the column in them: it goes straight from one swing to the
             // next where they grow or shrink.
-            let band = mean(&swings, index, reach(index)).filter(|_| 2 * bands > count);
+            let band = mean(&swings, index, reach[index]).filter(|_| 2 * bands > count);
             Some(StripColumn {
                 extent,
                 band: band.map(|band| band.and(extent)),
             })
-        };
-        self.columns.iter().enumerate().map(column).collect()
+        })
+        .collect()
     }
 
     fn extent_about(&self, index: usize, reach: usize) -> Option<Extent> {
@@ -274,13 +292,13 @@ fn is_fast(index: usize, turns: f64, swings: &[Option<Extent>], ends: (usize, us
     if turns <= MOST_COLUMN_TURNS {
         return false;
     }
-    let middle = |index: usize| swings[index].map_or(0.0, |swing| 0.5 * (swing.min + swing.max));
     let away = (4.0 / turns).ceil() as usize;
     let here = inside(index, 2 * away, ends);
     let before = here.saturating_sub(away).max(ends.0);
     let after = (here + away).min(ends.1);
-    let carried = [before, after].map(|other| (middle(other) - middle(here)).abs());
-    let carried = carried[0].min(carried[1]);
+    let [before, here, after] = [before, here, after]
+        .map(|index| swings[index].map_or(0.0, |swing| 0.5 * (swing.min + swing.max)));
+    let carried = (before - here).abs().min((after - here).abs());
     swings[index].is_some_and(|swing| carried < MOST_CARRIED * (swing.max - swing.min))
 }
 
@@ -311,12 +329,11 @@ fn join(columns: &mut [DrawnColumn], from: (usize, Extent), to: (usize, Extent))
     }
     let length = (end - begin) as f64;
     let (low, high) = (leave.min(arrive), leave.max(arrive));
-    let at = |place: f64| (leave + (arrive - leave) * (place / length)).clamp(low, high);
-    let way = columns.iter_mut().take(end + 1).skip(begin);
-    for (place, drawn) in way.enumerate() {
-        let place = place as f64;
-        let line = Extent::of(at(place - 0.5)).and(Extent::of(at(place + 0.5)));
-        include(&mut drawn.extent, line);
+    for (index, drawn) in columns.iter_mut().take(end + 1).skip(begin).enumerate() {
+        for place in [index as f64 - 0.5, index as f64 + 0.5] {
+            let value = (leave + (arrive - leave) * (place / length)).clamp(low, high);
+            include(&mut drawn.extent, Extent::of(value));
+        }
     }
 }
 

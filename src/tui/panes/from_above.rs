@@ -143,7 +143,10 @@ impl FromAbove<'_> {
     }
 
     fn ages(&self, across: f64) -> Ages {
-        let ages = self.0.reading.map(|reading| Ages::of(&reading.readouts));
+        let ages = self
+            .0
+            .reading
+            .map(|reading| Ages::from_readouts(&reading.readouts));
         let turn_dots = TAU * self.0.run.path().radius * across;
         ages.unwrap_or(Ages::UNKNOWN).on_picture(turn_dots)
     }

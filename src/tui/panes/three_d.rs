@@ -109,7 +109,9 @@ impl<'a> SceneSubject<'a> {
             Some(reading) => &reading.state,
             None => run.simulation().state(),
         };
-        let ages = seen.reading.map(|reading| Ages::of(&reading.readouts));
+        let ages = seen
+            .reading
+            .map(|reading| Ages::from_readouts(&reading.readouts));
         let shape = DrawnBody::of(run);
         let reach = shape.reach();
         let [torque, change] = torques(run, state);
