@@ -1,55 +1,55 @@
 //! The least and the largest value of four curves over all steps of a run, in bounded memory however long it is.
 //!
-//! They are stored for blocks of one moment, of four, of eight, of sixteen and so on. A size that still reaches back to
-//! the start has up to 16 384 blocks, and of a smaller size the newest 2048 are kept (4096 of one moment). So any stretch
-//! of the run up to now is covered by a thousand blocks or more, or by one for each step if it has fewer steps.
+//! They are stored for bins of one sample, of four, of eight, of sixteen and so on. A size that still reaches back to
+//! the start has up to 16 384 bins, and of a smaller size the newest 2048 are kept (4096 of one sample). So any stretch
+//! of the run up to now is covered by a thousand bins or more, or by one for each step if it has fewer steps.
 //!
-//! A recording can be [cut back](Recording::cut_back) to an earlier moment. Its blocks there are coarser than they were
-//! when that moment was the newest; [`coarse_since`](Recording::coarse_since) tells from which moment on it should be
+//! A recording can be [cut back](Recording::cut_back) to an earlier sample. Its bins there are coarser than they were
+//! when that sample was the newest; [`coarse_since`](Recording::coarse_since) tells from which sample on it should be
 //! recorded again.
 
-mod block;
+mod bin;
 
-pub use block::{Extent, Moment, RecordedCurve, RecordingBin};
+pub use bin::{Extent, RecordedCurve, RecordedSample, RecordingBin};
 use std::collections::VecDeque;
 use std::ops::Range;
 
-/// A stretch is coarse if it has fewer blocks than this, each of more than one step.
+/// A stretch is coarse if it has fewer bins than this, each of more than one step.
 const COARSE: u64 = 256;
-/// A stretch is given in blocks of the next size where it would have more of those than this.
+/// A stretch is given in bins of the next size where it would have more of those than this.
 const MOST_STRETCH_BINS: u64 = 2048;
 
 #[derive(Clone, Debug, Default)]
 pub struct Recording {
     levels: Vec<Level>,
-    /// The values of the newest moment, and by how much each curve changed when it last did.
+    /// The values of the newest sample, and by how much each curve changed when it last did.
     before: Option<([f64; 4], [f64; 4])>,
 }
 
 impl Recording {
     #[inline]
-    pub fn push(&mut self, moment: &Moment) {
-        self.push_values(moment.time_s, moment.values());
+    pub fn push(&mut self, sample: &RecordedSample) {
+        self.push_values(sample.time_s, sample.values());
     }
 
-    /// Appends the values of the curves at the next moment, `time_s`.
+    /// Appends the values of the curves at the next sample, `time_s`.
     #[inline]
     pub fn push_values(&mut self, time_s: f64, values: [f64; 4]) {
-        let mut block = RecordingBin::of(time_s, values, self.turned(values));
+        let mut bin = RecordingBin::new(time_s, values, self.turned(values));
         for level in &mut self.levels {
-            level.push(block);
+            level.push(bin);
             match level.completed() {
-                Some(larger) => block = larger,
+                Some(larger) => bin = larger,
                 None => return,
             }
         }
-        let moments = self.levels.last().map_or(1, Level::moments_in_next);
-        let mut largest = Level::new(moments);
-        largest.push(block);
+        let samples = self.levels.last().map_or(1, Level::samples_in_next);
+        let mut largest = Level::new(samples);
+        largest.push(bin);
         self.levels.push(largest);
     }
 
-    /// For each curve 1 where it turns at the newest moment, before the one that has `values`; else 0.
+    /// For each curve 1 where it turns at the newest sample, before the one that has `values`; else 0.
     #[inline]
     fn turned(&mut self, values: [f64; 4]) -> [u32; 4] {
         let (before, last) = self.before.unwrap_or((values, [0.0; 4]));
@@ -62,70 +62,70 @@ impl Recording {
         std::array::from_fn(|curve| u32::from(changes[curve] * last[curve] < 0.0))
     }
 
-    pub fn moments(&self) -> u64 {
+    pub fn samples(&self) -> u64 {
         self.levels.first().map_or(0, Level::count)
     }
 
-    /// Removes all moments after the first `moments`, and a few more where the small blocks that are needed there have
+    /// Removes all samples after the first `samples`, and a few more where the small bins that are needed there have
     /// been dropped. Returns how many remain; the caller pushes the missing ones again.
-    pub fn cut_back(&mut self, moments: u64) -> u64 {
-        let wanted = self.moments().min(moments);
+    pub fn cut_back(&mut self, samples: u64) -> u64 {
+        let wanted = self.samples().min(samples);
         let mut levels = self.levels.iter().rev();
-        let stuck = levels.find(|level| !level.can_be_cut_to(wanted / level.moments));
-        let remaining = wanted - wanted % stuck.map_or(1, Level::moments_in_next);
+        let stuck = levels.find(|level| !level.can_be_cut_to(wanted / level.samples));
+        let remaining = wanted - wanted % stuck.map_or(1, Level::samples_in_next);
         for level in &mut self.levels {
-            let count = remaining / level.moments;
+            let count = remaining / level.samples;
             let kept = count.saturating_sub(level.dropped);
-            level.blocks.truncate(kept as usize);
+            level.bins.truncate(kept as usize);
             level.dropped = level.dropped.min(count);
         }
         self.levels.retain(|level| level.count() > 0);
-        self.before = None; // a turn at the newest moment that is left is not counted
+        self.before = None; // a turn at the newest sample that is left is not counted
         remaining
     }
 
-    /// The moment from which on the run should be recorded again, if some stretch up to now is coarse.
+    /// The sample from which on the run should be recorded again, if some stretch up to now is coarse.
     pub fn coarse_since(&self) -> Option<u64> {
-        let moments = self.moments();
+        let samples = self.samples();
         (0..u64::BITS)
             .map(|power| 1 << power)
-            .take_while(|&length| length < moments)
-            .chain([moments])
+            .take_while(|&length| length < samples)
+            .chain([samples])
             .filter(|length| {
-                let begin = moments - length;
+                let begin = samples - length;
                 let mut levels = self.levels.iter();
-                let finest = levels.find(|level| level.has_from(begin / level.moments));
-                finest.is_some_and(|level| level.moments > 1 && length / level.moments < COARSE)
+                let finest = levels.find(|level| level.has_from(begin / level.samples));
+                finest.is_some_and(|level| level.samples > 1 && length / level.samples < COARSE)
             })
             .last()
-            .map(|length| moments - length)
+            .map(|length| samples - length)
     }
 
-    /// The whole recording as one block; `None` while nothing is recorded.
+    /// The whole recording as one bin; `None` while nothing is recorded.
     pub fn whole(&self) -> Option<RecordingBin> {
         self.newest(self.levels.len()).reduce(RecordingBin::and)
     }
 
-    /// The blocks smaller than those of `size` that are in no larger one yet, in order of time.
+    /// The bins smaller than those of `size` that are in no larger one yet, in order of time.
     fn newest(&self, size: usize) -> impl Iterator<Item = RecordingBin> {
         let smaller = self.levels[..size].iter().rev();
         smaller.flat_map(Level::waiting).copied()
     }
 
-    /// Blocks in order of time that cover everything from `since_s` (s) to now, as [`between`](Self::between) has them.
+    /// Bins in order of time that cover everything from `since_s` (s) to now, as [`between`](Self::between) has them.
     pub fn since(&self, since_s: f64) -> impl Iterator<Item = RecordingBin> {
         self.between(since_s, f64::INFINITY)
     }
 
-    /// Blocks in order of time that cover everything from `since_s` to `until_s` (s): those of the smallest size that
-    /// reaches back so far and has not too many, followed by smaller ones for the newest moments.
+    /// Bins in order of time that cover everything from `since_s` to `until_s` (s): those of the smallest size that
+    /// reaches back so far and has not too many, followed by smaller ones for the newest samples.
     pub fn between(&self, since_s: f64, until_s: f64) -> impl Iterator<Item = RecordingBin> {
         self.in_columns(since_s, until_s, None::<fn(f64) -> usize>)
     }
 
-    /// The same stretch for a picture in columns; `column` says in which one a time (s) is. Of the blocks of one column
+    /// The same stretch for a picture in columns; `column` says in which one a time (s) is. Of the bins of one column
     /// those at its edges are as [`between`](Self::between) has them, and those inside are given as larger ones: of the same
-    /// moments, but far fewer.
+    /// samples, but far fewer.
     pub fn in_columns(
         &self,
         since_s: f64,
@@ -135,16 +135,15 @@ impl Recording {
         let (size, numbers) = self.stretch(since_s, until_s);
         let mut next = numbers.start;
         let covering = std::iter::from_fn(move || {
-            let (block, count) = self.largest(size, &numbers, next, column.as_ref())?;
+            let (bin, count) = self.largest(size, &numbers, next, column.as_ref())?;
             next += count;
-            Some(block)
+            Some(bin)
         });
         let newest = self.newest(size);
-        covering
-            .chain(newest.filter(move |block| block.begin_s <= until_s && block.end_s >= since_s))
+        covering.chain(newest.filter(move |bin| bin.begin_s <= until_s && bin.end_s >= since_s))
     }
 
-    /// The size of the blocks that cover a stretch of time (s), and their numbers.
+    /// The size of the bins that cover a stretch of time (s), and their numbers.
     fn stretch(&self, since_s: f64, until_s: f64) -> (usize, Range<u64>) {
         let levels = self.levels.iter().enumerate();
         let mut suitable = levels.filter_map(|(size, level)| {
@@ -155,8 +154,8 @@ impl Recording {
         suitable.next().unwrap_or((0, 0..0))
     }
 
-    /// The block `next` of `size`, or the largest one that begins there, is inside of the stretch of these `numbers` and has
-    /// its neighbours there in its own column; and how many blocks of `size` that one is.
+    /// The bin `next` of `size`, or the largest one that begins there, is inside of the stretch of these `numbers` and has
+    /// its neighbours there in its own column; and how many bins of `size` that one is.
     fn largest(
         &self,
         size: usize,
@@ -171,29 +170,29 @@ impl Recording {
         };
         let before = column(level.get(next - 1)?.end_s);
         for larger in &self.levels[size + 1..] {
-            let count = larger.moments / level.moments;
+            let count = larger.samples / level.samples;
             if !next.is_multiple_of(count) || next + count >= numbers.end {
                 break;
             }
             let after = level.get(next + count)?;
             match larger.get(next / count) {
-                Some(block) if column(after.begin_s) == before => largest = (*block, count),
+                Some(bin) if column(after.begin_s) == before => largest = (*bin, count),
                 _ => break,
             }
         }
         Some(largest)
     }
 
-    /// The smallest blocks that are stored of each part of the run, in order of time.
+    /// The smallest bins that are stored of each part of the run, in order of time.
     pub fn finest(&self) -> impl Iterator<Item = RecordingBin> {
         let mut covered = 0;
         let levels = self.levels.iter().enumerate().rev();
         levels.flat_map(move |(size, level)| {
             let smaller = size.checked_sub(1).map(|size| &self.levels[size]);
-            let since = smaller.map_or(u64::MAX, |smaller| smaller.dropped * smaller.moments);
-            let begin = covered / level.moments;
-            let end = since.div_ceil(level.moments).clamp(begin, level.count());
-            covered = end * level.moments;
+            let since = smaller.map_or(u64::MAX, |smaller| smaller.dropped * smaller.samples);
+            let begin = covered / level.samples;
+            let end = since.div_ceil(level.samples).clamp(begin, level.count());
+            covered = end * level.samples;
             (begin..end).filter_map(|number| level.get(number).copied())
         })
     }
@@ -205,60 +204,60 @@ impl Recording {
         until_s: f64,
         curve: RecordedCurve,
     ) -> Option<Extent> {
-        let blocks = self.in_columns(since_s, until_s, Some(|_| 0));
-        let stored = blocks.map(|block| block.stored(curve)).reduce(Extent::and);
+        let bins = self.in_columns(since_s, until_s, Some(|_| 0));
+        let stored = bins.map(|bin| bin.stored(curve)).reduce(Extent::and);
         stored.map(|stored| curve.in_its_unit(stored))
     }
 }
 
 const WHOLE_RUN_BINS: usize = 16_384;
-/// How many are kept once there are more, for each one that a block of the next size has. With more of them a step would
+/// How many are kept once there are more, for each one that a bin of the next size has. With more of them a step would
 /// take longer: they would not stay in the processor's nearer caches.
 const RECENT: usize = 1024;
 
-/// The blocks of one size, in order and without gaps. The first of the run has the number 0; the oldest may be dropped.
+/// The bins of one size, in order and without gaps. The first of the run has the number 0; the oldest may be dropped.
 #[derive(Clone, Debug)]
 struct Level {
-    blocks: VecDeque<RecordingBin>,
+    bins: VecDeque<RecordingBin>,
     dropped: u64,
-    pub moments: u64,
-    /// How many of them make a block of the next size; a power of two.
+    pub samples: u64,
+    /// How many of them make a bin of the next size; a power of two.
     pub in_next: u64,
 }
 
 impl Level {
-    pub fn new(moments: u64) -> Self {
+    pub fn new(samples: u64) -> Self {
         Self {
-            blocks: VecDeque::new(),
+            bins: VecDeque::new(),
             dropped: 0,
-            moments,
-            in_next: if moments == 1 { 4 } else { 2 },
+            samples,
+            in_next: if samples == 1 { 4 } else { 2 },
         }
     }
 
     #[inline]
-    pub fn push(&mut self, block: RecordingBin) {
+    pub fn push(&mut self, bin: RecordingBin) {
         let recent = RECENT * self.in_next as usize;
-        let stored = self.blocks.len();
+        let stored = self.bins.len();
         if self.dropped == 0 && stored == WHOLE_RUN_BINS {
             self.keep_recent(recent - 1);
         } else if self.dropped > 0 && stored == recent {
-            self.blocks.pop_front();
+            self.bins.pop_front();
             self.dropped += 1;
         }
-        self.blocks.push_back(block);
+        self.bins.push_back(bin);
     }
 
     #[cold]
     fn keep_recent(&mut self, kept: usize) {
         let excess = WHOLE_RUN_BINS - kept;
-        self.blocks.drain(..excess);
+        self.bins.drain(..excess);
         // A smaller memory is gone through in the processor's nearer caches.
-        self.blocks.shrink_to(kept + 1);
+        self.bins.shrink_to(kept + 1);
         self.dropped += excess as u64;
     }
 
-    /// The block of the next size that the newest blocks make, where they just make one.
+    /// The bin of the next size that the newest bins make, where they just make one.
     #[inline]
     pub fn completed(&self) -> Option<RecordingBin> {
         if self.count() & (self.in_next - 1) != 0 {
@@ -269,53 +268,51 @@ impl Level {
 
     #[inline]
     fn newest(&self, count: u64) -> impl Iterator<Item = &RecordingBin> {
-        let begin = self.blocks.len().saturating_sub(count as usize);
-        self.blocks.range(begin..)
+        let begin = self.bins.len().saturating_sub(count as usize);
+        self.bins.range(begin..)
     }
 
-    /// The newest blocks, which are in no block of the next size yet.
+    /// The newest bins, which are in no bin of the next size yet.
     pub fn waiting(&self) -> impl Iterator<Item = &RecordingBin> {
         self.newest(self.count() & (self.in_next - 1))
     }
 
     #[inline]
     pub fn count(&self) -> u64 {
-        self.dropped + self.blocks.len() as u64
+        self.dropped + self.bins.len() as u64
     }
 
-    pub fn moments_in_next(&self) -> u64 {
-        self.moments * self.in_next
+    pub fn samples_in_next(&self) -> u64 {
+        self.samples * self.in_next
     }
 
-    /// Whether it can be cut back to `count` blocks: those that will then be [waiting](Self::waiting) must not have been
+    /// Whether it can be cut back to `count` bins: those that will then be [waiting](Self::waiting) must not have been
     /// dropped.
     pub fn can_be_cut_to(&self, count: u64) -> bool {
         let waiting = count & (self.in_next - 1);
         waiting == 0 || count - waiting >= self.dropped
     }
 
-    /// Whether the block of this number and all later ones are stored, as far as there are any.
+    /// Whether the bin of this number and all later ones are stored, as far as there are any.
     pub fn has_from(&self, number: u64) -> bool {
-        self.dropped == 0 || (!self.blocks.is_empty() && self.dropped <= number)
+        self.dropped == 0 || (!self.bins.is_empty() && self.dropped <= number)
     }
 
-    /// Whether all moments from `time_s` (s) on are in stored blocks, but for the newest, which may be in none yet.
+    /// Whether all samples from `time_s` (s) on are in stored bins, but for the newest, which may be in none yet.
     pub fn reaches(&self, time_s: f64) -> bool {
-        let front = self.blocks.front();
-        self.dropped == 0 || front.is_some_and(|block| block.begin_s <= time_s)
+        let front = self.bins.front();
+        self.dropped == 0 || front.is_some_and(|bin| bin.begin_s <= time_s)
     }
 
-    /// The numbers of the stored blocks that have a moment from `since_s` to `until_s` (s).
+    /// The numbers of the stored bins that have a sample from `since_s` to `until_s` (s).
     pub fn between(&self, since_s: f64, until_s: f64) -> Range<u64> {
-        let first = self.blocks.partition_point(|block| block.end_s < since_s);
-        let end = self
-            .blocks
-            .partition_point(|block| block.begin_s <= until_s);
+        let first = self.bins.partition_point(|bin| bin.end_s < since_s);
+        let end = self.bins.partition_point(|bin| bin.begin_s <= until_s);
         self.dropped + first as u64..self.dropped + end.max(first) as u64
     }
 
     pub fn get(&self, number: u64) -> Option<&RecordingBin> {
-        self.blocks.get(number.checked_sub(self.dropped)? as usize)
+        self.bins.get(number.checked_sub(self.dropped)? as usize)
     }
 }
 
@@ -335,13 +332,13 @@ mod tests {
         recording
     }
 
-    /// Checks that `blocks` begin at `since` or before, and follow each other without a gap; the end of the last one.
-    fn end_of(blocks: &[RecordingBin], since: f64) -> f64 {
-        assert!(blocks[0].begin_s <= since);
-        for pair in blocks.windows(2) {
+    /// Checks that `bins` begin at `since` or before, and follow each other without a gap; the end of the last one.
+    fn end_of(bins: &[RecordingBin], since: f64) -> f64 {
+        assert!(bins[0].begin_s <= since);
+        for pair in bins.windows(2) {
             assert_eq!(pair[0].end_s + 1.0, pair[1].begin_s);
         }
-        blocks[blocks.len() - 1].end_s
+        bins[bins.len() - 1].end_s
     }
 
     proptest! {
@@ -349,9 +346,9 @@ mod tests {
         fn every_step_is_in_exactly_one_block_of_a_stretch(length in 1usize..20_000, share in 0.0..1.0f64) {
             let recording = recorded(&vec![0.0; length]);
             let since = (share * length as f64).floor();
-            let blocks: Vec<_> = recording.since(since).collect();
-            prop_assert_eq!(end_of(&blocks, since), (length - 1) as f64);
-            prop_assert!(blocks.len() <= 4 * MOST_STRETCH_BINS as usize + 16);
+            let bins: Vec<_> = recording.since(since).collect();
+            prop_assert_eq!(end_of(&bins, since), (length - 1) as f64);
+            prop_assert!(bins.len() <= 4 * MOST_STRETCH_BINS as usize + 16);
         }
 
         #[test]
@@ -365,22 +362,22 @@ mod tests {
             let single: Vec<_> = recording.between(since, until).collect();
             let joined: Vec<_> = recording.in_columns(since, until, Some(column)).collect();
             let mut rest = single.iter();
-            for block in &joined {
-                let parts: Vec<_> = rest.by_ref().take_while(|part| part.end_s < block.end_s).collect();
+            for bin in &joined {
+                let parts: Vec<_> = rest.by_ref().take_while(|part| part.end_s < bin.end_s).collect();
                 // take_while() has taken the last part too.
-                prop_assert!(parts.first().is_none_or(|part| part.begin_s == block.begin_s));
-                prop_assert!(parts.is_empty() || column(block.begin_s) == column(block.end_s));
+                prop_assert!(parts.first().is_none_or(|part| part.begin_s == bin.begin_s));
+                prop_assert!(parts.is_empty() || column(bin.begin_s) == column(bin.end_s));
             }
             prop_assert_eq!(rest.count(), 0);
-            let moments = |blocks: &[RecordingBin]| blocks.iter().map(RecordingBin::moments).sum::<u64>();
-            prop_assert_eq!(moments(&single), moments(&joined));
+            let samples = |bins: &[RecordingBin]| bins.iter().map(RecordingBin::samples).sum::<u64>();
+            prop_assert_eq!(samples(&single), samples(&joined));
             // The first and the last of every column are the same, so that lines from column to column are.
             for pair in joined.windows(2).filter(|pair| column(pair[0].end_s) != column(pair[1].begin_s)) {
                 prop_assert!(single.contains(&pair[0]) && single.contains(&pair[1]));
             }
             let most = single.len().min(columns.min(single.len()) * 26 + 16);
             prop_assert!(joined.len() <= most, "{} of {} in {columns}", joined.len(), single.len());
-            let extent = single.iter().map(|block| block.extent(RecordedCurve::X)).reduce(Extent::and);
+            let extent = single.iter().map(|bin| bin.extent(RecordedCurve::X)).reduce(Extent::and);
             prop_assert_eq!(recording.extent_between(since, until, RecordedCurve::X), extent);
         }
 
@@ -389,7 +386,7 @@ mod tests {
             let mut values = vec![0.0; length];
             values[at] = 7.0;
             let recording = recorded(&values);
-            let largest = recording.since(0.0).map(|block| block.extents[0].max).fold(0.0, f64::max);
+            let largest = recording.since(0.0).map(|bin| bin.extents[0].max).fold(0.0, f64::max);
             prop_assert_eq!(largest, 7.0);
         }
     }
@@ -413,20 +410,20 @@ mod tests {
                     kept = recording.cut_back(from);
                 }
                 (kept..wanted).for_each(|step| push(&mut recording, step, value(step)));
-                prop_assert_eq!(recording.moments(), wanted);
+                prop_assert_eq!(recording.samples(), wanted);
                 prop_assert_eq!(recording.coarse_since(), None);
                 for since in [0.0, 0.4, 0.9, 0.999] {
                     let since = (since * wanted as f64).floor();
-                    let blocks: Vec<_> = recording.since(since).collect();
-                    prop_assert_eq!(end_of(&blocks, since), (wanted - 1) as f64);
-                    let (blocks, steps) = (blocks.len() as f64, wanted as f64 - since);
-                    prop_assert!(blocks >= steps.min(0.45 * COARSE as f64), "{blocks} since {since} of {wanted}");
+                    let bins: Vec<_> = recording.since(since).collect();
+                    prop_assert_eq!(end_of(&bins, since), (wanted - 1) as f64);
+                    let (bins, steps) = (bins.len() as f64, wanted as f64 - since);
+                    prop_assert!(bins >= steps.min(0.45 * COARSE as f64), "{bins} since {since} of {wanted}");
                 }
                 let largest = (0..wanted).map(value).fold(-1.0, f64::max);
                 prop_assert_eq!(recording.whole().unwrap().extents[0].max, largest);
                 (wanted..length).for_each(|step| push(&mut recording, step, value(step)));
-                let blocks: Vec<_> = recording.since(0.0).collect();
-                prop_assert_eq!(end_of(&blocks, 0.0), (recording.moments() - 1) as f64);
+                let bins: Vec<_> = recording.since(0.0).collect();
+                prop_assert_eq!(end_of(&bins, 0.0), (recording.samples() - 1) as f64);
             }
         }
     }
@@ -439,12 +436,10 @@ mod tests {
             .map(|step: u64| (10.0 - (step % 20) as f64).abs())
             .collect();
         let recording = recorded(&values);
-        assert_eq!(recording.whole().unwrap().moments(), 201);
+        assert_eq!(recording.whole().unwrap().samples(), 201);
         assert_eq!(turns(&recording), 19);
-        let blocks = recording
-            .since(0.0)
-            .map(|block| block.turns(RecordedCurve::X));
-        assert_eq!(blocks.sum::<u32>(), 19);
+        let bins = recording.since(0.0).map(|bin| bin.turns(RecordedCurve::X));
+        assert_eq!(bins.sum::<u32>(), 19);
         // It stands still, and goes on in the same direction: no turn.
         assert_eq!(turns(&recorded(&[0.0, 1.0, 1.0, 2.0, 2.0, 1.0])), 1);
     }
@@ -453,9 +448,9 @@ mod tests {
     fn a_stretch_long_ago_has_more_blocks_than_a_part_of_all() {
         let values: Vec<f64> = (0..100_000).map(f64::from).collect();
         let recording = recorded(&values);
-        let blocks: Vec<_> = recording.between(10_000.0, 11_000.0).collect();
-        assert!(end_of(&blocks, 10_000.0) >= 11_000.0);
-        assert!((100..200).contains(&blocks.len()), "{}", blocks.len());
+        let bins: Vec<_> = recording.between(10_000.0, 11_000.0).collect();
+        assert!(end_of(&bins, 10_000.0) >= 11_000.0);
+        assert!((100..200).contains(&bins.len()), "{}", bins.len());
     }
 
     #[test]
@@ -467,12 +462,12 @@ mod tests {
         let larger: u64 = stored[1..].iter().sum();
         assert!(
             larger <= 2048 * 8 + 2 * WHOLE_RUN_BINS as u64,
-            "{larger} blocks"
+            "{larger} bins"
         );
         // The smallest that there are cover the run without a gap.
-        let blocks: Vec<_> = recording.finest().collect();
-        assert_eq!(end_of(&blocks, 0.0), 999_999.0);
-        let newest = &blocks[blocks.len() - 4000..];
-        assert!(newest.iter().all(|block| block.moments() == 1));
+        let bins: Vec<_> = recording.finest().collect();
+        assert_eq!(end_of(&bins, 0.0), 999_999.0);
+        let newest = &bins[bins.len() - 4000..];
+        assert!(newest.iter().all(|bin| bin.samples() == 1));
     }
 }

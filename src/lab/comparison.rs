@@ -12,7 +12,7 @@ use super::view::{Pane, View};
 use crate::engine::analysis::cost;
 use crate::engine::data::{ColumnOptions, MeasuredData, doubts, find_shipped};
 use crate::engine::scenario::{Problems, Scenario};
-use crate::lab::playback::ghost::{Ghost, GhostToBe};
+use crate::lab::playback::ghost::{Ghost, PendingGhost};
 use crate::lab::playback::live::LiveRun;
 use crate::studies::own_code::rows;
 pub use data::DataComparison;
@@ -33,7 +33,7 @@ enum Pinned {
     /// An earlier run, or the present one before an edit.
     Before(Box<Ghost>),
     /// An earlier run that a session has kept: its pictures are being made again.
-    Returning(GhostToBe),
+    Returning(PendingGhost),
 }
 
 #[derive(Default)]
@@ -92,7 +92,7 @@ impl Comparison {
             self.ghost = None;
             return;
         }
-        let left = Ghost::of(run);
+        let left = Ghost::capture(run);
         let is_short = |before: &Ghost| left.end_s() < SHORT_RUN_SHARE * before.end_s();
         if left.end_s() > 0.0 && !self.ghost.as_ref().is_some_and(is_short) {
             self.ghost = Some(left);
@@ -102,7 +102,7 @@ impl Comparison {
     /// Keeps the pictures of `run`, which is about to change, if it is pinned.
     fn keep_pinned(&mut self, run: &LiveRun) {
         if matches!(self.pinned, Some(Pinned::Present)) {
-            self.pinned = Some(Pinned::Before(Box::new(Ghost::of(run))));
+            self.pinned = Some(Pinned::Before(Box::new(Ghost::capture(run))));
         }
     }
 
@@ -339,7 +339,7 @@ impl Comparison {
     pub(super) fn pin_again(&mut self, reference: Option<Reference>) {
         self.pinned = reference.map(|Reference { step, run }| {
             run.map_or(Pinned::Present, |run| {
-                Pinned::Returning(GhostToBe::begin(run, step))
+                Pinned::Returning(PendingGhost::begin(run, step))
             })
         });
     }

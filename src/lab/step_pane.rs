@@ -70,7 +70,7 @@ impl StepWorkings {
             self.sums = index.zip(table.map(ColumnSums::from_table));
         }
         if view.look.phase == StepPageChoice::Why && self.dip.is_none() {
-            self.dip = Dip::of(&self.scenario, self.step);
+            self.dip = Dip::compute(&self.scenario, self.step);
         }
     }
 }

@@ -24,7 +24,7 @@ fn an_edit_of_body_or_start_is_played_to_the_same_time() {
     assert_eq!(ghost_s(&desk.lab), Some(40.0));
     desk.commands("set = { 'body.rim.radius_m' = 0.7 }");
     assert_eq!(desk.step(), 400);
-    assert_eq!(desk.lab.player().run().recording().moments(), 401);
+    assert_eq!(desk.lab.player().run().recording().samples(), 401);
     desk.commands("undo = 1");
     assert_eq!(desk.step(), 400);
     assert_eq!(desk.scenario().file.start.tilt_deg, Some(40.0));
@@ -80,7 +80,7 @@ fn nudges_that_follow_each_other_keep_the_first_ones_time_and_ghost() {
             desk.lab
                 .comparison()
                 .ghost()
-                .map(|ghost| ghost.recording.moments()),
+                .map(|ghost| ghost.recording.samples()),
             Some(401)
         );
     }

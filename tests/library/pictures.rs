@@ -120,7 +120,7 @@ fn from_above(run: &LiveRun, ghost: Option<&Ghost>, marker: Marker) -> String {
 fn edited(steps: u64) -> (LiveRun, Ghost) {
     let before = run("loops", &[], "", 7000);
     let now = run("loops", &["start.tilt_deg=45"], "", steps);
-    (now, Ghost::of(&before))
+    (now, Ghost::capture(&before))
 }
 
 #[test]
@@ -163,7 +163,7 @@ fn the_run_before_is_seen_wherever_the_run_does_not_hide_it() {
             )
         };
         let (before, now) = (steady(tilt_deg), steady(50));
-        let picture = traces(&now, Some(&Ghost::of(&before)), None, Marker::Braille);
+        let picture = traces(&now, Some(&Ghost::capture(&before)), None, Marker::Braille);
         let lines = picture.lines().skip_while(|line| !line.starts_with("│z"));
         let of_run = "⠉⠒⠤⣀";
         let dots = lines
@@ -198,7 +198,7 @@ fn the_strips_stand_still_while_the_run_comes_after_the_one_before() {
         lines.map(str::to_owned).collect()
     };
     let before = run("loops", &[], "", 7000);
-    let ghost = Ghost::of(&before);
+    let ghost = Ghost::capture(&before);
     let at = |steps| {
         let now = run("loops", &[], "", steps);
         ranges(&traces(&now, Some(&ghost), None, Marker::Braille))
@@ -275,7 +275,7 @@ fn fast_and_slow_motion_are_both_seen() {
 fn the_edges_of_a_band_are_the_extremes_of_the_steps() {
     let now = run("wobble-push", &[], "", 2300);
     let strip = Strip::new(0.0, 230.0, 50);
-    let columns = strip.blocks(now.recording()).columns(RecordedCurve::Z, &[]);
+    let columns = strip.bins(now.recording()).columns(RecordedCurve::Z, &[]);
     let mut steps = run("wobble-push", &[], "", 0);
     let mut extremes = vec![(f64::INFINITY, f64::NEG_INFINITY); 50];
     for _ in 0..=2300 {
@@ -645,7 +645,7 @@ proptest! {
     ) {
         let set = format!("push.0.force_N={force:?}");
         let mut now = run("wobble-push", &[&set], EDITS, steps);
-        let ghost = Ghost::of(&run("wobble-push", &[], "", ghosts));
+        let ghost = Ghost::capture(&run("wobble-push", &[], "", ghosts));
         let mut view = view(&now, Marker::ALL[marker]);
         view.look.window_s = window_s;
         let around = Rect::new(0, 0, width + 6, height + 6);

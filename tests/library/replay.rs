@@ -126,7 +126,7 @@ proptest! {
             prop_assert!(health.energy_drift.is_none_or(|drift| !drift.is_nan()));
             prop_assert_eq!(seen.entry(reached).or_insert_with(|| here.clone()), &here, "step {}", reached);
             let (recording, path) = (desk.lab.player().run().recording(), desk.lab.player().run().path());
-            prop_assert_eq!(recording.moments(), reached + 1);
+            prop_assert_eq!(recording.samples(), reached + 1);
             prop_assert_eq!(recording.coarse_since(), None);
             let mut straight = LiveRun::new(Arc::clone(desk.lab.player().run().scenario()));
             let _ = straight.step_to(reached, || false);

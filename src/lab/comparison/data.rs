@@ -7,7 +7,7 @@
 use super::OwnCode;
 use crate::engine::data::compared::Compared;
 use crate::engine::data::{ColumnOptions, MeasuredData, RunQuantity, RunReader, TimeSeries};
-use crate::engine::recording::{Moment, RecordedCurve, Recording};
+use crate::engine::recording::{RecordedCurve, RecordedSample, Recording};
 use crate::engine::run::Simulation;
 use crate::engine::scenario::{Problems, Scenario};
 use nalgebra::Vector3;
@@ -153,7 +153,7 @@ impl DataComparison {
             .collect();
         let (time_s, axle_height) = (now.time_s(), now.after().axle().z);
         for (values, recording) in values.chunks(IN_A_RECORDING).zip(&mut self.recorded) {
-            recording.push(&Moment {
+            recording.push(&RecordedSample {
                 time_s,
                 position: Vector3::from_fn(|place, _| {
                     values.get(place).copied().unwrap_or_default()

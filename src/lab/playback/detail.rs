@@ -165,10 +165,10 @@ fn tilt_period_s(recording: &Recording, long_s: f64) -> Option<f64> {
 fn turns(recording: &Recording, long_s: f64) -> Option<(f64, [f64; 2])> {
     let end_s = recording.whole()?.end_s;
     let since_s = (end_s - long_s).max(0.0);
-    let turns = recording.since(since_s).fold([0, 0], |[x, tilt], block| {
+    let turns = recording.since(since_s).fold([0, 0], |[x, tilt], bin| {
         [
-            x + block.turns(RecordedCurve::X),
-            tilt + block.turns(RecordedCurve::Tilt),
+            x + bin.turns(RecordedCurve::X),
+            tilt + bin.turns(RecordedCurve::Tilt),
         ]
     });
     Some((end_s - since_s, turns.map(f64::from)))
@@ -191,9 +191,9 @@ fn highest_s(recording: &Recording, curve: RecordedCurve, begin_s: f64, swing_s:
     if begin_s <= swing_s || swing_s <= 0.0 {
         return begin_s;
     }
-    let blocks = recording.between(begin_s - swing_s, begin_s);
-    let highest = blocks
-        .map(|block| (block.extent(curve).max, block.begin_s))
+    let bins = recording.between(begin_s - swing_s, begin_s);
+    let highest = bins
+        .map(|bin| (bin.extent(curve).max, bin.begin_s))
         .max_by(|a, b| a.0.total_cmp(&b.0));
     highest.map_or(begin_s, |(_, time_s)| time_s)
 }

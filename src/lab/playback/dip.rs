@@ -24,7 +24,7 @@ pub struct Dip {
 impl Dip {
     /// The first dip of the run of `scenario`, or the part of it up to step `last`. The steps are computed again for it.
     /// `None` if the axle is upright at the start: it has no lower side.
-    pub fn of(scenario: &Arc<Scenario>, last: u64) -> Option<Self> {
+    pub fn compute(scenario: &Arc<Scenario>, last: u64) -> Option<Self> {
         let mut run = Simulation::new(Arc::clone(scenario));
         let (tilt_deg, azimuth_deg) = (run.now().tilt_deg(), run.now().azimuth().degrees());
         let across = libm::sin(tilt_deg.to_radians());
@@ -72,7 +72,7 @@ mod tests {
         // A nutation of the preset cusps takes 0.8225 s, and its tilt goes from 30 to 36.689 degrees.
         let cusps = scenario("cusps", &[]);
         let steps = (0.8225 / cusps.motion.time_step_s) as usize;
-        let Dip { way_m, is_whole } = Dip::of(&cusps, 1_000_000).unwrap();
+        let Dip { way_m, is_whole } = Dip::compute(&cusps, 1_000_000).unwrap();
         assert!(is_whole);
         assert!(
             way_m.len().abs_diff(steps) <= steps / 20 + 3,

@@ -20,12 +20,12 @@ pub struct Ghost {
 
 impl Ghost {
     /// The pictures of `run`, up to the furthest step that it has reached.
-    pub fn of(run: &LiveRun) -> Self {
+    pub fn capture(run: &LiveRun) -> Self {
         let (recording, path) = run.pictures();
         Self {
             recording: recording.clone(),
             path: path.clone(),
-            marks: Marks::of(run.scenario()),
+            marks: Marks::new(run.scenario()),
             scenario: Arc::clone(run.scenario()),
             furthest: run.furthest(),
         }
@@ -37,20 +37,20 @@ impl Ghost {
 }
 
 /// The pictures of a run that is played again in the background. Dropping it ends that.
-pub struct GhostToBe {
+pub struct PendingGhost {
     pub scenario: Arc<Scenario>,
     pub furthest: u64,
     job: BackgroundJob<Ghost>,
 }
 
-impl GhostToBe {
+impl PendingGhost {
     /// Begins to play `scenario` up to the step `furthest`, or up to where its numbers stop being finite.
     pub fn begin(scenario: Arc<Scenario>, furthest: u64) -> Self {
         let played = Arc::clone(&scenario);
         let job = BackgroundJob::begin("pinned", move |is_wanted| {
             let mut run = LiveRun::new(played);
             run.play(f64::INFINITY, furthest, || !is_wanted(), |_| false);
-            Some(Ghost::of(&run))
+            Some(Ghost::capture(&run))
         });
         Self {
             scenario,

@@ -10,7 +10,7 @@ use crate::engine::analysis::cost::{has_closed_form, integration_rad_per_s, is_a
 use crate::engine::analysis::readouts::ReadoutSource;
 use crate::engine::analysis::{Monitor, Readouts};
 use crate::engine::journal::restart::in_force;
-use crate::engine::recording::{Moment, Recording};
+use crate::engine::recording::{RecordedSample, Recording};
 use crate::engine::run::{NotFinite, Simulation};
 use crate::engine::scenario::Scenario;
 use crate::physics::{State, Workings};
@@ -266,7 +266,7 @@ impl LiveRun {
     }
 
     /// Where the exact motion stands, where it is shown and has come as far as the run.
-    pub fn exact_now(&self) -> Option<&Moment> {
+    pub fn exact_now(&self) -> Option<&RecordedSample> {
         let now = &self.overlay.as_ref()?.now;
         (now.time_s >= self.now().time_s).then_some(now)
     }
@@ -331,7 +331,7 @@ impl LiveRun {
         self.simulation.scenario()
     }
 
-    pub fn now(&self) -> &Moment {
+    pub fn now(&self) -> &RecordedSample {
         &self.pictures.now
     }
 

@@ -13,7 +13,7 @@ pub struct Marks {
 }
 
 impl Marks {
-    pub fn of(scenario: &Scenario) -> Self {
+    pub fn new(scenario: &Scenario) -> Self {
         let mut edits = Vec::new();
         let mut stretches = Vec::new();
         let (mut begin_s, mut pushes) = (0.0, &scenario.pushes);
@@ -67,7 +67,7 @@ mod tests {
             text += &format!("\n[[edit]]\nstep = {step}\nset = {{ {set} }}");
         }
         let document = Document::parse("marks.toml", &text).unwrap();
-        Marks::of(&document.scenario().unwrap())
+        Marks::new(&document.scenario().unwrap())
     }
 
     #[test]

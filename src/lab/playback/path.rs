@@ -39,7 +39,7 @@ impl PathFromAbove {
         }
     }
 
-    pub fn follow(&mut self, step: u64, position: &Vector3<f64>) {
+    pub fn add(&mut self, step: u64, position: &Vector3<f64>) {
         let (x, y) = (position.x, position.y);
         let radius = x.abs().max(y.abs());
         while radius >= self.half_width {
@@ -85,7 +85,7 @@ impl PathFromAbove {
     }
 
     /// Clears the cells that were first visited after `step`. The raster keeps its width; the radius is then exact to a
-    /// cell. Call [`stand_at`](Self::stand_at) before following the point further.
+    /// cell. Call [`continue_from`](Self::continue_from) before following the point further.
     pub fn cut_back(&mut self, step: u64) {
         let kept = self.visits.partition_point(|visit| visit.step <= step);
         for visit in self.visits.drain(kept..) {
@@ -94,7 +94,7 @@ impl PathFromAbove {
         self.radius = self.radius_about(0.0, 0.0);
     }
 
-    pub fn stand_at(&mut self, position: &Vector3<f64>) {
+    pub fn continue_from(&mut self, position: &Vector3<f64>) {
         self.last = Some((position.x, position.y));
     }
 
@@ -149,7 +149,7 @@ mod tests {
         ) {
             let mut path = PathFromAbove::new(2.0);
             for (&(x, y), step) in positions.iter().zip(0..) {
-                path.follow(step, &Vector3::new(x, y, 0.0));
+                path.add(step, &Vector3::new(x, y, 0.0));
             }
             let cell = 2.0 * path.half_width / SIDE as f64;
             for (x, y) in positions {
@@ -166,7 +166,7 @@ mod tests {
         ) {
             let follow = |path: &mut PathFromAbove, range: std::ops::Range<usize>| for step in range {
                 let (x, y) = positions[step];
-                path.follow(step as u64, &Vector3::new(x, y, 0.0));
+                path.add(step as u64, &Vector3::new(x, y, 0.0));
             };
             let at = (share * positions.len() as f64) as usize;
             let (mut short, mut long) = (PathFromAbove::new(2.0), PathFromAbove::new(2.0));
@@ -176,7 +176,7 @@ mod tests {
             follow(&mut long, 0..positions.len());
             let (x, y) = positions[at];
             long.cut_back(at as u64);
-            long.stand_at(&Vector3::new(x, y, 0.0));
+            long.continue_from(&Vector3::new(x, y, 0.0));
             prop_assert_eq!(&short.visits, &long.visits);
             prop_assert_eq!(short.last, long.last);
             let cell = 4.0 / SIDE as f64;

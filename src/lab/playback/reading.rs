@@ -4,7 +4,7 @@
 use super::live::LiveRun;
 use super::pace::{Pace, Speed};
 use crate::engine::analysis::{MeasuredNumber, Readouts};
-use crate::engine::recording::Moment;
+use crate::engine::recording::RecordedSample;
 use crate::engine::text::number::{exponent, fixed, rounded, shortest};
 use crate::physics::State;
 use std::time::Duration;
@@ -18,7 +18,7 @@ pub struct Reading {
     pub state: State,
     /// The step of that state, if the scheme has broken down since; else `None`.
     pub last_whole: Option<u64>,
-    pub exact: Option<Moment>,
+    pub exact: Option<RecordedSample>,
     pub pace: String,
 }
 

@@ -154,7 +154,7 @@ mod tests {
             (30.0, 30.0, "29.99 .. 30.01"),
             (31.4, 57.2, "30 .. 60"),
         ] {
-            let scale = StripScale::around(Extent::of(low).and(Extent::of(high)), 0.02);
+            let scale = StripScale::around(Extent::single(low).and(Extent::single(high)), 0.02);
             assert_eq!(scale.in_words_within(40).unwrap(), words);
         }
     }

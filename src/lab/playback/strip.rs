@@ -90,29 +90,29 @@ impl Strip {
         (self.columns_before(time_s).max(0.0) as usize).min(usize::MAX / 2)
     }
 
-    /// Where the blocks of `recording` are on the columns: for all its curves at once.
-    pub fn blocks(&self, recording: &Recording) -> Blocks {
+    /// Where the bins of `recording` are on the columns: for all its curves at once.
+    pub fn bins(&self, recording: &Recording) -> PlacedBins {
         let column = |time_s: f64| self.place(time_s.max(self.begin_s));
-        let blocks = recording.in_columns(self.begin_s, self.end_s(), Some(column));
-        Blocks {
+        let bins = recording.in_columns(self.begin_s, self.end_s(), Some(column));
+        PlacedBins {
             columns: self.columns,
-            placed: blocks
-                .map(|block| {
-                    let shown = self.column(block.end_s);
-                    let last = shown.unwrap_or_else(|| self.place(block.end_s));
-                    (block, column(block.begin_s).min(last), last)
+            placed: bins
+                .map(|bin| {
+                    let shown = self.column(bin.end_s);
+                    let last = shown.unwrap_or_else(|| self.place(bin.end_s));
+                    (bin, column(bin.begin_s).min(last), last)
                 })
                 .collect(),
         }
     }
 }
 
-pub struct Blocks {
+pub struct PlacedBins {
     columns: usize,
     placed: Vec<(RecordingBin, usize, usize)>,
 }
 
-impl Blocks {
+impl PlacedBins {
     /// `curve` in each column; `None` where the recording has nothing. No line crosses a time of `cuts` (s).
     pub fn columns(&self, curve: RecordedCurve, cuts: &[f64]) -> Vec<Option<StripColumn>> {
         let mut pen = StripPen {
@@ -121,8 +121,8 @@ impl Blocks {
             cuts,
             before: None,
         };
-        for (block, first, last) in &self.placed {
-            pen.draw(block, *first, *last);
+        for (bin, first, last) in &self.placed {
+            pen.draw(bin, *first, *last);
         }
         pen.finish()
     }
@@ -139,7 +139,7 @@ const MOST_CARRIED: f64 = 0.5;
 
 #[derive(Clone, Copy, Debug, Default)]
 struct DrawnColumn {
-    /// The extremes of the lines from block to block, in the curve's unit; [`StripPen::finish`] adds those of the blocks.
+    /// The extremes of the lines from bin to bin, in the curve's unit; [`StripPen::finish`] adds those of the bins.
     extent: Option<Extent>,
     stored: Option<Extent>,
     turns: f64,
@@ -157,32 +157,32 @@ struct StripPen<'a> {
     columns: Vec<DrawnColumn>,
     curve: RecordedCurve,
     cuts: &'a [f64],
-    /// Of the previous block: its end, s, its last column and its stored extremes.
+    /// Of the previous bin: its end, s, its last column and its stored extremes.
     before: Option<(f64, usize, Extent)>,
 }
 
 impl StripPen<'_> {
-    /// Draws `block` from column `first` to `last`; columns beyond the right edge are left out.
-    pub fn draw(&mut self, block: &RecordingBin, first: usize, last: usize) {
-        let stored = block.stored(self.curve);
+    /// Draws `bin` from column `first` to `last`; columns beyond the right edge are left out.
+    pub fn draw(&mut self, bin: &RecordingBin, first: usize, last: usize) {
+        let stored = bin.stored(self.curve);
         if let Some((end_s, column, from)) = self.before
             && column < first
-            && !self.is_cut(end_s, block.begin_s)
+            && !self.is_cut(end_s, bin.begin_s)
         {
             let [from, to] = [from, stored].map(|stored| self.curve.in_its_unit(stored));
             join(&mut self.columns, (column, from), (first, to));
         }
         let share = 1.0 / (last + 1 - first) as f64;
-        let turns = f64::from(block.turns(self.curve)) * share;
-        let turns_of_tilt = f64::from(block.turns(RecordedCurve::Tilt)) * share;
-        let tilt = block.stored(RecordedCurve::Tilt);
+        let turns = f64::from(bin.turns(self.curve)) * share;
+        let turns_of_tilt = f64::from(bin.turns(RecordedCurve::Tilt)) * share;
+        let tilt = bin.stored(RecordedCurve::Tilt);
         for drawn in self.columns.iter_mut().take(last + 1).skip(first) {
             include(&mut drawn.stored, stored);
             drawn.turns += turns;
             drawn.turns_of_tilt += turns_of_tilt;
             include(&mut drawn.tilt, tilt);
         }
-        self.before = Some((block.end_s, last, stored));
+        self.before = Some((bin.end_s, last, stored));
     }
 
     /// Whether there is a cut at `from_s` or later and before `to_s`.
@@ -319,8 +319,8 @@ fn mean(extents: &[Option<Extent>], index: usize, reach: usize) -> Option<Extent
     })
 }
 
-/// Draws the straight line from one block to the next: over the columns between them, and half a column in each of the
-/// blocks' own. It may lead beyond the right edge.
+/// Draws the straight line from one bin to the next: over the columns between them, and half a column in each of the
+/// bins' own. It may lead beyond the right edge.
 fn join(columns: &mut [DrawnColumn], from: (usize, Extent), to: (usize, Extent)) {
     let ((begin, from), (end, to)) = (from, to);
     let (leave, arrive) = nearest(from, to);
@@ -332,7 +332,7 @@ fn join(columns: &mut [DrawnColumn], from: (usize, Extent), to: (usize, Extent))
     for (index, drawn) in columns.iter_mut().take(end + 1).skip(begin).enumerate() {
         for place in [index as f64 - 0.5, index as f64 + 0.5] {
             let value = (leave + (arrive - leave) * (place / length)).clamp(low, high);
-            include(&mut drawn.extent, Extent::of(value));
+            include(&mut drawn.extent, Extent::single(value));
         }
     }
 }
@@ -358,7 +358,7 @@ mod tests {
         for (step, &x) in values.iter().enumerate() {
             recording.push_values(step as f64, [x, 0.0, 0.0, -1.0]);
         }
-        strip.blocks(&recording).columns(RecordedCurve::X, &[])
+        strip.bins(&recording).columns(RecordedCurve::X, &[])
     }
 
     /// On 100 columns the bands, where there are any, of 1000 steps of a sine of `period` steps.
@@ -381,7 +381,7 @@ mod tests {
             let now = (values.len() - 1) as f64;
             let drawn = drawn(Strip::following(now, now, columns), &values);
             let whole = drawn.iter().flatten().map(|column| column.extent).reduce(Extent::and);
-            prop_assert_eq!(whole, values.iter().copied().map(Extent::of).reduce(Extent::and));
+            prop_assert_eq!(whole, values.iter().copied().map(Extent::single).reduce(Extent::and));
             prop_assert!(drawn.iter().all(Option::is_some), "a gap in a whole run");
             let has_all = |c: &StripColumn| {
                 let band = c.band.unwrap_or(c.extent);

@@ -5,7 +5,7 @@
 
 use super::{MOST_SHOWN_PUSHES, PaneRow, PlotInputs, ROWS_A_LINE, Width, round_frame, write};
 use crate::engine::data::MeasuredPlace;
-use crate::engine::recording::Moment;
+use crate::engine::recording::RecordedSample;
 use crate::engine::run::Clock;
 use crate::engine::text::wrap::columns;
 use crate::lab::playback::ages::{Age, Ages};
@@ -154,17 +154,19 @@ impl FromAbove<'_> {
     /// The moment that is shown: the present one. Where the swings cover each other and the eye cannot follow them, it
     /// is that of the latest reading, so that not every frame has to be sent. Where the scheme has broken down, it is
     /// the last moment before.
-    fn now(&self, across: f64) -> Moment {
+    fn now(&self, across: f64) -> RecordedSample {
         let scenario = self.0.run.scenario();
         let traced = scenario.body.mechanics.points()[scenario.trace].at;
         match self.0.reading {
-            Some(reading) if reading.last_whole.is_some() => Moment::new(&reading.state, &traced),
+            Some(reading) if reading.last_whole.is_some() => {
+                RecordedSample::new(&reading.state, &traced)
+            }
             Some(reading) if self.ages(across).are_crowded => {
                 let extremes = &reading.readouts.extremes;
                 let swing_deg = extremes.tilt.highest_deg - extremes.tilt.lowest_deg;
                 let swing_dots = swing_deg.to_radians() * traced.norm() * across;
                 if swing_dots > LARGE_SWING {
-                    Moment::new(&reading.state, &traced)
+                    RecordedSample::new(&reading.state, &traced)
                 } else {
                     *self.0.run.now()
                 }
@@ -174,7 +176,7 @@ impl FromAbove<'_> {
     }
 
     /// The exact motion at `time_s` (s), the moment that is shown; `None` where it is not shown, or has not come so far yet.
-    fn exact_at(&self, time_s: f64) -> Option<&Moment> {
+    fn exact_at(&self, time_s: f64) -> Option<&RecordedSample> {
         let read = self.0.reading.and_then(|reading| reading.exact.as_ref());
         let known = [self.0.run.exact_now(), read].into_iter().flatten();
         known.into_iter().find(|exact| exact.time_s == time_s)

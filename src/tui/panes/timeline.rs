@@ -49,7 +49,7 @@ impl Timeline {
             now_s,
             furthest_s: Clock::at(scenario, furthest).time_s(furthest).max(now_s),
             pinned_s: lab.comparison().pinned_end_s(run),
-            marks: Marks::of(scenario),
+            marks: Marks::new(scenario),
         }
     }
 

@@ -89,7 +89,7 @@ pub struct Traces<'a>(pub PlotInputs<'a>);
 impl Widget for Traces<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
         let inside = area.inner(Margin::new(1, 1));
-        let marks = Marks::of(self.0.run.scenario());
+        let marks = Marks::new(self.0.run.scenario());
         let (beside, groups) = if inside.is_empty() {
             (0, Vec::new())
         } else {

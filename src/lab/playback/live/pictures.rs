@@ -2,7 +2,7 @@
 //! exact motion beside it.
 
 use super::PathFromAbove;
-use crate::engine::recording::{Moment, Recording};
+use crate::engine::recording::{RecordedSample, Recording};
 use crate::engine::run::{Step, Truth};
 use crate::engine::scenario::Scenario;
 use crate::physics::State;
@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 /// The data of the pictures of one run; to be shown every step.
 pub(super) struct Pictures {
-    pub now: Moment,
+    pub now: RecordedSample,
     pub recording: Recording,
     pub path: PathFromAbove,
     /// The last step in the path. It is later than the present step while the run is still stepping towards it.
@@ -32,7 +32,7 @@ pub(super) struct Ahead {
 impl Pictures {
     pub fn new(step: &Step, reach: f64) -> Self {
         let mut pictures = Self {
-            now: moment(step),
+            now: recorded_sample(step),
             recording: Recording::default(),
             path: PathFromAbove::new(reach),
             followed_to: 0,
@@ -40,14 +40,14 @@ impl Pictures {
             last_whole: None,
         };
         pictures.recording.push(&pictures.now);
-        pictures.path.follow(0, &pictures.now.position);
+        pictures.path.add(0, &pictures.now.position);
         pictures
     }
 
     /// Adds `step`, which the run has taken.
     #[inline]
     pub fn record(&mut self, step: &Step) {
-        self.now = moment(step);
+        self.now = recorded_sample(step);
         if self.last_whole.is_none() && !step.after().is_a_rotation() {
             let before = step.before().filter(|before| before.is_a_rotation());
             self.last_whole = before.map(|before| (step.number() - 1, *before));
@@ -55,16 +55,16 @@ impl Pictures {
         self.keep(step.number());
     }
 
-    /// Adds the present moment, which is at `step`, to the recording and the path, unless they have it already.
+    /// Adds the present sample, which is at `step`, to the recording and the path, unless they have it already.
     pub fn keep(&mut self, step: u64) {
-        if step >= self.recording.moments() {
+        if step >= self.recording.samples() {
             self.recording.push(&self.now);
         }
         match step.cmp(&self.followed_to) {
             Ordering::Less => {}
-            Ordering::Equal => self.path.stand_at(&self.now.position),
+            Ordering::Equal => self.path.continue_from(&self.now.position),
             Ordering::Greater => {
-                self.path.follow(step, &self.now.position);
+                self.path.add(step, &self.now.position);
                 self.followed_to = step;
             }
         }
@@ -75,7 +75,7 @@ impl Pictures {
 
     /// Makes `step`, to which the run has returned, the present one.
     pub fn return_to(&mut self, step: &Step) {
-        self.now = moment(step);
+        self.now = recorded_sample(step);
         self.last_whole.take_if(|(at, _)| *at >= step.number());
     }
 
@@ -97,10 +97,10 @@ impl Pictures {
         step.min(recorded.saturating_sub(1))
     }
 
-    /// Cuts the recording back to at most `moments`, and so far that filling it again makes it fine enough. Returns how
-    /// many moments it keeps.
-    fn cut_back_recording(&mut self, moments: u64) -> u64 {
-        let kept = self.recording.cut_back(moments);
+    /// Cuts the recording back to at most `samples`, and so far that filling it again makes it fine enough. Returns how
+    /// many samples it keeps.
+    fn cut_back_recording(&mut self, samples: u64) -> u64 {
+        let kept = self.recording.cut_back(samples);
         match self.recording.coarse_since() {
             Some(from) => self.recording.cut_back(from),
             None => kept,
@@ -108,10 +108,10 @@ impl Pictures {
     }
 
     /// Ends at the present step, `step`, where it was on its way to a later one. Where the recording lacks steps, it is
-    /// filled with the present moment.
+    /// filled with the present sample.
     pub fn cancel_seek(&mut self, step: u64) {
         self.path.cut_back(step);
-        self.path.stand_at(&self.now.position);
+        self.path.continue_from(&self.now.position);
         self.followed_to = step;
         for _ in self.recording.cut_back(step + 1)..=step {
             self.recording.push(&self.now);
@@ -124,8 +124,8 @@ impl Pictures {
     }
 }
 
-fn moment(step: &Step) -> Moment {
-    Moment {
+fn recorded_sample(step: &Step) -> RecordedSample {
+    RecordedSample {
         time_s: step.time_s(),
         position: *step.position(),
         axle_height: step.after().axle().z,
@@ -141,7 +141,7 @@ pub struct Overlay {
     traced: Vector3<f64>,
     /// Least time between two samples, s.
     time_step_s: f64,
-    pub now: Moment,
+    pub now: RecordedSample,
     pub recording: Recording,
     pub path: PathFromAbove,
     has_ended: bool,
@@ -150,7 +150,7 @@ pub struct Overlay {
 impl Overlay {
     pub fn new(scenario: &Arc<Scenario>) -> Self {
         let traced = scenario.body.mechanics.points()[scenario.trace].at;
-        let now = Moment::new(&scenario.start, &traced);
+        let now = RecordedSample::new(&scenario.start, &traced);
         let mut overlay = Self {
             truth: Truth::new(Arc::clone(scenario)),
             traced,
@@ -182,13 +182,13 @@ impl Overlay {
                 next
             };
             let state = self.truth.state_at(next);
-            let moment = Moment {
+            let sample = RecordedSample {
                 time_s: next,
-                ..Moment::new(&state, &self.traced)
+                ..RecordedSample::new(&state, &self.traced)
             };
-            self.has_ended = !moment.is_finite();
+            self.has_ended = !sample.is_finite();
             if !self.has_ended {
-                self.record(moment);
+                self.record(sample);
             }
             if is_over() {
                 return;
@@ -196,11 +196,10 @@ impl Overlay {
         }
     }
 
-    fn record(&mut self, moment: Moment) {
-        self.recording.push(&moment);
-        let sample = self.recording.moments();
-        self.path.follow(sample, &moment.position);
-        self.now = moment;
+    fn record(&mut self, sample: RecordedSample) {
+        self.recording.push(&sample);
+        self.path.add(self.recording.samples(), &sample.position);
+        self.now = sample;
     }
 
     /// Whether it can go on from a run that stands at `time_s` (s): it has not come further, nor ended.

@@ -9,7 +9,7 @@ use crate::lab::comparison::DataComparison;
 use crate::lab::playback::ghost::Ghost;
 use crate::lab::playback::marks::Marks;
 use crate::lab::playback::scale::StripScale;
-use crate::lab::playback::strip::{Blocks, Strip, StripColumn};
+use crate::lab::playback::strip::{PlacedBins, Strip, StripColumn};
 use crate::tui::dots::{Dots, Ink};
 use crate::tui::theme::Role;
 use ratatui::layout::Rect;
@@ -96,14 +96,14 @@ impl Traces<'_> {
     /// Adds the curves of `whose` to `plots`, which show the same time.
     fn add_curves<'s>(&'s self, whose: Whose, marks: &Marks, plots: &mut [Plot]) {
         // The recording that was placed on the columns last: most plots are of the same.
-        let mut placed: Option<(&'s Recording, Blocks)> = None;
+        let mut placed: Option<(&'s Recording, PlacedBins)> = None;
         for plot in plots.iter_mut().filter(|plot| !plot.is_residual) {
             let Some((recording, curve)) = self.recorded(whose, plot.content) else {
                 continue;
             };
             let placed = match &mut placed {
                 Some((last, blocks)) if std::ptr::eq(*last, recording) => blocks,
-                other => &mut other.insert((recording, plot.strip.blocks(recording))).1,
+                other => &mut other.insert((recording, plot.strip.bins(recording))).1,
             };
             let mut columns = placed.columns(curve, self.cuts(whose, marks));
             if plot.is_zoom {
@@ -229,7 +229,7 @@ impl Traces<'_> {
     fn value_at(&self, content: StripContent, time_s: f64) -> Option<f64> {
         let (recording, curve) = self.recorded(Whose::Run, content)?;
         let block = recording.between(time_s, time_s).last()?;
-        (block.moments() == 1).then(|| block.extent(curve).max)
+        (block.samples() == 1).then(|| block.extent(curve).max)
     }
 
     /// The value that was measured at the step at `time_s`.
@@ -308,7 +308,7 @@ impl Traces<'_> {
             None => recording.whole().map(|block| block.extent(curve)),
         });
         let extents = extents.chain(extent_of(self.points(content), strip));
-        extents.reduce(Extent::and).unwrap_or(Extent::of(0.0))
+        extents.reduce(Extent::and).unwrap_or(Extent::single(0.0))
     }
 }
 
@@ -320,7 +320,7 @@ fn extent_of(points: Option<&[ComparedPoint]>, strip: Option<&Strip>) -> Option<
     points
         .map(|point| {
             let sigma = point.sigma.unwrap_or(0.0);
-            Extent::of(point.value - sigma).and(Extent::of(point.value + sigma))
+            Extent::single(point.value - sigma).and(Extent::single(point.value + sigma))
         })
         .reduce(Extent::and)
 }

@@ -1,4 +1,4 @@
-//! What a recording stores: the curves, their values at one moment, and their extremes over many.
+//! What a recording stores: the curves, their values at one sample, and their extremes over many.
 
 use crate::physics::State;
 use crate::run::Sample;
@@ -71,7 +71,7 @@ impl RecordedCurve {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Moment {
+pub struct RecordedSample {
     pub time_s: f64,
     /// The traced point, world frame, m.
     pub position: Vector3<f64>,
@@ -79,7 +79,7 @@ pub struct Moment {
     pub axle_height: f64,
 }
 
-impl Moment {
+impl RecordedSample {
     pub fn new(state: &State, traced: &Vector3<f64>) -> Self {
         Self {
             time_s: state.time_s,
@@ -112,7 +112,7 @@ pub struct Extent {
 }
 
 impl Extent {
-    pub fn of(value: f64) -> Self {
+    pub fn single(value: f64) -> Self {
         Self {
             min: value,
             max: value,
@@ -132,11 +132,11 @@ impl Extent {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RecordingBin {
-    /// Time of its first moment, s.
+    /// Time of its first sample, s.
     pub begin_s: f64,
-    /// Time of its last moment, s.
+    /// Time of its last sample, s.
     pub end_s: f64,
-    moments: u64,
+    samples: u64,
     pub extents: [Extent; 4],
     /// How often each curve has turned: gone up after it had gone down, or down after it had gone up.
     pub turned: [u32; 4],
@@ -148,13 +148,13 @@ impl RecordingBin {
         curve.in_its_unit(self.stored(curve))
     }
 
-    /// The extremes of the stored value of `curve`: of many blocks only what is drawn in the end is worth an arc cosine.
+    /// The extremes of the stored value of `curve`: of many bins only what is drawn in the end is worth an arc cosine.
     pub fn stored(&self, curve: RecordedCurve) -> Extent {
         self.extents[curve as usize]
     }
 
-    pub fn moments(&self) -> u64 {
-        self.moments
+    pub fn samples(&self) -> u64 {
+        self.samples
     }
 
     /// How often `curve` turns in it, up or down: twice in a swing.
@@ -162,19 +162,19 @@ impl RecordingBin {
         self.turned[curve as usize]
     }
 
-    /// The traced point at its last moment, world frame, m.
+    /// The traced point at its last sample, world frame, m.
     pub fn end(&self) -> Vector3<f64> {
         let [x, y, z, _] = self.last;
         Vector3::new(x, y, z)
     }
 
     #[inline]
-    pub(super) fn of(time_s: f64, values: [f64; 4], turned: [u32; 4]) -> Self {
+    pub(super) fn new(time_s: f64, values: [f64; 4], turned: [u32; 4]) -> Self {
         Self {
             begin_s: time_s,
             end_s: time_s,
-            moments: 1,
-            extents: values.map(Extent::of),
+            samples: 1,
+            extents: values.map(Extent::single),
             turned,
             last: values,
         }
@@ -184,7 +184,7 @@ impl RecordingBin {
     pub fn and(self, later: Self) -> Self {
         Self {
             begin_s: self.begin_s,
-            moments: self.moments + later.moments,
+            samples: self.samples + later.samples,
             extents: std::array::from_fn(|curve| self.extents[curve].and(later.extents[curve])),
             turned: std::array::from_fn(|curve| self.turned[curve] + later.turned[curve]),
             ..later
