@@ -325,7 +325,7 @@ fn keep(
             content.refuse(Problem::with_value(key, value, rule));
             continue;
         };
-        let number = content.expression(&key, text, false, |name| earlier.find(name, page));
+        let number = content.expression(&key, text, false, |known| earlier.find(known, page));
         kept.extend(number.map(|expression| Keep {
             name: name.clone(),
             expression,

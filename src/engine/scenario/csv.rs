@@ -256,8 +256,8 @@ impl Csv {
         if self.names.len() > 1 && self.names.iter().all(|name| is_number(name)) {
             self.naming = Naming::Numbers;
             let numbers = (1..=self.names.len()).map(|number| number.to_string());
-            let cells = std::mem::replace(&mut self.names, numbers.collect());
-            self.rows.push((line, cells));
+            let row = std::mem::replace(&mut self.names, numbers.collect());
+            self.rows.push((line, row));
         }
         let names = self.names.iter().enumerate();
         let own = names.map(|(place, name)| OwnColumn {

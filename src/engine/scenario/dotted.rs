@@ -29,14 +29,14 @@ pub fn set_key(table: &mut Table, key: &str, value: Value) -> Result<(), Problem
     let mut inside = table.entry(names[0]).or_insert(empty(&names[1..]));
     let mut path = names[0].to_owned();
     for (index, name) in names.iter().enumerate().skip(1) {
-        let outer = path;
-        path = join(&outer, name);
+        let above = path;
+        path = join(&above, name);
         inside = match inside {
-            Value::Table(table) => table.entry(*name).or_insert(empty(&names[index + 1..])),
+            Value::Table(outer) => outer.entry(*name).or_insert(empty(&names[index + 1..])),
             Value::Array(array) => place(array, name, &path, empty(&names[index + 1..]))?,
             other => {
                 let rule = format!("holds no {name}");
-                return Err(Problem::with_value(outer, other, rule));
+                return Err(Problem::with_value(above, other, rule));
             }
         };
     }

@@ -145,7 +145,7 @@ pub fn find(key: &str) -> Result<(&'static SchemaRow, ValueKind), String> {
     }
     let near = match meant(key) {
         Some(meant) => format!("did you mean {meant}?"),
-        None => nearest(&pattern(key), KEYS.iter().map(|key| key.path)),
+        None => nearest(&pattern(key), KEYS.iter().map(|row| row.path)),
     };
     Err(format!("{UNKNOWN_KEY}: {near}"))
 }
@@ -164,7 +164,7 @@ pub(super) fn meant(key: &str) -> Option<&'static str> {
     let name = key.rsplit('.').next().unwrap_or(key);
     let on_screen = ON_SCREEN.iter().find(|(word, _)| *word == name);
     on_screen
-        .map(|(_, key)| *key)
+        .map(|(_, path)| *path)
         .or_else(|| {
             SCENARIO
                 .only(|last| last == name)

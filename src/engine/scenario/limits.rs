@@ -57,7 +57,7 @@ pub fn check_toml_size(text: &str, times: usize) -> Result<(), Problem> {
 /// The dots in `part` of a line; one in quotes is part of a name.
 fn dots(part: &str) -> usize {
     let unquoted = part.split(['"', '\'']).step_by(2);
-    unquoted.map(|part| part.matches('.').count()).sum()
+    unquoted.map(|text| text.matches('.').count()).sum()
 }
 
 /// What of the file in `table` is too large.

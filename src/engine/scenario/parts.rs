@@ -223,7 +223,7 @@ pub(super) fn check_scheme(
     let Some(why) = scheme.admits.why_not(friction) else {
         return Ok(());
     };
-    let able = listed(scheme::true_to(*friction).map(|scheme| scheme.name));
+    let able = listed(scheme::true_to(*friction).map(|able| able.name));
     let value = Value::String(scheme.name.to_owned());
     let rule = format!("cannot be true to this friction: it {why}; take one of {able}");
     Err(Problem::with_value("motion.scheme", &value, rule))

@@ -189,8 +189,8 @@ impl Schema {
             }
         }
         for (name, row) in self.below(under).filter(|(_, row)| row.required) {
-            let is_there = |name: &&str| table.contains_key(*name);
-            if !name.contains('.') && !is_there(&name) && !row.instead.iter().any(is_there) {
+            let mut alternatives = row.instead.iter().chain([&name]);
+            if !name.contains('.') && !alternatives.any(|it| table.contains_key(*it)) {
                 let rule = format!("is missing ({})", row.about);
                 problems.add(|| Problem::at(join(path, name), rule));
             }

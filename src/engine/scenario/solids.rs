@@ -224,14 +224,11 @@ pub(super) fn prepare(table: &mut Table, key: &str, value: &Value) {
         }
         ("shape", Some(shape)) => {
             let old: Result<PartFile, _> = part.clone().try_into();
-            let told = old.map_or(Vec::new(), |old| dimensions(&old, shape));
+            let told = old.map_or(Table::new(), |old| dimensions(&old, shape));
             if !told.is_empty() {
-                part.retain(|key, _| !DIMENSIONS.contains(&key));
+                part.retain(|dimension, _| !DIMENSIONS.contains(&dimension));
             }
-            part.extend(
-                told.into_iter()
-                    .map(|(name, value)| (name.to_owned(), value)),
-            );
+            part.extend(told);
         }
         _ => {}
     }
@@ -239,9 +236,9 @@ pub(super) fn prepare(table: &mut Table, key: &str, value: &Value) {
 
 /// The dimensions that a part of the shape `shape` has in the place of `old`; none where there is no such shape, or no such
 /// part.
-fn dimensions(old: &PartFile, shape: &str) -> Vec<(&'static str, Value)> {
+fn dimensions(old: &PartFile, shape: &str) -> Table {
     let Ok(part) = read_part(old) else {
-        return Vec::new();
+        return Table::new();
     };
     let size = size_of(&part.shape);
     let (radius, length) = (0.5 * size.x.max(size.y), size.z);
@@ -263,8 +260,12 @@ fn dimensions(old: &PartFile, shape: &str) -> Vec<(&'static str, Value)> {
         vector(&part.moments()),
     ];
     // Moments are then about the center, which needs no saying.
-    let all = DIMENSIONS.into_iter().zip(values);
-    all.filter(|(name, _)| has_dimension(shape, name)).collect()
+    DIMENSIONS
+        .into_iter()
+        .zip(values)
+        .filter(|(name, _)| has_dimension(shape, name))
+        .map(|(name, value)| (name.to_owned(), value))
+        .collect()
 }
 
 /// How long a solid is along its x, its y and its axis, m.

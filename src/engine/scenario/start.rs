@@ -108,8 +108,8 @@ fn nodes(file: &StartFile) -> (Vector3<f64>, Vector3<f64>) {
 /// the plane in which they can tilt it.
 fn euler_rates(now: &Scenario) -> Option<[f64; 3]> {
     let start = &now.start;
-    let omega = angular_velocity(&now.body.mechanics, start);
-    let omega = start.orientation.tr_mul(&omega);
+    let in_world = angular_velocity(&now.body.mechanics, start);
+    let omega = start.orientation.tr_mul(&in_world);
     let vertical = start.orientation.row(2).transpose();
     let (nodes, across) = nodes(&now.file.start);
     let (sine, rate) = (vertical.dot(&across), omega.dot(&across));
@@ -125,7 +125,7 @@ fn euler_rates(now: &Scenario) -> Option<[f64; 3]> {
     ];
     // What is left of a zero by the turn into the body frame is rounding.
     let rounding = RATE_ROUNDING * omega.norm();
-    Some(rates.map(|rate| if rate.abs() <= rounding { 0.0 } else { rate }))
+    Some(rates.map(|exact| if exact.abs() <= rounding { 0.0 } else { exact }))
 }
 
 fn spin(file: &StartFile) -> Option<f64> {
@@ -327,30 +327,34 @@ pub(super) fn tell_other_way(
     remove(table, &replaced(own[own.len() - 1]));
     let start = &now.start;
     let is_body_frame = value.as_str() == Some("body");
-    let told: Vec<(&str, Value)> = match own[0] {
-        "spin_rpm" => vec![("spin_rad_per_s", now.spin_rad_per_s(start).into())],
+    let Some(Value::Table(file)) = table.get_mut("start") else {
+        return Ok(());
+    };
+    match own[0] {
+        "spin_rpm" => {
+            file.insert(
+                "spin_rad_per_s".to_owned(),
+                now.spin_rad_per_s(start).into(),
+            );
+        }
         "precession_rad_per_s" => {
             let rates = euler_rates(now).ok_or_else(|| Problem::at(key, NO_RATES))?;
-            EULER.into_iter().zip(rates.map(Value::from)).collect()
+            for (way, rate) in EULER.into_iter().zip(rates) {
+                file.insert(way.to_owned(), rate.into());
+            }
         }
         way => {
-            let (name, in_world) = match way {
-                "omega_rad_per_s" => (way, angular_velocity(&now.body.mechanics, start)),
-                _ => ("momentum_Js", start.momentum),
+            let in_world = match way {
+                "omega_rad_per_s" => angular_velocity(&now.body.mechanics, start),
+                _ => start.momentum,
             };
             let framed = if is_body_frame {
                 start.orientation.tr_mul(&in_world)
             } else {
                 in_world
             };
-            vec![(name, vector(&framed))]
+            file.insert(way.to_owned(), vector(&framed));
         }
-    };
-    if let Some(Value::Table(table)) = table.get_mut("start") {
-        table.extend(
-            told.into_iter()
-                .map(|(name, value)| (name.to_owned(), value)),
-        );
     }
     Ok(())
 }

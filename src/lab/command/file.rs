@@ -49,8 +49,8 @@ pub fn read(document: &Document) -> Result<Commands, Problems> {
                 .collect();
             let lines = document.lines_of(places.iter().cloned());
             for ((place, value), line) in places.iter().zip(tables).zip(lines) {
-                let command = one(value).map_err(|found| found.inside(place));
-                let command = problems.kept(command);
+                let read = one(value).map_err(|found| found.inside(place));
+                let command = problems.kept(read);
                 list.extend(command.map(|command| LocatedCommand { command, line }));
             }
         }
@@ -65,7 +65,7 @@ pub fn read(document: &Document) -> Result<Commands, Problems> {
     }
     let origin = document.origin().to_owned();
     let commands = problems.or(Commands { origin, list });
-    commands.map_err(|problems| document.placed(problems))
+    commands.map_err(|found| document.placed(found))
 }
 
 /// The command in `value`, a table `[[do]]`.
@@ -82,7 +82,7 @@ fn one(value: &Value) -> Result<Command, Problems> {
     }
     unknown_names.or(())?;
     match table.iter().collect::<Vec<_>>()[..] {
-        [(name, value)] => Command::new(name, value),
+        [(name, argument)] => Command::new(name, argument),
         [] => {
             let rule = "holds no command: there is gyrolab man for their names";
             Err(Problem::at("", rule).into())

@@ -203,7 +203,7 @@ fn can_be_nudged(key: &str) -> Result<(), String> {
 
 /// Checks `value`, that of the command `name`: dotted keys of the scenario, each with a value that it may have.
 fn are_keys(name: &str, value: &Value) -> Result<(), Problems> {
-    let table = match value {
+    let keys = match value {
         Value::Table(table) if !table.is_empty() => table,
         _ => {
             let rule = "must hold a key and its value: { \"motion.time_step_s\" = 0.05 }";
@@ -211,13 +211,13 @@ fn are_keys(name: &str, value: &Value) -> Result<(), Problems> {
         }
     };
     let mut problems = Problems::default();
-    for (key, value) in table {
+    for (key, new) in keys {
         let path = join(name, &quoted(key));
-        let is_table = value.is_table() && !key.ends_with('.');
+        let is_table = new.is_table() && !key.ends_with('.');
         match keys::find(key) {
             // { motion.time_step_s = 0.05 }: TOML makes a table of a dotted key without quotes.
             Err(_) if is_table && !key.contains('.') => {
-                let inner = first_inside(key, value);
+                let inner = first_inside(key, new);
                 let rule =
                     format!("would be set as a whole: write each key in quotes, \"{inner}\"");
                 problems.add(|| Problem::at(path, rule));
@@ -226,8 +226,8 @@ fn are_keys(name: &str, value: &Value) -> Result<(), Problems> {
             Err(_) if is_table && SCENARIO.is_table(key) => {}
             Err(rule) => problems.add(|| Problem::at(path, rule)),
             Ok((_, kind)) => {
-                let checked = kind.check(value);
-                problems.kept(checked.map_err(|rule| Problem::with_value(path, value, rule)));
+                let checked = kind.check(new);
+                problems.kept(checked.map_err(|rule| Problem::with_value(path, new, rule)));
             }
         }
     }

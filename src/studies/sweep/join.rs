@@ -88,16 +88,18 @@ fn of_one_sweep(shards: &[(Sweep, &Path)]) -> Result<Sweep, SweepFileError> {
         return Err(refused(path, why));
     }
     let mut missing = (1..=of).filter(|number| !numbers.contains(number));
-    let first: Vec<_> = missing
+    let named: Vec<_> = missing
         .by_ref()
         .take(MOST_MISSING_ROWS)
         .map(|number| number.to_string())
         .collect();
-    if first.is_empty() {
+    if named.is_empty() {
         return Ok(whole);
     }
-    let named = first.join(", ");
     let more = missing.next().map_or("", |_| ", and more");
-    let why = format!("the sweep has {of} shards, and these are missing: {named}{more}");
+    let why = format!(
+        "the sweep has {of} shards, and these are missing: {}{more}",
+        named.join(", ")
+    );
     Err(SweepFileError::Refused(why))
 }

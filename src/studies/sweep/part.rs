@@ -131,22 +131,23 @@ impl PartialSweep {
         }
         // A symbolic link is kept: the file to which it leads is replaced.
         let last = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-        let path = part_of(&last);
-        is_writable(&path)?;
-        let file = locked(&path)?;
+        let part_path = part_of(&last);
+        is_writable(&part_path)?;
+        let file = locked(&part_path)?;
         // Another process may have made it whole meanwhile.
         if let Some(empty) = whole(&last, sweep, may_replace)? {
-            let _ = fs::remove_file(&path); // an empty file
+            let _ = fs::remove_file(&part_path); // an empty file
             return Ok(Opened::Whole(empty));
         }
-        let there = FoundRows::read(&file, sweep).map_err(|error| cannot_read(&path, &error))?;
+        let there =
+            FoundRows::read(&file, sweep).map_err(|error| cannot_read(&part_path, &error))?;
         if !may_replace && let Some(why) = there.other {
             let why = format!("has the rows of another sweep: {why}; --force discards them");
-            return Err(refused(&path, why));
+            return Err(refused(&part_path, why));
         }
         let mut part = Self {
             file,
-            path,
+            path: part_path,
             last,
             may_replace,
             rows: there.rows,
