@@ -149,12 +149,12 @@ fn come_back(
         ));
     }
     // Counted before the answer, whatever it is: where the disk is full, it is the same for every code.
-    for (seat, wrong) in seats.iter().zip(&before) {
+    for (tried, wrong) in seats.iter().zip(&before) {
         let counted = WrongCodes {
             count: wrong.count.saturating_add(1),
             at_unix_s: now_unix_s,
         };
-        counted.write(folder, &seat.word)?;
+        counted.write(folder, &tried.word)?;
     }
     let Some(seat) = seat else {
         return Err("there is no seat of that word; for a new seat type a name alone".to_owned());

@@ -115,8 +115,8 @@ pub fn for_teacher(lesson: &Lesson, number: usize, after: impl Fn(&Predict) -> S
         for predict in page.predicts() {
             text += &format!("\nasked: {}\n", unfilled(&predict.ask));
             if let AnswerKind::Choice(choices) = &predict.asked {
-                for (number, choice) in (1..).zip(choices) {
-                    text += &format!("  {number} {choice}\n");
+                for (answer, choice) in (1..).zip(choices) {
+                    text += &format!("  {answer} {choice}\n");
                 }
             }
             text += &after(predict);
@@ -235,12 +235,14 @@ impl Writer<'_> {
             let (lab, kept) = (self.lab, &self.open.place.kept);
             let parts = check.that.conjuncts(|name| names::number(name, lab, kept));
             for (goal, part) in check.goals.iter().zip(parts) {
-                let is_reached = part.holds;
                 let mut text = goal.clone();
-                if let Some(now) = part.left.filter(|_| !is_reached) {
+                if let Some(now) = part.left.filter(|_| !part.holds) {
                     text += &format!(" (now {})", number::significant(now, 4));
                 }
-                self.add(Paragraph::new(SheetLineKind::Goal { is_reached }, text));
+                let kind = SheetLineKind::Goal {
+                    is_reached: part.holds,
+                };
+                self.add(Paragraph::new(kind, text));
             }
         }
         if !is_reached && self.open.shows_hints && !check.hint.is_empty() {
@@ -337,9 +339,9 @@ impl Writer<'_> {
         self.add(Paragraph::new(SheetLineKind::Hint, keys));
     }
 
-    fn next(&mut self, page: usize) {
+    fn next(&mut self, number: usize) {
         let has_task = self.open.page().is_some_and(|page| page.task().is_some());
-        let is_last = page == self.open.lesson.pages.len();
+        let is_last = number == self.open.lesson.pages.len();
         let text = match (self.open.is_under_way(), has_task, is_last) {
             (_, true, _) if self.overlay.is_followed => "k steps aside to try it; h: a hint.",
             _ if self.overlay.is_followed => return,
@@ -367,8 +369,7 @@ impl Writer<'_> {
             format!("For the class: {time}"),
         ));
         let lesson = &self.open.lesson;
-        let page = self.open.page();
-        for notes in page.into_iter().flat_map(LessonPage::notes) {
+        for notes in self.open.page().into_iter().flat_map(LessonPage::notes) {
             let source = notes.with_numbers(self.lab, &self.open.place.kept);
             self.extend(paragraphs(&source, &SheetLineKind::Note));
         }

@@ -218,9 +218,9 @@ impl<'a> LessonWalk<'a> {
                 (_, (false, numbers)) => {
                     format!("does not hold after the {block} of its page: {numbers}")
                 }
-                ((true, numbers), (true, after)) => format!(
+                ((true, first), (true, last)) => format!(
                     "holds without the {block} of its page too, so it tells nothing: {}",
-                    if has_task { numbers } else { after }
+                    if has_task { first } else { last }
                 ),
             };
             let that = toml::Value::from(check.that.text());
@@ -237,7 +237,7 @@ fn as_problem(origin: &str, line: usize, text: &str) -> Problem {
         .strip_prefix(origin)
         .and_then(|rest| rest.strip_prefix(':'))
         .and_then(|rest| rest.split_once(": "))
-        .and_then(|(line, rest)| Some((line.parse().ok()?, rest)));
+        .and_then(|(number, rest)| Some((number.parse().ok()?, rest)));
     let (on, rule) = told.unwrap_or((line, text));
     on_line(on, Problem::at("", rule))
 }

@@ -91,15 +91,20 @@ impl Lessons {
     /// # Errors
     /// Why the lesson that was open cannot be opened again; where it was left is kept.
     pub fn resumed(kept: Table, lab: &mut Lab) -> (Self, Result<(), String>) {
+        let read = KeptLessons::read(&kept);
         let mut lessons = Self {
             kept,
             ..Self::default()
         };
-        let Ok(kept) = KeptLessons::read(&lessons.kept) else {
+        let Ok(KeptLessons {
+            open,
+            lessons: left,
+        }) = read
+        else {
             return (lessons, Ok(()));
         };
-        lessons.left = kept.lessons;
-        let opened = kept.open.map_or(Ok(()), |name| lessons.load(&name, lab));
+        lessons.left = left;
+        let opened = open.map_or(Ok(()), |name| lessons.load(&name, lab));
         if !lessons.kept.is_empty() {
             lessons.show(lab);
         }

@@ -55,7 +55,7 @@ pub(super) fn structure<'a>(
         end: 0,
     };
     let mut depth = 0_usize;
-    let mut heading: Option<(HeadingLevel, Range<usize>, String)> = None;
+    let mut heading: Option<(HeadingLevel, Range<usize>, String)> = None; // that is being read
     for (event, range) in Parser::new(text).into_offset_iter() {
         match event {
             Event::Start(tag) => {
@@ -75,15 +75,15 @@ pub(super) fn structure<'a>(
             }
             Event::End(tag) => {
                 depth = depth.saturating_sub(1);
-                if let (TagEnd::Heading(_), 0, Some((level, range, words))) =
-                    (tag, depth, heading.take_if(|_| depth == 0))
+                if let (TagEnd::Heading(_), Some((level, whole, title))) =
+                    (tag, heading.take_if(|_| depth == 0))
                 {
-                    walk.heading(level, range, &words);
+                    walk.heading(level, whole, &title);
                 }
             }
-            Event::Text(words) | Event::Code(words) => {
-                if let Some((_, _, heading)) = &mut heading {
-                    heading.push_str(&words);
+            Event::Text(part) | Event::Code(part) => {
+                if let Some((_, _, title)) = &mut heading {
+                    title.push_str(&part);
                 }
             }
             _ => {}

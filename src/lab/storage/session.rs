@@ -98,16 +98,16 @@ pub fn folder() -> Result<PathBuf, String> {
     }
 }
 
-/// Resumes the newest session in `folder` that no running process holds and that `read` accepts; with a `name` only that
-/// one.
+/// Resumes the newest session in `folder` that no running process holds and that `read` accepts, or `only` that of one
+/// name.
 pub fn resume<T>(
     folder: &Path,
-    name: Option<&str>,
+    only: Option<&str>,
     read: impl Fn(&SessionContent) -> Result<T, String>,
 ) -> io::Result<SessionSearch<T>> {
     let mut names = sessions(folder)?;
-    if let Some(name) = name {
-        names.retain(|other| other == name);
+    if let Some(only) = only {
+        names.retain(|name| name == only);
         if names.is_empty() {
             let kind = io::ErrorKind::NotFound;
             return Err(io::Error::new(kind, "there is no such session"));

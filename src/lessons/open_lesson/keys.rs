@@ -67,15 +67,12 @@ impl OpenLesson {
         // The next page stands on the task of this one as the lesson does it.
         let has_wandered =
             self.has_wandered(lab) || self.page().is_some_and(|page| page.task().is_some());
-        let page = self.place.page + 1;
-        self.turn_to(page);
+        self.turn_to(self.place.page + 1);
         lab.view_mut().turn_to_sheet();
-        let kept = &self.place.kept;
         // A page that neither does nor states anything leaves the lab as the student has it.
-        let needs_its_run = self
-            .page()
-            .is_some_and(|page| page.lab().is_some() || has_wandered && page.states_numbers(kept));
-        if needs_its_run {
+        if let Some(page) = self.page()
+            && (page.lab().is_some() || has_wandered && page.states_numbers(&self.place.kept))
+        {
             let stood = self.replay_page(false, lab);
             report(stood, lab);
         }
