@@ -60,7 +60,7 @@ struct PresentedView {
 
 /// What a key changes that leads away from the class's run or page: run, step, goal, whether it plays, speed, page.
 type PlaybackSnapshot = (
-    (usize, usize),
+    usize,
     u64,
     Option<u64>,
     bool,
@@ -72,7 +72,7 @@ fn playback_snapshot(lab: &Lab, lessons: &Lessons) -> PlaybackSnapshot {
     let player = lab.player();
     let open = lessons.open_lesson();
     (
-        lab.runs().depth(),
+        lab.runs().journal().done(),
         player.step_number(),
         player.steps_to_go(),
         player.is_running() || !lab.script().is_done(),

@@ -1,5 +1,6 @@
 //! The result of a command: what it has done, or why it was refused.
 
+use crate::engine::scenario::Problems;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -43,6 +44,12 @@ impl From<String> for Refusal {
 impl From<&str> for Refusal {
     fn from(reason: &str) -> Self {
         Self::Because(reason.to_owned())
+    }
+}
+
+impl From<Problems> for Refusal {
+    fn from(problems: Problems) -> Self {
+        Self::Because(problems.in_one_line())
     }
 }
 

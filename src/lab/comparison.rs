@@ -380,7 +380,7 @@ mod tests {
         let mut go_over = |player: &mut Player, change| {
             let scenario = scenario();
             comparison.leave(player, change, &scenario);
-            player.change_run(change, &scenario, None);
+            player.change_run(change, &scenario, crate::engine::run::Clock::end_s(&scenario));
             comparison.ghost().map(Ghost::end_s)
         };
         let anew = RunChange::BeginsAnew {

@@ -1,10 +1,9 @@
 //! Carries out commands: each is led to the part of the lab that it concerns.
 
 use super::command::{Command, PushChoice};
-use super::edits::ScenarioEdit;
+use super::edits::{Edited, Edits, ScenarioEdit};
 use super::player::RunChange;
-use super::runs::HistoryDirection;
-use super::{ActionResult, Cleared, CommandScript, Done, Lab, comparison};
+use super::{ActionResult, Cleared, CommandScript, Done, Lab, Player, comparison};
 use crate::engine::scenario::Scenario;
 use crate::engine::text::printable::printable;
 use std::sync::Arc;
@@ -67,8 +66,8 @@ impl Lab {
             Command::Look(patch) => view.look(patch, player, &self.step_pane),
             Command::NextPush(choice) => edits.choose_next_push(choice, player),
             Command::Push(choice) => self.push(choice),
-            Command::Undo(times) => self.undo_or_redo(HistoryDirection::Undo, *times),
-            Command::Redo(times) => self.undo_or_redo(HistoryDirection::Redo, *times),
+            Command::Undo(times) => self.turn(Edits::undo, *times),
+            Command::Redo(times) => self.turn(Edits::redo, *times),
             Command::Open(name) => {
                 let scenario = files.open_scenario(name)?;
                 let edit = edits.open(name, Arc::new(scenario), player);
@@ -76,11 +75,11 @@ impl Lab {
             }
             Command::Set(table) => {
                 let edit = edits.set(table, false, player)?;
-                Ok(self.apply_if_any(edit))
+                Ok(self.apply(edit))
             }
             Command::Nudge { key, times } => {
                 let edit = edits.nudge(key, *times, player, self.now)?;
-                Ok(self.apply_if_any(edit))
+                Ok(self.apply(edit))
             }
             Command::TakeAdvice => {
                 let offer = self.adviser.take_offer(player)?;
@@ -93,25 +92,20 @@ impl Lab {
     /// Gives the push of `choice`. In a lesson, a push that is tried again replaces the one that was tried before.
     fn push(&mut self, choice: &PushChoice) -> ActionResult {
         if self.view.sheet.is_some() && self.edits.is_push_tried_again(choice, &self.player) {
-            self.undo_or_redo(HistoryDirection::Undo, 1)?;
+            self.turn(Edits::undo, 1)?;
         }
         let edit = self.edits.push(choice, &self.player)?;
-        Ok(self.apply_if_any(edit))
+        Ok(self.apply(edit))
     }
 
     /// Undoes the last `times` acts, or does as many undone ones again.
-    fn undo_or_redo(&mut self, direction: HistoryDirection, times: u32) -> ActionResult {
+    fn turn(&mut self, turn: fn(&mut Edits, &Player) -> Edited, times: u32) -> ActionResult {
         let mut done = Done::SILENT;
         for _ in 0..times {
-            let edit = self.edits.turn(direction, &self.player)?;
+            let edit = turn(&mut self.edits, &self.player)?;
             done = self.apply(edit);
         }
         Ok(done)
-    }
-
-    /// Applies `edit`, if the command has changed something.
-    fn apply_if_any(&mut self, edit: Option<ScenarioEdit>) -> Done {
-        edit.map_or(Done::SILENT, |edit| self.apply(edit))
     }
 
     /// Changes every part of the lab to the scenario of `edit`.
@@ -123,7 +117,7 @@ impl Lab {
             self.view.fit(scenario);
         }
         self.comparison.leave(&self.player, change, scenario);
-        self.player.change_run(change, scenario, edit.end_s);
+        self.player.change_run(change, scenario, self.edits.runs.present().end_s);
         self.view.keep_cursor(&self.player);
         self.edits.follow(&self.player);
         let named = |of: &Scenario| of.file.viewed_text("measured").map(str::to_owned);

@@ -4,13 +4,11 @@ use super::advice::Offer;
 use super::answer::{ActionResult, Done, PendingAction, Refusal};
 use super::command::{Force, PushChoice};
 use super::player::{Player, RunChange};
-use super::runs::{HistoryDirection, Runs};
+use super::runs::Runs;
 use super::values::Values;
-use crate::engine::journal::history::{History, Reversal};
 use crate::engine::journal::next_push::NextPush;
-use crate::engine::journal::restart::in_force;
-use crate::engine::journal::restart::replaced;
-use crate::engine::journal::{Act, number_of_push};
+use crate::engine::journal::restart::{in_force, replaced};
+use crate::engine::journal::{Act, Journal, JournalEntry, number_of_push};
 use crate::engine::run::pushes::acts_s;
 use crate::engine::scenario::Scenario;
 use crate::engine::scenario::file::PushFile;
@@ -20,7 +18,7 @@ use std::sync::Arc;
 use std::time::Duration;
 use toml::Table;
 
-/// What is said of undo and redo: that there is nothing to do, what was done, to which run it leads, and the way back.
+/// The words of messages about undo and redo: if there is nothing to do, what was done, to which run it leads, the way back.
 const UNDO: [&str; 4] = [
     "nothing to undo",
     "undone",
@@ -40,14 +38,11 @@ pub struct Edits {
     pub(super) values: Values,
 }
 
-/// What an edit has done: the run goes over to another scenario. The other parts of the lab follow.
+/// The result of an edit: the run's new scenario, and how the run continues.
 pub(super) struct ScenarioEdit {
     pub(super) change: RunChange,
     pub(super) scenario: Arc<Scenario>,
-    /// The time at which the run ends, s, where the edit has moved its end.
-    pub(super) end_s: Option<f64>,
     said: EditMessage,
-    under_way: Option<PendingAction>,
 }
 
 enum EditMessage {
@@ -57,14 +52,7 @@ enum EditMessage {
     Value(String),
 }
 
-impl EditMessage {
-    fn text(text: &str) -> Self {
-        Self::Text(text.to_owned())
-    }
-}
-
-/// What a command has changed; `None` where the run is as it was.
-type Edited = Result<Option<ScenarioEdit>, Refusal>;
+pub(super) type Edited = Result<ScenarioEdit, Refusal>;
 
 impl Edits {
     pub(super) fn new(name: &str, scenario: &Arc<Scenario>) -> Self {
@@ -74,24 +62,24 @@ impl Edits {
         }
     }
 
-    /// Takes up the history and the push to come of a session.
+    /// Takes up the journal and the push to come of a session.
     pub(super) fn resume(
         &mut self,
-        history: History,
+        journal: Journal,
         file: &Arc<Scenario>,
         next_push: NextPush,
         player: &Player,
     ) {
-        self.runs = Runs::resumed(history, file);
+        self.runs = Runs::resumed(journal, file);
         self.values.next_push = next_push;
         self.values.suit(player.run().scenario());
     }
 
-    /// Records the step and the push to come with which the present run may be left now. The step is the one that the
-    /// run is on its way back to, if it is.
-    fn leave(&mut self, player: &Player) {
-        let step = player.step_to_keep();
-        self.runs.leave_at(step, &self.values.next_push);
+    /// Records the push to come, and `step` as the one at which the present run may be left now.
+    fn leave_at(&mut self, step: u64) -> &mut Journal {
+        let journal = self.runs.journal_mut();
+        journal.set_left_at(step, &self.values.next_push);
+        journal
     }
 
     /// Leaves the present run for that of `scenario`, opened as `name`.
@@ -101,35 +89,33 @@ impl Edits {
         scenario: Arc<Scenario>,
         player: &Player,
     ) -> ScenarioEdit {
-        self.leave(player);
-        self.runs.open(name, &scenario);
+        self.leave_at(player.step_to_keep()).begin(name, &scenario);
+        self.runs.set_file(&scenario);
         self.values.next_push = NextPush::of(&scenario);
         ScenarioEdit {
             change: RunChange::Opens,
             scenario,
-            end_s: None,
             said: EditMessage::Nothing,
-            under_way: None,
         }
     }
 
-    /// Sets all keys of `table` as one act, with `is_again` together with the act before. Keys of body and start begin a new
-    /// run; the others act from the next step on.
-    pub(super) fn set(&mut self, table: &Table, is_again: bool, player: &Player) -> Edited {
+    /// Sets all keys of `table` as one act; with `coalesces`, undo takes it back together with the act before. Keys of body
+    /// and start begin a new run; the others act from the next step on.
+    pub(super) fn set(&mut self, table: &Table, coalesces: bool, player: &Player) -> Edited {
+        let begins_run = |key: &str| Effect::of_key(key) == Effect::NewRun;
         let (new, rest): (Table, Table) = table
             .clone()
             .into_iter()
-            .partition(|(key, _)| Effect::of_key(key) == Effect::NewRun);
-        let acts = acts(rest);
-        if new.is_empty() {
-            let said = match table.len() {
-                1 => EditMessage::Value(table.keys().cloned().collect()),
-                more => EditMessage::Text(format!("{more} values; u takes them back")),
-            };
-            self.act(acts, is_again, said, player)
-        } else {
-            self.begin_with(&new, acts, is_again, player).map(Some)
+            .partition(|(key, _)| begins_run(key));
+        let acts = Act::set(rest);
+        if !new.is_empty() {
+            return self.begin_with(&new, acts, coalesces, player);
         }
+        let said = match table.len() {
+            1 => EditMessage::Value(table.keys().cloned().collect()),
+            more => EditMessage::Text(format!("{more} values; u takes them back")),
+        };
+        self.perform(acts, coalesces, said, player)
     }
 
     pub(super) fn nudge(
@@ -147,9 +133,9 @@ impl Edits {
         let value = parameter
             .nudged(times)
             .map_err(|reason| format!("{} {reason}", parameter.label))?;
-        let is_again = self.values.is_nudged_again(key, now);
+        let coalesces = self.values.coalesces_with_last_nudge(key, now);
         let table = Table::from_iter([(key.to_owned(), value)]);
-        let edited = self.set(&table, is_again, player)?;
+        let edited = self.set(&table, coalesces, player)?;
         self.values.note_nudge(key, now);
         Ok(edited)
     }
@@ -161,12 +147,8 @@ impl Edits {
             "pushed: {}; u takes it back, P chooses another",
             push.in_words()
         );
-        self.act(
-            vec![Act::Push(given)],
-            false,
-            EditMessage::Text(said),
-            player,
-        )
+        let acts = vec![Act::Push(given)];
+        self.perform(acts, false, EditMessage::Text(said), player)
     }
 
     /// The push that `choice` stands for, as the user chooses it and as it acts at the present step.
@@ -180,7 +162,7 @@ impl Edits {
         Ok((push, given))
     }
 
-    /// Whether `choice` is a push at the step at which the last one was given, and the run was played on since.
+    /// Returns whether `choice` is a push at the step at which the last one was given, and the run was played on since.
     pub(super) fn is_push_tried_again(&self, choice: &PushChoice, player: &Player) -> bool {
         let here = player.step_number();
         self.given(choice, player).is_ok()
@@ -205,44 +187,40 @@ impl Edits {
         self.values.chosen(choice, scenario, time_step_s)
     }
 
-    /// Begins a new run with the values of `set` in its scenario, and does `acts` at its beginning. With `is_again` it
+    /// Begins a new run with the values of `set` in its scenario, and does `acts` at its beginning. With `coalesces` it
     /// replaces the present run, which began with another value of the same key.
     fn begin_with(
         &mut self,
         set: &Table,
         acts: Vec<Act>,
-        is_again: bool,
+        coalesces: bool,
         player: &Player,
-    ) -> Result<ScenarioEdit, Refusal> {
+    ) -> Edited {
         let left_at = player.step_to_leave_at();
-        self.runs.leave_at(left_at, &self.values.next_push);
-        let scenario = self.runs.begin_with(set, acts, is_again)?;
+        let scenario = self.leave_at(left_at).begin_with(set, acts, coalesces)?;
         self.values.suit(&scenario);
         let said = "a new run; the one before is dotted, and u goes back to it".to_owned();
         Ok(ScenarioEdit {
             change: RunChange::BeginsAnew {
                 is_act: false,
-                is_again,
+                is_again: coalesces,
             },
             scenario,
-            end_s: Some(self.runs.present().end_s),
             said: if left_at > 0 {
                 EditMessage::Text(said)
             } else {
                 EditMessage::Nothing
             },
-            under_way: None,
         })
     }
 
     /// Begins the run anew as the advice says.
     pub(super) fn take_offer(&mut self, offer: Offer, player: &Player) -> ScenarioEdit {
-        let left_at = player.step_to_leave_at();
-        let replaced = replaced(player.run().scenario());
-        let replaced = replaced.map_or(String::new(), |edits| format!(", in place of {edits}"));
         let Offer { what, scenario, .. } = offer;
-        self.runs.leave_at(left_at, &self.values.next_push);
-        self.runs.begin_as_advised(&scenario);
+        let replaced = replaced(player.run().scenario());
+        let in_place = replaced.map_or(String::new(), |edits| format!(", in place of {edits}"));
+        let left_at = player.step_to_leave_at();
+        self.leave_at(left_at).begin_as_advised(&scenario);
         self.values.suit(&scenario);
         ScenarioEdit {
             change: RunChange::BeginsAnew {
@@ -250,111 +228,114 @@ impl Edits {
                 is_again: false,
             },
             scenario,
-            end_s: None,
             said: EditMessage::Text(format!(
-                "{what} from the start{replaced}; the run before is dotted, u goes back to it"
+                "{what} from the start{in_place}; the run before is dotted, u goes back to it"
             )),
-            under_way: None,
         }
     }
 
-    /// Does `acts` at the present step as one act, all or none; with `is_again`, undo takes them back together with the
-    /// act before. An edit at step 0 of a run that was played further plays it as far again.
-    fn act(
+    /// Does `acts` at the present step as one act; with `coalesces`, undo takes them back together with the act before. An
+    /// edit at step 0 of a run that was played further plays it as far again.
+    fn perform(
         &mut self,
         acts: Vec<Act>,
-        is_again: bool,
+        coalesces: bool,
         said: EditMessage,
         player: &Player,
     ) -> Edited {
         let is_edited = acts.iter().any(|act| matches!(act, Act::Edit(_)));
-        let nudges_at_start = is_again && player.nudges_at_start();
+        let is_metadata = acts.iter().all(Act::is_metadata);
+        let nudges_at_start = coalesces && player.nudges_at_start();
         let from_start = is_edited && (nudges_at_start || player.restarts_on_edit());
-        let here = player.step_number();
-        let step = if from_start { 0 } else { here };
-        let steps = player.run().scenario().steps;
-        let is_described = acts.iter().all(|act| matches!(act, Act::Describe(_)));
-        let later = self.runs.journal().later_than(step);
-        let Some(scenario) = self.runs.act(step, acts, is_again, steps)? else {
-            return Ok(None);
+        let step = if from_start {
+            0
+        } else {
+            player.step_number()
         };
-        Ok(Some(ScenarioEdit {
-            change: if is_described {
+        let later = self.runs.journal().later_than(step);
+        let scenario = self.runs.journal_mut().perform(step, acts, coalesces)?;
+        Ok(ScenarioEdit {
+            change: if is_metadata {
                 RunChange::Described
             } else if from_start {
                 RunChange::BeginsAnew {
                     is_act: true,
-                    is_again,
+                    is_again: coalesces,
                 }
             } else {
                 RunChange::GoesOn
             },
-            end_s: (scenario.steps != steps).then_some(self.runs.present().end_s),
             scenario,
             said: match later {
                 0 => said,
-                _ if is_described => said,
-                1 => EditMessage::text("a later action has made way for it; u brings it back"),
+                _ if is_metadata => said,
+                1 => EditMessage::Text(
+                    "a later action has made way for it; u brings it back".to_owned(),
+                ),
                 _ => EditMessage::Text(format!(
                     "{later} later actions have made way for it; u brings them back"
                 )),
             },
-            under_way: None,
-        }))
-    }
-
-    /// Undoes the last act, or does the last undone one again.
-    pub(super) fn turn(
-        &mut self,
-        way: HistoryDirection,
-        player: &Player,
-    ) -> Result<ScenarioEdit, Refusal> {
-        if way == HistoryDirection::Undo && self.runs.is_at_floor() {
-            return Err("nothing to undo: the page began here".into());
-        }
-        self.leave(player);
-        let [nothing, done, run, other_way] = match way {
-            HistoryDirection::Undo => UNDO,
-            HistoryDirection::Redo => REDO,
-        };
-        let turned = self.runs.turn(way, player.run().scenario().steps)?;
-        let turned = turned.ok_or(nothing)?;
-        let (change, said) = match turned.what {
-            Reversal::SameRun { step, act } => {
-                let said = format!("{done}: {}, at step {step}; {other_way}", act.in_words());
-                let is_described = matches!(act, Act::Describe(_));
-                let change = if is_described {
-                    RunChange::Described
-                } else {
-                    RunChange::ContinuesAt(step)
-                };
-                (change, said)
-            }
-            Reversal::OtherRun => {
-                let said = format!("{done}: this is {run}; {other_way}");
-                (
-                    self.return_to_run(turned.is_of_same_name, &turned.scenario),
-                    said,
-                )
-            }
-        };
-        Ok(ScenarioEdit {
-            change,
-            scenario: turned.scenario,
-            end_s: Some(self.runs.present().end_s),
-            said: EditMessage::Text(said),
-            under_way: Some(PendingAction::Going),
         })
     }
 
-    /// Prepares the push with which the run of `scenario`, the present one again, was left.
-    fn return_to_run(&mut self, is_of_same_name: bool, scenario: &Scenario) -> RunChange {
+    pub(super) fn undo(&mut self, player: &Player) -> Edited {
+        if self.runs.is_at_floor() {
+            return Err("nothing to undo: the page began here".into());
+        }
+        self.move_cursor(Journal::undo, UNDO, player)
+    }
+
+    pub(super) fn redo(&mut self, player: &Player) -> Edited {
+        self.move_cursor(Journal::redo, REDO, player)
+    }
+
+    /// Undoes an act or does one again, with `turn`.
+    fn move_cursor(
+        &mut self,
+        turn: fn(&mut Journal) -> &[Arc<JournalEntry>],
+        [nothing, done, run, back]: [&str; 4],
+        player: &Player,
+    ) -> Edited {
+        let name = self.runs.name().to_owned();
+        let passed = turn(self.leave_at(player.step_to_keep()));
+        let (Some(first), Some(last)) = (passed.first(), passed.last()) else {
+            return Err(nothing.into());
+        };
+        let (step, act) = (first.step, last.act.in_words());
+        let is_other_run = matches!(first.act, Act::Begin(_));
+        let is_metadata = passed.iter().all(|entry| entry.act.is_metadata());
+        let scenario = self.runs.journal().scenario()?;
+        Ok(if is_other_run {
+            ScenarioEdit {
+                change: self.return_to_run(&name, &scenario),
+                scenario,
+                said: EditMessage::Text(format!("{done}: this is {run}; {back}")),
+            }
+        } else {
+            ScenarioEdit {
+                change: if is_metadata {
+                    RunChange::Described
+                } else {
+                    RunChange::ContinuesAt(step)
+                },
+                scenario,
+                said: EditMessage::Text(format!("{done}: {act}, at step {step}; {back}")),
+            }
+        })
+    }
+
+    /// Prepares the push with which the run of `scenario`, the present one again, was left; `name` is that of the run that
+    /// is left now.
+    fn return_to_run(&mut self, name: &str, scenario: &Arc<Scenario>) -> RunChange {
+        let is_of_same_name = self.runs.name() == name;
         if !is_of_same_name {
+            self.runs.set_file(scenario);
             self.values.next_push = NextPush::of(scenario);
         }
         let run = self.runs.present();
-        if let Some(push) = run.next_push.clone() {
-            self.values.next_push = push;
+        if let Some(push) = &run.next_push {
+            self.values.next_push = push.clone();
         }
         self.values.suit(scenario);
         RunChange::Returns {
@@ -388,12 +369,14 @@ impl Edits {
             EditMessage::Text(text) => Some(text),
             EditMessage::Value(key) => Some(self.value_in_words(&key, player)),
         };
-        let is_replaying = player.is_replaying();
+        let is_going = player.is_replaying()
+            || matches!(
+                edit.change,
+                RunChange::ContinuesAt(_) | RunChange::Returns { .. }
+            );
         Done {
             said,
-            under_way: edit
-                .under_way
-                .or(is_replaying.then_some(PendingAction::Going)),
+            under_way: is_going.then_some(PendingAction::Going),
             ..Done::SILENT
         }
     }
@@ -421,14 +404,4 @@ fn is_of_a_push_that_is_over(key: &str, player: &Player) -> bool {
     let (_, pushes) = in_force(simulation.scenario(), step);
     let push = number_of_push(key).and_then(|number| pushes.get(number));
     push.is_some_and(|push| acts_s(push, simulation.scenario()).1 <= time_s)
-}
-
-/// The acts that set the keys of `table`: an edit, a description, or both.
-fn acts(table: Table) -> Vec<Act> {
-    let (idle, acting): (Table, Table) = table
-        .into_iter()
-        .partition(|(key, _)| Effect::of_key(key) == Effect::None);
-    let edit = (!acting.is_empty()).then_some(Act::Edit(acting));
-    let description = (!idle.is_empty()).then_some(Act::Describe(idle));
-    edit.into_iter().chain(description).collect()
 }

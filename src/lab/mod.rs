@@ -7,7 +7,7 @@
 //! |---|---|---|
 //! | [`Player`] | step, speed, cursor's numbers, readouts | `step`, `go_to`, `run_until`, `run`, `pause`, `speed` |
 //! | [`Comparison`] | exact motion, ghost, pinned run, measured data | `exact`, `pin`, `measured` |
-//! | [`Edits`] | history of runs, values, push to come | `open`, `set`, `nudge`, `push`, `next_push`, `undo`, `redo`, `take_advice` |
+//! | [`Edits`] | journal of the runs, values, push to come | `open`, `set`, `nudge`, `push`, `next_push`, `undo`, `redo`, `take_advice` |
 //! | [`Adviser`] | search for advice, offer | |
 //! | [`View`] | `[view]`, focus, window, cursor | every key of `[view]`, `since_s`, `magnify`, `cursor`, `fill`, `point_at` |
 //! | [`StepPane`] | workings of a time step | |
@@ -310,17 +310,17 @@ impl Lab {
         confined: Option<&Confined>,
         view: impl FnOnce(&Scenario) -> View,
     ) -> Result<Self, Unreadable> {
-        let (history, scenario, pinned, place) = session::kept(content)?;
+        let (journal, scenario, pinned, place) = session::kept(content)?;
         let mut view = view(&scenario);
         place.restore(&mut view)?;
-        let (name, end_s) = (history.present().name.clone(), history.present().end_s);
+        let (name, end_s) = (journal.present().name.clone(), journal.present().end_s);
         let mut lab = Self::new(&name, Arc::clone(&scenario), view, false);
         if let Some(folder) = confined {
             lab.files.confine(folder.clone());
         }
         let file = lab.files.open_scenario(&name).map_or(scenario, Arc::new);
         lab.edits
-            .resume(history, &file, place.next_push.clone(), &lab.player);
+            .resume(journal, &file, place.next_push.clone(), &lab.player);
         let Snapshot {
             step,
             speed,

@@ -115,13 +115,8 @@ impl Player {
         }
     }
 
-    /// Changes to the run of `scenario`, which ends at `end_s` if that is given.
-    pub(super) fn change_run(
-        &mut self,
-        change: RunChange,
-        scenario: &Arc<Scenario>,
-        end_s: Option<f64>,
-    ) {
+    /// Changes to the run of `scenario`, which ends at `end_s`.
+    pub(super) fn change_run(&mut self, change: RunChange, scenario: &Arc<Scenario>, end_s: f64) {
         if !matches!(change, RunChange::Described | RunChange::BeginsAnew { .. }) {
             self.replay = None;
         }
@@ -147,7 +142,7 @@ impl Player {
             _ if change.is_of_other_name() => self.open(scenario),
             RunChange::Returns { .. } | RunChange::Opens => self.restart(scenario),
         }
-        self.end_s = end_s.unwrap_or(self.end_s);
+        self.end_s = end_s;
         if let RunChange::Returns { left_at, .. } = change {
             self.seek(left_at, SeekPurpose::Resume);
         }

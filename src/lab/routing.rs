@@ -330,12 +330,11 @@ impl Lab {
         let scenario = Document::parse(&snapshot.name, &snapshot.run)?.scenario()?;
         self.take_commands(Commands::default());
         self.edits.values.forget_nudge();
-        let mut edit = self
+        let edit = self
             .edits
             .open(&snapshot.name, Arc::new(scenario), &self.player);
-        edit.end_s = snapshot.end_s;
         if let Some(end_s) = snapshot.end_s {
-            self.edits.runs.set_end(end_s);
+            self.edits.runs.journal_mut().set_end(end_s);
         }
         self.apply(edit);
         self.view.keep_focus();

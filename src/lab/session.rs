@@ -1,4 +1,4 @@
-//! The content of a session: the history of runs, and the present snapshot, each as TOML.
+//! The content of a session: the journal of its runs, and the present snapshot, each as TOML.
 
 use super::comparison::Comparison;
 use super::edits::Edits;
@@ -8,11 +8,10 @@ use super::snapshot::Snapshot;
 use super::view::{Pane, View};
 use crate::engine::data::{ColumnOptions, ColumnSigma};
 use crate::engine::journal::Journal;
-use crate::engine::journal::history::History;
 use crate::engine::journal::next_push::NextPush;
 use crate::engine::scenario::csv::Renaming;
 use crate::engine::scenario::file::ScenarioFile;
-use crate::engine::scenario::{Problems, Scenario, keys};
+use crate::engine::scenario::{Document, Problems, Scenario, keys};
 use crate::engine::text::printable::PrintablePath;
 use crate::lab::storage::session::{SessionContent, SharedText, later};
 use serde::{Deserialize, Serialize};
@@ -22,7 +21,7 @@ use toml::{Table, Value};
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct KeptRuns {
-    history: History,
+    journal: Journal,
     pinned: Option<KeptPinned>,
 }
 
@@ -39,10 +38,12 @@ pub(super) struct KeptPinned {
 impl KeptPinned {
     /// What is to be pinned again.
     pub(super) fn reference(self) -> Result<Reference, Problems> {
-        let run = self.run.map(|file| Journal::of(file).scenario());
+        let run = self
+            .run
+            .map(|file| Document::from_file("the pinned run", &file)?.scenario());
         Ok(Reference {
             step: self.step,
-            run: run.transpose()?,
+            run: run.transpose()?.map(Arc::new),
         })
     }
 }
@@ -82,10 +83,10 @@ impl SessionSummary {
     pub fn read(content: &SessionContent) -> Result<Self, Unreadable> {
         let runs: KeptRuns = read("the run", &content.work)?;
         let place: KeptPlace = read("the place in it", &content.place)?;
-        let present = runs.history.present();
+        let present = runs.journal.present();
         Ok(Self {
             name: present.name.clone(),
-            title: present.journal.file().title,
+            title: runs.journal.file().title,
             step: place.snapshot.step,
         })
     }
@@ -101,15 +102,15 @@ pub fn lessons_in(content: &SessionContent) -> Table {
     read("the place in it", &content.place).map_or(Table::new(), |place: KeptPlace| place.lessons)
 }
 
-/// `history` as a session keeps it, with the pinned run. The text is written by the thread that first reads it.
-pub(super) fn written(history: &History, reference: Option<&Reference>) -> SharedText {
-    let (history, reference) = (history.clone(), reference.cloned());
+/// `journal` as a session keeps it, with the pinned run. The text is written by the thread that first reads it.
+pub(super) fn written(journal: &Journal, reference: Option<&Reference>) -> SharedText {
+    let (journal, reference) = (journal.clone(), reference.cloned());
     later(move || {
         let pinned = reference.map(|reference| KeptPinned {
             step: reference.step,
             run: reference.run.map(|scenario| scenario.file.clone()),
         });
-        toml::to_string(&KeptRuns { history, pinned }).unwrap_or_default()
+        toml::to_string(&KeptRuns { journal, pinned }).unwrap_or_default()
     })
 }
 
@@ -120,16 +121,16 @@ fn read<'a, T: Deserialize<'a>>(what: &str, text: &'a str) -> Result<T, Unreadab
     })
 }
 
-/// What the content of a session holds: the history and its present scenario, the pinned run, the place.
-pub(super) type KeptContent = (History, Arc<Scenario>, Option<KeptPinned>, KeptPlace);
+/// What the content of a session holds: the journal and its present scenario, the pinned run, the place.
+pub(super) type KeptContent = (Journal, Arc<Scenario>, Option<KeptPinned>, KeptPlace);
 
 pub(super) fn kept(content: &SessionContent) -> Result<KeptContent, Unreadable> {
-    let KeptRuns { history, pinned } = read("the run", &content.work)?;
+    let KeptRuns { journal, pinned } = read("the run", &content.work)?;
     let place = read("the place in it", &content.place)?;
-    let scenario = history
+    let scenario = journal
         .scenario()
         .map_err(|problems| Unreadable(problems.in_one_line()))?;
-    Ok((history, scenario, pinned, place))
+    Ok((journal, scenario, pinned, place))
 }
 
 impl KeptPlace {

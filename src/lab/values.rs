@@ -100,11 +100,11 @@ impl Values {
         words.trim_end().to_owned()
     }
 
-    /// Whether a nudge of `key` at `now` joins the nudge before into one act.
-    pub(super) fn is_nudged_again(&self, key: &str, now: Duration) -> bool {
-        self.last_nudged
-            .as_ref()
-            .is_some_and(|(last, at)| *last == key && now.saturating_sub(*at) < BELONGS)
+    /// Returns whether a nudge of `key` at `now` and the nudge before it are one act.
+    pub(super) fn coalesces_with_last_nudge(&self, key: &str, now: Duration) -> bool {
+        let belongs =
+            |(last, at): &(String, Duration)| *last == key && now.saturating_sub(*at) < BELONGS;
+        self.last_nudged.as_ref().is_some_and(belongs)
     }
 
     pub(super) fn note_nudge(&mut self, key: &str, now: Duration) {
@@ -225,17 +225,16 @@ fn rank(group: &str) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::journal::history::History;
     use crate::lab::for_tests::scenario;
     use std::sync::Arc;
 
     fn listed() -> (Values, Arc<Scenario>) {
         let scenario = scenario();
         let run = LiveRun::new(Arc::clone(&scenario));
-        let history = History::new("method-2", &scenario);
+        let journal = Journal::new("method-2", &scenario);
         let mut values = Values::new(&scenario);
-        values.list_again(&run, &history.present().journal);
-        assert!(!values.is_outdated(0, &history.present().journal));
+        values.list_again(&run, &journal);
+        assert!(!values.is_outdated(0, &journal));
         (values, scenario)
     }
 

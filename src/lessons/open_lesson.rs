@@ -35,8 +35,8 @@ pub struct OpenLesson {
     pub has_answered: bool,
     /// The lines of the checks of this page that have held.
     reached: BTreeSet<usize>,
-    /// Where the lab stood when it had carried out the blocks that the page stands on: depth of its history, and step.
-    arrived_at: Option<((usize, usize), u64)>,
+    /// Where the lab stood when it had carried out the blocks that the page stands on: acts done, and step.
+    arrived_at: Option<(usize, u64)>,
     /// Whether the hints of the page's checks are shown.
     pub shows_hints: bool,
     under_way: Option<PendingBlock>,
@@ -391,9 +391,9 @@ impl OpenLesson {
     }
 }
 
-/// Where the lab arrived_at: the depth of its history, and the step.
-fn place_of(lab: &Lab) -> ((usize, usize), u64) {
-    (lab.runs().depth(), lab.player().step_number())
+/// Where the lab stands: the number of acts done, and the step.
+fn place_of(lab: &Lab) -> (usize, u64) {
+    (lab.runs().journal().done(), lab.player().step_number())
 }
 
 fn holds(check: &super::Check, lab: &Lab, kept: &super::KeptNumbers) -> bool {

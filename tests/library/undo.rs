@@ -8,6 +8,7 @@ use gyrolab::lab::command::Command;
 use gyrolab::tui::keymap::{Key, Mode};
 use proptest::prelude::*;
 use std::time::Duration;
+use toml::{Table, Value};
 
 #[test]
 fn a_length_taken_back_is_in_seconds_what_it_was() {
@@ -88,12 +89,16 @@ fn a_push_is_over_by_its_seconds() {
     assert!(said.contains("is over"), "{said}");
 }
 
+fn one(key: &str, value: Value) -> Table {
+    Table::from_iter([(key.to_owned(), value)])
+}
+
 /// An act of one of four kinds, with the number `value`.
 fn act(kind: u8, value: f64) -> Act {
     match kind {
-        0 => Act::set("motion.gravity_m_per_s2", value.into()),
-        1 => Act::set("title", format!("title {value}").into()),
-        2 => Act::set("push.0.force_N.1", value.into()),
+        0 => Act::Edit(one("motion.gravity_m_per_s2", value.into())),
+        1 => Act::Metadata(one("title", format!("title {value}").into())),
+        2 => Act::Edit(one("push.0.force_N.1", value.into())),
         _ => Act::Push(PushFile {
             point: "top".to_owned(),
             force_N: [value, 0.0, 0.0],
@@ -114,25 +119,25 @@ proptest! {
                      [[edit]]\nstep = 60\nset = { 'push.0.force_N' = [0, 0, -1] }\n";
         let text = gyrolab::engine::scenario::presets::find("wobble-push").unwrap().text;
         let document = Document::parse("edited", &format!("{text}{edits}")).unwrap();
-        let mut journal = Journal::of(document.scenario().unwrap().file);
+        let mut journal = Journal::new("edited", &document.scenario().unwrap());
         let (mut past, mut future) = (Vec::new(), Vec::new());
         for (kind, step, value) in ways {
             let before = journal.file();
             match kind {
                 4 | 5 => {
                     let Some(file) = past.pop() else { break };
-                    prop_assert!(journal.undo().is_some());
+                    prop_assert!(!journal.undo().is_empty());
                     prop_assert_eq!(journal.file(), file);
                     future.push(before);
                 }
                 6 | 7 => {
-                    prop_assert_eq!(journal.redo().is_some(), !future.is_empty());
+                    prop_assert_eq!(journal.redo().is_empty(), future.is_empty());
                     let Some(file) = future.pop() else { continue };
                     prop_assert_eq!(journal.file(), file);
                     past.push(before);
                 }
                 kind => {
-                    journal.act(step, act(kind, f64::from(value)), false).unwrap();
+                    journal.perform(step, vec![act(kind, f64::from(value))], false).unwrap();
                     past.push(before);
                     future.clear();
                 }

@@ -1,91 +1,116 @@
-//! What a user does to a run: its journal, from which everything else, any earlier state and any export, is computed again.
+//! What a user does to the runs of a session. Everything else, any earlier state and any export, is computed from it.
 //!
-//! A [`Journal`] is a scenario and the acts of the user, each at a step. An act has its effect from the next step on. When
-//! the user goes back and acts at an earlier step, the entries at later steps are dropped. Undo takes the last entry back;
-//! redo does it again. The journal lists all acts in the order in which the user did them. Which entries are in force is
-//! computed from their steps: an entry that a newer one dropped stays in the list, and is in force again once the newer
-//! one is undone.
+//! A [`Journal`] is one list of [acts](Act) with a cursor. An act begins a run, or changes the present run at a step, with
+//! effect from the next step on. Undo moves the cursor back, redo moves it forward, and a new act drops the acts behind it.
+//! An act at an earlier step makes the acts at later steps ineffective. They stay in the list and become effective again
+//! once that act is undone.
 //!
-//! - [`history`] keeps the journals of all runs of a session and undoes and redoes across them.
+//! - [`run_file`] computes the run file of the present run from the acts in force.
 //! - [`parameters`] lists and changes the values of a scenario, [`next_push`] those of the push that the user prepares.
 //! - [`expression`] reads and evaluates conditions over a run's numbers.
-//! - [`restart`] makes the scenario that starts where a run stands, and the one that follows an advice; [`changed`] says how
-//!   a scenario differs from its file.
+//! - [`restart`] makes the scenario that starts from a state of a run, and the one that follows an advice; [`changed`] says
+//!   how a scenario differs from its file.
 
 pub mod changed;
 pub mod expression;
-pub mod history;
 pub mod next_push;
 pub mod parameters;
 pub mod restart;
+mod run_file;
 
 pub use crate::scenario::dotted::number_of_push;
 
-use crate::scenario::file::{EditFile, PushFile, ScenarioFile};
+use crate::run::Clock;
+use crate::scenario::file::{PushFile, ScenarioFile};
 use crate::scenario::keys::Effect;
-use crate::scenario::{Document, Problems, Scenario, float, rescale};
+use crate::scenario::{Problems, Scenario};
 use crate::text::printable::brief;
+use next_push::NextPush;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
-use toml::{Table, Value};
+use toml::Table;
 
-const ORIGIN: &str = "the run";
+const MOST_RUNS: usize = 200;
+/// The most points and parts that the bodies of the earlier runs have together; it limits the memory.
+const MOST_HISTORY_POINTS: usize = 200_000;
 /// The most characters of a value that a message shows.
 const LONGEST_VALUE: usize = 30;
 
-/// A scenario and what the user did to it.
+/// The acts of a session, in the order in which the user did them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Journal {
-    base: Arc<ScenarioFile>,
-    /// All acts in the order in which the user did them, including those that newer ones have dropped.
+    /// The number of acts at the end of the list that are undone.
+    undone: usize,
+    /// The run before all acts.
+    first: RunRecord,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    log: Vec<Arc<JournalEntry>>,
-    /// Undone entries, the one undone last at the end: redo takes it first.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    undone: Vec<Arc<JournalEntry>>,
+    entries: Vec<Arc<JournalEntry>>,
 }
 
-/// One act of the user, and the step at which it was done.
+/// An act, and the step of its run at which it was done.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct JournalEntry {
-    step: u64,
+pub struct JournalEntry {
+    pub step: u64,
     /// Whether the entry is an edit that the opened file contained.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    from_file: bool,
-    /// Whether it is one more nudge of the same value: undo takes it back together with the entry before it.
+    is_from_file: bool,
+    /// Whether undo takes it back together with the entry before it.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    is_chained: bool,
-    /// What the user did. It must stay the last field: TOML writes it as a table, and the serializer of `toml` moves the
-    /// whole text that follows for each value that it meets after a table.
-    act: Act,
+    is_joined: bool,
+    /// It must stay the last field: TOML writes it as a table, and the serializer of `toml` moves the whole text that
+    /// follows for each value that it meets after a table.
+    pub act: Act,
 }
 
-/// What can be done to a run without beginning a new one.
+/// What the user did.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Act {
-    Push(PushFile),
     /// Sets keys of `motion` or `push`, with effect from the next step on.
     Edit(Table),
+    Push(PushFile),
     /// Sets keys on which no number of the run depends: title, number of steps, `[view]`.
-    Describe(Table),
+    Metadata(Table),
+    /// Leaves the present run and begins this one.
+    Begin(RunRecord),
+}
+
+/// A run as it was begun, and how it was left.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RunRecord {
+    /// The name under which the user opened the scenario: a preset or a file.
+    pub name: String,
+    /// The step at which the user left it.
+    pub left_at: u64,
+    /// Time at which the run ends, s. An edit of the time step changes the number of steps, not this time.
+    pub end_s: f64,
+    /// The push that the user had prepared when they left the run.
+    pub next_push: Option<NextPush>,
+    /// The opened file without its edits, each of which is an entry.
+    base: Arc<ScenarioFile>,
 }
 
 impl Act {
-    /// Sets `key` to `value`: a [`Describe`](Self::Describe) where the key has no effect on the numbers, else an
-    /// [`Edit`](Self::Edit).
-    pub fn set(key: &str, value: Value) -> Self {
-        let set = Table::from_iter([(key.to_owned(), value)]);
-        match Effect::of_key(key) {
-            Effect::None => Self::Describe(set),
-            Effect::FromHere | Effect::NewRun => Self::Edit(set),
-        }
+    /// Returns the acts that set the keys of `table`, none of which begins a new run: an edit, metadata, or both.
+    pub fn set(table: Table) -> Vec<Self> {
+        let has_no_effect = |key: &str| Effect::of_key(key) == Effect::None;
+        let (metadata, edit): (Table, Table) =
+            table.into_iter().partition(|(key, _)| has_no_effect(key));
+        let acts = [Self::Edit(edit), Self::Metadata(metadata)];
+        let sets_keys =
+            |act: &Self| !matches!(act, Self::Edit(set) | Self::Metadata(set) if set.is_empty());
+        acts.into_iter().filter(sets_keys).collect()
+    }
+
+    pub fn is_metadata(&self) -> bool {
+        matches!(self, Self::Metadata(_))
     }
 
     pub fn in_words(&self) -> String {
         match self {
             Self::Push(push) => format!("the push on {}", push.point),
-            Self::Edit(set) | Self::Describe(set) => {
+            Self::Begin(run) => format!("the run of {}", run.name),
+            Self::Edit(set) | Self::Metadata(set) => {
                 let words = set.iter().map(|(key, value)| {
                     format!("{key} = {}", brief(&value.to_string(), LONGEST_VALUE))
                 });
@@ -96,270 +121,240 @@ impl Act {
 }
 
 impl JournalEntry {
-    /// Whether it has its effect later than an act done at `step` would. A description belongs to no step.
+    /// Returns whether it takes effect after `step`. Metadata belongs to no step.
     fn is_later_than(&self, step: u64) -> bool {
-        self.step > step && !self.is_description()
+        self.step > step && !self.act.is_metadata()
     }
 
-    fn is_description(&self) -> bool {
-        matches!(self.act, Act::Describe(_))
-    }
-
-    /// Whether it may be joined with other edits at the same step. An edit that adds a push may not: a TOML table sorts its
-    /// keys as text, `push.10` before `push.9`, and pushes must be added in the order of their numbers.
-    fn may_be_joined(&self) -> bool {
-        let adds = matches!(&self.act, Act::Edit(set) if set.values().any(Value::is_table));
-        !self.from_file && !adds
+    fn run(&self) -> Option<&RunRecord> {
+        match &self.act {
+            Act::Begin(run) => Some(run),
+            _ => None,
+        }
     }
 }
 
+/// Returns the run of `scenario`, opened as `name`, and the edits of its file as entries, joined to its beginning or not.
+fn opened(name: &str, scenario: &Scenario, is_joined: bool) -> (RunRecord, Vec<Arc<JournalEntry>>) {
+    let mut base = scenario.file.clone();
+    let edits = std::mem::take(&mut base.edit).into_iter().map(|edit| {
+        Arc::new(JournalEntry {
+            step: edit.step,
+            is_from_file: true,
+            is_joined,
+            act: Act::Edit(edit.set),
+        })
+    });
+    let run = RunRecord {
+        name: name.to_owned(),
+        left_at: 0,
+        end_s: Clock::end_s(scenario),
+        next_push: None,
+        base: Arc::new(base),
+    };
+    (run, edits.collect())
+}
+
+/// The list and its cursor.
 impl Journal {
-    /// The journal of a run file: the file without its edits is the base, and each edit is an entry.
-    pub fn of(mut file: ScenarioFile) -> Self {
-        let entry = |edit: EditFile| {
-            Arc::new(JournalEntry {
-                step: edit.step,
-                act: Act::Edit(edit.set),
-                from_file: true,
-                is_chained: false,
-            })
-        };
-        let edits = std::mem::take(&mut file.edit).into_iter();
+    /// Creates a journal whose only run is that of `scenario`, opened as `name`.
+    pub fn new(name: &str, scenario: &Scenario) -> Self {
+        let (first, entries) = opened(name, scenario, false);
         Self {
-            log: edits.map(entry).collect(),
-            base: Arc::new(file),
-            undone: Vec::new(),
+            undone: 0,
+            first,
+            entries,
         }
     }
 
-    pub fn base(&self) -> &ScenarioFile {
-        &self.base
+    /// Returns the number of entries before the cursor. Undo lessens it.
+    pub fn done(&self) -> usize {
+        self.entries.len().saturating_sub(self.undone)
     }
 
-    pub fn file(&self) -> ScenarioFile {
-        let file = self.document(&self.in_force()).and_then(|it| it.file());
-        file.unwrap_or_else(|_| (*self.base).clone()) // each entry was checked when it was made
+    /// Returns the number of entries up to the beginning of the present run.
+    fn begun(&self) -> usize {
+        let last = self.entries[..self.done()]
+            .iter()
+            .rposition(|entry| entry.run().is_some());
+        last.map_or(0, |last| last + 1)
     }
 
-    /// The checked scenario of the run file. A journal that was changed by [`act`](Self::act) alone has no errors.
-    pub fn scenario(&self) -> Result<Arc<Scenario>, Problems> {
-        self.scenario_with(&self.in_force())
+    pub fn present(&self) -> &RunRecord {
+        let begun = self.begun().checked_sub(1);
+        begun
+            .and_then(|index| self.entries[index].run())
+            .unwrap_or(&self.first)
     }
 
-    fn scenario_with(&self, entries: &[&JournalEntry]) -> Result<Arc<Scenario>, Problems> {
-        self.document(entries)?.scenario().map(Arc::new)
-    }
-
-    /// The scenario as it was when its number of steps was set last: by the opened file, or by a later `motion.steps`.
-    pub fn when_steps_were_set(&self) -> Result<Arc<Scenario>, Problems> {
-        let sets_steps = |entry: &JournalEntry| match &entry.act {
-            Act::Describe(set) => set.contains_key("motion.steps"),
-            Act::Edit(_) | Act::Push(_) => entry.from_file,
-        };
-        let entries = self.in_force();
-        let last = entries.iter().rposition(|entry| sets_steps(entry));
-        self.scenario_with(&entries[..last.map_or(0, |last| last + 1)])
-    }
-
-    /// The run up to `step`: it has that many steps (at least one), and no later entry.
-    pub fn scenario_until(&self, step: u64) -> Result<Arc<Scenario>, Problems> {
-        let mut document = self.document(&self.in_force_by(step))?;
-        let steps = i64::try_from(step.max(1)).unwrap_or(i64::MAX);
-        document.write("motion.steps", steps.into())?;
-        document.scenario().map(Arc::new)
-    }
-
-    /// The entries in force, in the order in which they were done: those that no newer entry has dropped. Descriptions
-    /// are never dropped and drop nothing. Neither do edits of the opened file, which may have any order.
-    fn in_force(&self) -> Vec<&JournalEntry> {
-        let mut earliest = u64::MAX; // smallest step of the newer entries
-        let is_in_force = |entry: &&Arc<JournalEntry>| {
-            let is_in_force = !entry.is_later_than(earliest);
-            if !entry.from_file && !entry.is_description() {
-                earliest = earliest.min(entry.step);
-            }
-            is_in_force
-        };
-        let newest_first = self.log.iter().rev().filter(is_in_force);
-        let mut entries: Vec<_> = newest_first.map(|entry| &**entry).collect();
-        entries.reverse();
-        entries
-    }
-
-    /// The entries in force that have an effect by `step`; descriptions always do.
-    fn in_force_by(&self, step: u64) -> Vec<&JournalEntry> {
-        let mut entries = self.in_force();
-        entries.retain(|entry| !entry.is_later_than(step));
-        entries
-    }
-
-    /// The base with the pushes and edits of `entries`, and what they describe.
-    fn moved_by(&self, entries: &[&JournalEntry]) -> (ScenarioFile, Table) {
-        let mut file = (*self.base).clone();
-        let mut described = Table::new();
-        // The step of the last edit, where another may be joined with it.
-        let mut open = None;
-        for entry in entries {
-            match &entry.act {
-                Act::Describe(set) => described.extend(set.clone()),
-                Act::Push(push) => file.push.push(push.clone()),
-                Act::Edit(set) => {
-                    let (step, set) = (entry.step, set.clone());
-                    match file.edit.last_mut() {
-                        Some(last) if open == Some(step) && entry.may_be_joined() => {
-                            last.set.extend(set);
-                        }
-                        _ => {
-                            file.edit.push(EditFile { step, set });
-                            open = (!entry.from_file).then_some(step);
-                        }
-                    }
-                }
-            }
+    fn present_mut(&mut self) -> &mut RunRecord {
+        if let Some(index) = self.begun().checked_sub(1)
+            && let Act::Begin(run) = &mut Arc::make_mut(&mut self.entries[index]).act
+        {
+            return run;
         }
-        (file, described)
+        &mut self.first
     }
 
-    fn document(&self, entries: &[&JournalEntry]) -> Result<Document, Problems> {
-        let (file, described) = self.moved_by(entries);
-        let mut document = Document::from_file(ORIGIN, &file)?;
-        for (key, value) in described {
-            document.write(&key, value)?;
-        }
-        Ok(document)
+    /// Records the step at which the present run is left and the push that the user has prepared. Call it before any method
+    /// that may leave the present run.
+    pub fn set_left_at(&mut self, step: u64, next_push: &NextPush) {
+        let run = self.present_mut();
+        run.left_at = step;
+        run.next_push = Some(next_push.clone());
     }
 
-    pub fn acts(&self) -> usize {
-        self.log.len()
-    }
-
-    /// Whether the last act was a push at `step`.
-    pub fn ends_with_push_at(&self, step: u64) -> bool {
-        let last = self.log.last();
-        last.is_some_and(|entry| entry.step == step && matches!(entry.act, Act::Push(_)))
-    }
-
-    /// How many entries in force stand at steps later than `step`.
-    pub fn later_than(&self, step: u64) -> usize {
-        self.in_force().len() - self.count_by(step)
-    }
-
-    /// Does `act` at `step` and returns the run's new scenario. With `is_again` it is one more nudge of the value that the
-    /// last entry set: undo takes all nudges of this chain back at once.
-    pub fn act(&mut self, step: u64, act: Act, is_again: bool) -> Result<Arc<Scenario>, Problems> {
-        let act = match act {
-            Act::Push(push) => self.push_with_new_number(push),
-            act => act,
-        };
-        self.log.push(Arc::new(JournalEntry {
-            step,
-            act,
-            from_file: false,
-            is_chained: is_again && !self.log.is_empty(),
-        }));
-        let scenario = self.scenario();
-        match &scenario {
-            Ok(_) => self.undone.clear(),
-            Err(_) => drop(self.log.pop()),
-        }
-        scenario
-    }
-
-    /// The act that adds `push` to the run: a `[[push]]` table. Where edits have added pushes, one more table would change
-    /// their numbers, so the push is then added by one more edit.
-    fn push_with_new_number(&self, push: PushFile) -> Act {
-        let (file, _) = self.moved_by(&self.in_force());
-        let set = file.edit.iter().flat_map(|edit| edit.set.keys());
-        let last = set.filter_map(|key| number_of_push(key)).max();
-        match (last, Table::try_from(&push)) {
-            (Some(last), Ok(table)) if last >= file.push.len() => {
-                let key = format!("push.{}", last + 1);
-                Act::Edit(Table::from_iter([(key, Value::Table(table))]))
-            }
-            _ => Act::Push(push),
-        }
-    }
-
-    /// Takes the last entry back, or all nudges of its chain. Entries that they had dropped are in force again. Returns the
-    /// step of the first entry taken back and the act of the last one; `None` where there is no entry.
-    pub fn undo(&mut self) -> Option<(u64, Act)> {
-        let last = self.log.last()?.act.clone();
-        loop {
-            let entry = self.log.pop()?;
-            let (step, is_chained) = (entry.step, entry.is_chained);
-            self.undone.push(entry);
-            if !is_chained {
-                return Some((step, last));
-            }
-        }
-    }
-
-    /// Does again what was undone last: an entry, or all nudges of a chain. Returns the step of the first of them and the
-    /// act of the last one; `None` where nothing is undone.
-    pub fn redo(&mut self) -> Option<(u64, Act)> {
-        let first = self.undone.last()?.step;
-        loop {
-            let entry = self.undone.pop()?;
-            let act = entry.act.clone();
-            self.log.push(entry);
-            if !self.undone.last().is_some_and(|next| next.is_chained) {
-                return Some((first, act));
-            }
-        }
-    }
-
-    /// Whether nothing was done to the run since its file was opened: all edits are the file's own.
-    pub fn is_as_opened(&self) -> bool {
-        self.log.iter().all(|entry| entry.from_file)
+    /// Sets the time at which the present run ends, s.
+    pub fn set_end(&mut self, end_s: f64) {
+        self.present_mut().end_s = end_s;
     }
 
     /// Drops what was undone: it can no longer be redone.
-    pub fn forget_undone(&mut self) {
-        self.undone.clear();
+    fn drop_undone(&mut self) {
+        self.entries.truncate(self.done());
+        self.undone = 0;
     }
 
-    /// How many entries in force were done at `step` or earlier, descriptions of any step included.
-    pub fn count_by(&self, step: u64) -> usize {
-        self.in_force_by(step).len()
+    /// Leaves the present run and begins that of `scenario`, opened as `name`.
+    pub fn begin(&mut self, name: &str, scenario: &Scenario) {
+        self.begin_run(name, scenario, false);
     }
 
-    /// How many pushes the run has at `step`, past and future ones: those of the scenario, and those that the user has
-    /// added at `step` or earlier.
-    pub fn pushes_by(&self, step: u64) -> usize {
-        let mut added = self.in_force();
-        added.retain(|entry| entry.step <= step && matches!(entry.act, Act::Push(_)));
-        self.base.push.len() + added.len()
+    /// Leaves the present run and begins that of `scenario`, which follows the advice about it. One undo returns to the
+    /// present run, whatever edits the new one has from it.
+    pub fn begin_as_advised(&mut self, scenario: &Scenario) {
+        self.begin_run(&self.present().name.clone(), scenario, true);
     }
 
-    /// A new run with the values of `set`. From its start on it has the gravity, scheme, time step and pushes that this run
-    /// has at `step`.
-    pub fn begun_with(&self, step: u64, set: &Table) -> Result<Arc<Scenario>, Problems> {
-        parameters::changed(&self.settings_at(step)?, set).map(Arc::new)
+    fn begin_run(&mut self, name: &str, scenario: &Scenario, joins_edits: bool) {
+        let (run, edits) = opened(name, scenario, joins_edits);
+        self.drop_undone();
+        self.entries.push(Arc::new(JournalEntry {
+            step: 0,
+            is_from_file: false,
+            is_joined: false,
+            act: Act::Begin(run),
+        }));
+        self.entries.extend(edits);
+        self.drop_oldest();
     }
 
-    /// The base with gravity, scheme, time step and its own pushes as they are at `step`, without added pushes. The base
-    /// keeps its time step where its pushes cannot be rescaled to the new one.
-    fn settings_at(&self, step: u64) -> Result<ScenarioFile, Problems> {
-        let mut document = Document::from_file(ORIGIN, &self.base)?;
-        let mut time_step_s = self.base.motion.time_step_s;
-        for entry in self.in_force_by(step) {
-            let (Act::Edit(set) | Act::Describe(set)) = &entry.act else {
-                continue;
-            };
-            for (key, value) in set {
-                if key == "motion.time_step_s" {
-                    time_step_s = float(value).unwrap_or(time_step_s);
-                } else if number_of_push(key).is_none_or(|number| number < self.base.push.len()) {
-                    document.write(key, value.clone())?;
-                }
-            }
+    /// Drops the oldest runs beyond [`MOST_RUNS`] and [`MOST_HISTORY_POINTS`]; the newest earlier run always stays.
+    fn drop_oldest(&mut self) {
+        let earlier = self.entries[..self.begun().saturating_sub(1)]
+            .iter()
+            .enumerate();
+        let begun = earlier
+            .rev()
+            .filter_map(|(index, entry)| Some((index + 1, entry.run()?)));
+        let mut points = 0;
+        let kept = begun
+            .chain([(0, &self.first)])
+            .enumerate()
+            .take_while(|(nth, (_, run))| {
+                points += run.base.body.point.len() + run.base.body.part.len();
+                *nth == 0 || (*nth < MOST_RUNS && points <= MOST_HISTORY_POINTS)
+            });
+        if let Some((begun, first)) = kept.last().map(|(_, (begun, run))| (begun, run.clone())) {
+            self.first = first;
+            self.entries.drain(..begun);
         }
-        let file = document.file()?;
-        Ok(if time_step_s == file.motion.time_step_s {
-            file
-        } else {
-            rescale::at_time_step(&file, time_step_s).unwrap_or(file)
-        })
+    }
+
+    /// Does `acts` at `step` of the present run as one act, and returns the run's new scenario. With `coalesces` they are
+    /// one more nudge of the same value: one undo takes them back together with the act before.
+    ///
+    /// # Errors
+    /// Why an act is refused; nothing has changed then.
+    pub fn perform(
+        &mut self,
+        step: u64,
+        acts: Vec<Act>,
+        coalesces: bool,
+    ) -> Result<Arc<Scenario>, Problems> {
+        let mut changed = self.clone();
+        changed.drop_undone();
+        let coalesces = coalesces && changed.done() > changed.begun();
+        for (index, act) in acts.into_iter().enumerate() {
+            let act = match act {
+                Act::Push(push) => changed.added(push),
+                act => act,
+            };
+            changed.entries.push(Arc::new(JournalEntry {
+                step,
+                is_from_file: false,
+                is_joined: coalesces || index > 0,
+                act,
+            }));
+        }
+        let scenario = changed.scenario()?;
+        if changed.steps() != self.steps() {
+            changed.set_end(Clock::end_s(&scenario));
+        }
+        *self = changed;
+        Ok(scenario)
+    }
+
+    /// Begins a new run, opened under the same name, and does `acts` at its step 0. It is the present run as it moves where
+    /// it was left, with the values of `set`; see [`begun_with`](Self::begun_with). With `coalesces`, one more nudge of the
+    /// value that began the present run, it replaces the present run: one undo then returns to the run before both.
+    ///
+    /// # Errors
+    /// Why a value or an act is refused; nothing has changed then.
+    pub fn begin_with(
+        &mut self,
+        set: &Table,
+        acts: Vec<Act>,
+        coalesces: bool,
+    ) -> Result<Arc<Scenario>, Problems> {
+        let mut changed = self.clone();
+        if let Some(beginning) = self.begun().checked_sub(1).filter(|_| coalesces) {
+            changed.entries.truncate(beginning);
+            changed.undone = 0;
+        }
+        let left = changed.present();
+        let (name, left_at) = (left.name.clone(), left.left_at);
+        let mut scenario = Arc::new(changed.begun_with(left_at, set)?);
+        changed.begin(&name, &scenario);
+        if !acts.is_empty() {
+            scenario = changed.perform(0, acts, false)?;
+        }
+        *self = changed;
+        Ok(scenario)
+    }
+
+    /// Undoes the last act with those joined to it. Returns them; none where nothing was done.
+    pub fn undo(&mut self) -> &[Arc<JournalEntry>] {
+        let done = &self.entries[..self.done()];
+        let last = done.iter().rposition(|entry| !entry.is_joined);
+        self.move_cursor(last.unwrap_or(0))
+    }
+
+    /// Does again what was undone last, an act with those joined to it. Returns them; none where nothing is undone.
+    pub fn redo(&mut self) -> &[Arc<JournalEntry>] {
+        let second = self.done() + 1;
+        let mut after = self.entries.iter().skip(second);
+        let next = after.position(|entry| !entry.is_joined);
+        self.move_cursor(next.map_or(self.entries.len(), |next| second + next))
+    }
+
+    /// Moves the cursor behind the first `done` entries and returns those that it has passed.
+    fn move_cursor(&mut self, done: usize) -> &[Arc<JournalEntry>] {
+        let passed = done.min(self.done())..done.max(self.done());
+        let steps = self.steps();
+        self.undone = self.entries.len() - done;
+        let is_same_run = self.entries[passed.clone()]
+            .iter()
+            .all(|entry| entry.run().is_none());
+        // Edits of the time step made after the number of steps was set have not moved the end: the end follows from the
+        // scenario in which that number was set.
+        if is_same_run
+            && self.steps() != steps
+            && let Ok(scenario) = self.when_steps_were_set()
+        {
+            self.set_end(Clock::end_s(&scenario));
+        }
+        &self.entries[passed]
     }
 }
 

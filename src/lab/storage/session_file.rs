@@ -8,7 +8,7 @@
 //! A session begins with three lines, and the two texts follow:
 //!
 //! ```text
-//! gyrolab session 4
+//! gyrolab session 5
 //! sum 8d4f1d92          CRC-32 of all that follows this line
 //! place 204             bytes of the place
 //! ```
@@ -29,7 +29,7 @@ use std::sync::{Arc, LazyLock};
 use std::thread::sleep;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-const SESSION_FORMAT: &str = "gyrolab session 4";
+const SESSION_FORMAT: &str = "gyrolab session 5";
 /// The most sessions that are kept, of a user and of a login that several share.
 const MOST_KEPT_SESSIONS: usize = 20;
 const MOST_SHARED_SESSIONS: usize = 200;
