@@ -73,7 +73,7 @@ pub(super) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
     let duration_s = Clock::end_s(&scenario);
     let table = ComparisonTable {
         rows: &rows,
-        energy_unit: EnergyScale::of(&scenario).map(|scale| scale.unit),
+        energy_unit: EnergyScale::find(&scenario).map(|scale| scale.unit),
         predictability: predictability(&Arc::new(scenario.clone()), duration_s),
     };
     let truth = kind_of_truth(&scenario, duration_s);

@@ -155,7 +155,7 @@ fn checked(document: &Document) -> Result<String, Problems> {
         return Sweep::open(document).map(|sweep| described_sweep(&sweep));
     }
     let scenario = Arc::new(document.scenario()?);
-    let words = Original::of("", &scenario)
+    let words = Original::find("", &scenario)
         .difference(&scenario)
         .map(|difference| {
             format!(

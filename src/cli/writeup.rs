@@ -161,7 +161,7 @@ fn marked(scenario: Scenario, name: &str) -> Arc<Scenario> {
     let opened = Document::open(name)
         .and_then(|document| document.scenario())
         .map_or_else(|_| Arc::clone(&scenario), Arc::new);
-    Original::of(name, &opened).marked(&scenario)
+    Original::find(name, &opened).flag_stale_text(&scenario)
 }
 
 /// Measured data that stand beside a run.

@@ -58,25 +58,25 @@ impl Browser {
         };
         let (is_up, from) = (name == PARENT_FOLDER, self.folder.clone());
         let to = if is_up {
-            self.passed.pop().or_else(|| above(&from))
+            let Some(above) = self.passed.pop().or_else(|| above(&from)) else {
+                return false;
+            };
+            above
         } else {
             self.passed.push(from.clone());
-            Some(PathBuf::from(name.trim_end_matches('/')))
-        };
-        let Some(to) = to else {
-            return false;
+            PathBuf::from(name.trim_end_matches('/'))
         };
         self.list(&to, may_be_read);
         self.filter.clear();
-        let from = std::fs::canonicalize(&from).unwrap_or(from);
-        let came_from =
-            |entry: &BrowserEntry| is_up && Path::new(&entry.name).file_name() == from.file_name();
-        let is_below = |entry: &BrowserEntry| !is_up && entry.name != PARENT_FOLDER;
-        let found = self
-            .entries
-            .iter()
-            .skip(PRESETS.len())
-            .position(|entry| came_from(entry) || is_below(entry));
+        let came_from = std::fs::canonicalize(&from).unwrap_or(from);
+        let mut of_folder = self.entries.iter().skip(PRESETS.len());
+        let found = of_folder.position(|entry| {
+            if is_up {
+                Path::new(&entry.name).file_name() == came_from.file_name()
+            } else {
+                entry.name != PARENT_FOLDER
+            }
+        });
         let last = self.entries.len().saturating_sub(1);
         self.selected = (PRESETS.len() + found.unwrap_or(0)).min(last);
         self.load_preview();
@@ -85,37 +85,37 @@ impl Browser {
 
     /// Lists presets, and of `folder` the way up, folders and files, as far as `may_be_read` is true for them.
     fn list(&mut self, folder: &Path, may_be_read: impl Fn(&Path) -> bool) {
-        let entry = |name, is_file, is_folder| BrowserEntry {
-            name,
-            is_file,
-            is_folder,
-        };
-        let presets = PRESETS.iter();
-        let presets = presets.map(|preset| entry(preset.name.to_owned(), false, false));
-        let may_hold_one = |name: &str| name.ends_with(".toml") || name.ends_with(".csv");
-        let also = self.also.as_deref().filter(|_| folder == self.first);
-        let also = also.map(|also| names_in(also, Path::is_file, may_hold_one));
-        let mut names = also.unwrap_or_default();
-        names.extend(names_in(folder, Path::is_file, may_hold_one));
-        names.retain(|name| may_be_read(Path::new(name)));
-        let all = names.len();
-        names.retain(|name| may_hold_run(name));
-        self.others = all - names.len();
-        let leads_up =
-            !self.passed.is_empty() || above(folder).is_some_and(|above| may_be_read(&above));
         let mut folders = names_in(folder, Path::is_dir, |name| !name.starts_with('.'));
         folders.retain(|name| may_be_read(Path::new(name)));
-        let folders = folders.into_iter().map(|name| name + "/");
-        let above = leads_up.then(|| PARENT_FOLDER.to_owned());
-        let folders = above.into_iter().chain(folders);
-        let folders = folders.map(|name| entry(name, false, true));
-        let files = names.into_iter().map(|name| entry(name, true, false));
-        self.entries = presets.chain(folders).chain(files).collect();
+        folders.iter_mut().for_each(|name| name.push('/'));
+        if !self.passed.is_empty() || above(folder).is_some_and(|above| may_be_read(&above)) {
+            folders.insert(0, PARENT_FOLDER.to_owned());
+        }
+        let also = self.also.as_deref().filter(|_| folder == self.first);
+        let mut files = Vec::new();
+        for listed in also.into_iter().chain([folder]) {
+            let ends_as_one = |name: &str| name.ends_with(".toml") || name.ends_with(".csv");
+            files.extend(names_in(listed, Path::is_file, ends_as_one));
+        }
+        files.retain(|name| may_be_read(Path::new(name)));
+        let all = files.len();
+        files.retain(|name| may_hold_run(name));
+        self.others = all - files.len();
+        let presets = PRESETS.iter().map(|preset| preset.name.to_owned());
+        self.entries = (presets.map(|name| (name, false, false)))
+            .chain(folders.into_iter().map(|name| (name, false, true)))
+            .chain(files.into_iter().map(|name| (name, true, false)))
+            .map(|(name, is_file, is_folder)| BrowserEntry {
+                name,
+                is_file,
+                is_folder,
+            })
+            .collect();
         self.folder = folder.to_owned();
         self.preview = None;
     }
 
-    /// The entries whose names contain the filter.
+    /// Returns the entries whose names contain the filter.
     pub fn shown(&self) -> Vec<&BrowserEntry> {
         let wanted = self.filter.to_lowercase();
         self.entries
@@ -124,12 +124,12 @@ impl Browser {
             .collect()
     }
 
-    /// The folder whose files are listed, where that is not the first one.
+    /// Returns the folder whose files are listed, where that is not the first one.
     pub fn folder(&self) -> Option<&Path> {
         (self.folder != self.first).then_some(&self.folder)
     }
 
-    /// How many of all entries are files.
+    /// Returns how many of all entries are files.
     pub fn files(&self) -> usize {
         self.entries.iter().filter(|entry| entry.is_file).count()
     }
@@ -162,11 +162,11 @@ impl Browser {
 
     /// Selects the first entry that is shown; without a filter, the one that is open.
     fn refilter(&mut self) {
-        self.selected = self
+        let open = self
             .entries
             .iter()
-            .position(|entry| self.filter.is_empty() && entry.name == self.open)
-            .unwrap_or(0);
+            .position(|entry| entry.name == self.open);
+        self.selected = open.filter(|_| self.filter.is_empty()).unwrap_or(0);
         self.load_preview();
     }
 
@@ -187,7 +187,7 @@ const MOST_FILES: usize = 1000;
 /// How many bytes of a file are searched for its `[motion]`.
 const PREVIEW_BYTES: u64 = 1 << 16;
 
-/// The paths of what is in `folder`, is of a kind and has a name that is wanted, in the order of their names.
+/// Returns the paths of the entries of `folder` that are of a kind and have a name that is wanted, in the order of names.
 fn names_in(
     folder: &Path,
     is_kind: fn(&Path) -> bool,
@@ -215,8 +215,8 @@ fn names_in(
 }
 
 fn above(folder: &Path) -> Option<PathBuf> {
-    let folder = std::fs::canonicalize(folder).ok()?;
-    folder.parent().map(Path::to_owned)
+    let full = std::fs::canonicalize(folder).ok()?;
+    full.parent().map(Path::to_owned)
 }
 
 /// Whether the file `name` may hold a run: its beginning names `motion`, as a table or key of a scenario or in the header of
@@ -230,8 +230,8 @@ fn may_hold_run(name: &str) -> bool {
     }
     let text = String::from_utf8_lossy(&head);
     text.lines().any(|line| {
-        let line = line.trim_start_matches(['#', ' ', '\t', '\u{feff}', '[']);
-        let rest = line.strip_prefix("motion").map(str::trim_start);
+        let name = line.trim_start_matches(['#', ' ', '\t', '\u{feff}', '[']);
+        let rest = name.strip_prefix("motion").map(str::trim_start);
         rest.is_some_and(|rest| rest.starts_with([']', '.', '=']))
     })
 }

@@ -85,11 +85,11 @@ impl Dialog {
         Some(Self::new(DialogKind::Value, &title, &fields, about))
     }
 
-    /// The dialog that asks for what `ask` says.
+    /// Opens the dialog that asks for what `ask` says.
     ///
     /// # Errors
     /// Why there is nothing to ask for now.
-    pub(super) fn of(
+    pub(super) fn open(
         ask: Ask,
         files: &Files,
         edits: &Edits,
@@ -197,7 +197,7 @@ impl Dialog {
         dialog
     }
 
-    /// A dialog with `fields`, each with its label and the text that it offers, and the lines `info` below them.
+    /// Creates a dialog with `fields`, each with its label and the text that it offers, and the lines `info` below them.
     fn new(
         question: DialogKind,
         title: &str,
@@ -209,10 +209,10 @@ impl Dialog {
         } else {
             DIALOG_KEYS
         };
-        let fields = fields
+        let inputs = fields
             .iter()
             .map(|(label, text)| InputField::new(label, text));
-        let mut form = InputForm::new(title, fields.collect(), keys);
+        let mut form = InputForm::new(title, inputs.collect(), keys);
         form.info = info.into_iter().map(Into::into).collect();
         Self {
             question,
@@ -230,7 +230,7 @@ impl Dialog {
         self.asked_to_replace.as_deref() == Some(path)
     }
 
-    /// The command that the answer stands for; `None` where it changes nothing.
+    /// Returns the command that the answer stands for; `None` where it changes nothing.
     ///
     /// # Errors
     /// Why it is refused.
@@ -273,15 +273,15 @@ impl Dialog {
         }))
     }
 
-    /// The number that was typed; a comma may stand for the decimal point.
+    /// Returns the number that was typed; a comma may stand for the decimal point.
     pub(super) fn number_typed(&self) -> Result<f64, String> {
-        let text = self.form.text(0).trim().replace(',', ".");
-        let number: Option<f64> = text.parse().ok();
-        let number = number.filter(|number| number.is_finite());
-        number.ok_or_else(|| "must be a number, such as 2.5 or 1e-3".to_owned())
+        match self.form.text(0).trim().replace(',', ".").parse() {
+            Ok(number) if f64::is_finite(number) => Ok(number),
+            _ => Err("must be a number, such as 2.5 or 1e-3".to_owned()),
+        }
     }
 
-    /// The interval of the rows to write, as typed in the second field: 10 stands for each tenth row.
+    /// Returns the interval of the rows to write, as typed in the second field: 10 stands for each tenth row.
     fn every(&self) -> Result<NonZeroU64, String> {
         let text = self.form.text(1).trim();
         text.parse()
@@ -323,8 +323,8 @@ impl Dialog {
         };
     }
 
-    /// The same dialog with the reason why the answer was refused.
-    pub(super) fn refused(mut self, refusal: Refusal) -> Self {
+    /// Returns the same dialog with the reason why the answer was refused.
+    pub(super) fn with_error(mut self, refusal: Refusal) -> Self {
         self.asked_to_replace = None;
         let complaint = match refusal {
             Refusal::Because(reason) => {
@@ -370,11 +370,11 @@ mod tests {
         let dialog = Dialog::export(scenario(), "method-2.csv".to_owned());
         let (path, other) = (Path::new("method-2.csv"), Path::new("other.csv"));
         assert!(!dialog.may_replace(path));
-        let dialog = dialog.refused(Refusal::Exists(path.to_owned()));
-        assert!(dialog.may_replace(path) && !dialog.may_replace(other));
-        let dialog = dialog.refused(Refusal::Because("no".to_owned()));
-        assert!(!dialog.may_replace(path));
-        assert_eq!(dialog.form.complaint.as_deref(), Some("no"));
+        let asking = dialog.with_error(Refusal::Exists(path.to_owned()));
+        assert!(asking.may_replace(path) && !asking.may_replace(other));
+        let refused = asking.with_error(Refusal::Because("no".to_owned()));
+        assert!(!refused.may_replace(path));
+        assert_eq!(refused.form.complaint.as_deref(), Some("no"));
     }
 
     #[test]

@@ -91,7 +91,7 @@ impl Edits {
     ) -> ScenarioEdit {
         self.leave_at(player.step_to_keep()).begin(name, &scenario);
         self.runs.set_file(&scenario);
-        self.values.next_push = NextPush::of(&scenario);
+        self.values.next_push = NextPush::suggested_for(&scenario);
         ScenarioEdit {
             change: RunChange::Opens,
             scenario,
@@ -331,7 +331,7 @@ impl Edits {
         let is_of_same_name = self.runs.name() == name;
         if !is_of_same_name {
             self.runs.set_file(scenario);
-            self.values.next_push = NextPush::of(scenario);
+            self.values.next_push = NextPush::suggested_for(scenario);
         }
         let run = self.runs.present();
         if let Some(push) = &run.next_push {

@@ -114,7 +114,7 @@ impl Files {
         layout.note.clone_from(&self.note);
         let layout = layout.check().map_err(|error| error.to_string())?;
         let scenario = run_up_to(export.to_step, "export", runs, player)?;
-        let scenario = runs.marked(&scenario);
+        let scenario = runs.flag_stale_text(&scenario);
         let path = self.path_of(&export.path);
         self.may_export_to(&path)?;
         let begun = Exporting::begin(scenario, &path, layout, export.force);
@@ -157,7 +157,7 @@ impl Files {
             return self.save("the scenario", &content, &path, save.force);
         }
         let run = run_up_to(save.to_step, "save", runs, player)?;
-        let run = runs.marked(&run).to_toml();
+        let run = runs.flag_stale_text(&run).to_toml();
         self.save("the run", &run, &path, save.force)
     }
 

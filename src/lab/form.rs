@@ -133,9 +133,9 @@ impl InputForm {
         let count = self.fields.len().max(1);
         match edit {
             FieldEdit::Type(typed) => self.edit(|field| field.type_char(typed)),
-            FieldEdit::Erase => self.take(InputRequest::DeletePrevChar),
-            FieldEdit::Delete => self.take(InputRequest::DeleteNextChar),
-            FieldEdit::Clear => self.take(InputRequest::DeleteLine),
+            FieldEdit::Erase => self.remove(InputRequest::DeletePrevChar),
+            FieldEdit::Delete => self.remove(InputRequest::DeleteNextChar),
+            FieldEdit::Clear => self.remove(InputRequest::DeleteLine),
             FieldEdit::Left => self.move_cursor(InputRequest::GoToPrevChar),
             FieldEdit::Right => self.move_cursor(InputRequest::GoToNextChar),
             FieldEdit::Home => self.move_cursor(InputRequest::GoToStart),
@@ -152,7 +152,8 @@ impl InputForm {
         }
     }
 
-    fn take(&mut self, what: InputRequest) {
+    /// Removes the text if it is marked, or else `what`.
+    fn remove(&mut self, what: InputRequest) {
         self.edit(|field| {
             if !field.take_marked() {
                 field.input.handle(what);

@@ -12,7 +12,7 @@ use std::borrow::Cow;
 use std::time::Duration;
 
 /// How long a message stays unless a key removes it earlier.
-const STANDS: Duration = Duration::from_secs(5);
+const MESSAGE_STAYS: Duration = Duration::from_secs(5);
 
 /// What is said at the end of the scenario's run, before what to try next.
 const END_OF_RUN: &str = "end of the run: space goes on, r begins again";
@@ -51,7 +51,7 @@ struct ShownMessage {
 impl Messages {
     /// Shows `text` for five seconds from `now` on.
     pub fn say(&mut self, text: impl Into<String>, now: Duration) {
-        self.show(text.into(), Some(now + STANDS));
+        self.show(text.into(), Some(now + MESSAGE_STAYS));
     }
 
     /// Shows `text` until the next key: for messages that must not be missed.
@@ -93,7 +93,7 @@ impl Messages {
         self.ends_in(now).is_some_and(|left| left.is_zero()) && self.take_back()
     }
 
-    /// How long the message stays from `now` on; `None` where only a key removes it, or there is none.
+    /// Returns how long the message stays from `now` on; `None` where only a key removes it, or there is none.
     pub fn ends_in(&self, now: Duration) -> Option<Duration> {
         let until = self.said.as_ref()?.until;
         until.map(|until| until.saturating_sub(now))
@@ -133,19 +133,19 @@ impl Messages {
 
     /// Says `text`, that the numbers have stopped being finite, and what helps: a key that mends the run, if that is known,
     /// and, of a run with edits, what takes back the last.
-    pub(super) fn tell_of_break(&mut self, text: &str, mends: Option<String>, is_edited: bool) {
+    pub(super) fn tell_of_break(&mut self, text: &str, remedy: Option<String>, is_edited: bool) {
         let unknown = "a shorter time step or another scheme may mend it (e)";
-        let mends = mends.unwrap_or_else(|| unknown.to_owned());
+        let remedy = remedy.as_deref().unwrap_or(unknown);
         let undo = if is_edited {
             ", u takes the last edit back"
         } else {
             ""
         };
-        self.keep_saying(format!("{text}: {mends}{undo}"));
+        self.keep_saying(format!("{text}: {remedy}{undo}"));
     }
 }
 
-/// The message about a run that has stopped by itself, if it needs one. `next` is what to try next.
+/// Returns the message about a run that has stopped by itself, if it needs one. `next` is what to try next.
 pub(super) fn halt_in_words(halt: Halt, next: Option<&str>) -> Option<String> {
     match (halt, next) {
         (Halt::Arrived | Halt::ConditionMet, _) => None,
@@ -161,18 +161,19 @@ pub(super) fn halt_in_words(halt: Halt, next: Option<&str>) -> Option<String> {
     }
 }
 
-/// The line about what to try after the run: as a command or the scenario has it, or else the preset, as long as its
+/// Returns the line about what to try after the run: as a command or the scenario has it, or else the preset, as long as its
 /// motion is as it was opened.
 pub(super) fn next<'a>(view: &'a View, runs: &'a Runs, player: &'a Player) -> Option<Cow<'a, str>> {
     let file = &player.run().scenario().file;
-    let set = view.look.next.as_deref();
-    let set = set.or_else(|| file.viewed_text("next"));
-    let next = set
-        .or_else(|| match runs.changed_from_file() {
-            None => presets::find(runs.name()).map(|preset| preset.next),
-            Some(_) => None,
-        })
-        .filter(|next| !next.is_empty())?;
+    let set = view.look.next.as_deref().or(file.viewed_text("next"));
+    let next = match (set, runs.changed_from_file()) {
+        (Some(next), _) => next,
+        (None, None) => presets::find(runs.name())?.next,
+        (None, Some(_)) => return None,
+    };
+    if next.is_empty() {
+        return None;
+    }
     // What is on the screen already is not to be asked for.
     match player.run().overlay() {
         Some(_) => Some(next.replace(ASKS_FOR_EXACT, HAS_EXACT).into()),
@@ -180,12 +181,11 @@ pub(super) fn next<'a>(view: &'a View, runs: &'a Runs, player: &'a Player) -> Op
     }
 }
 
-/// The line about what there is to see in the run.
+/// Returns the line about what there is to see in the run.
 pub(super) fn note<'a>(view: &'a View, runs: &'a Runs, player: &'a Player) -> Cow<'a, str> {
     if view.hides(HideablePart::LookAt) {
         return "".into();
     }
-    let file = || changed::look_at(player.run().scenario());
     let set = view.look.look_at.as_deref();
     let is_over = player.is_endless && player.step_number() >= player.end_step();
     if let Some(next) = next(view, runs, player).filter(|_| is_over) {
@@ -196,10 +196,10 @@ pub(super) fn note<'a>(view: &'a View, runs: &'a Runs, player: &'a Player) -> Co
         // The page says what the run is. The file's line speaks of another one.
         return "".into();
     }
-    let note = set.or(changed).or_else(file);
-    let note =
-        note.unwrap_or("? lists the keys; the scenario's own line, view.look_at, would stand here");
-    note.into()
+    set.or(changed)
+        .or_else(|| changed::look_at(player.run().scenario()))
+        .unwrap_or("? lists the keys; the scenario's own line, view.look_at, would stand here")
+        .into()
 }
 
 #[cfg(test)]

@@ -25,7 +25,7 @@ pub enum NumberSource {
     Fixed(Option<f64>),
 }
 
-/// The number called `name`, of `run` where there is one yet.
+/// Finds the number called `name`, of `run` where there is one yet.
 pub fn find(name: &str, run: Option<&LiveRun>) -> Result<NumberSource, String> {
     if let Some(column) = CsvColumn::find(name) {
         return Ok(NumberSource::Column(column));
@@ -68,22 +68,21 @@ fn nearest_to(wrong: &str) -> String {
         return near; // lowest_tilt_deg is measured or predicted
     }
     let columns = COLUMNS.iter().map(|column| column.name);
-    let readouts = readouts::READOUTS.iter().filter(|readout| {
+    let others = readouts::READOUTS.iter().filter(|readout| {
         !readout.is_text
             && readout.source != readouts::ReadoutSource::Clock
             && CsvColumn::find(readout.name).is_none()
     });
     let keys = KEYS.iter().filter(|key| holds_number(key.kind));
-    let names = columns.chain(readouts.map(|readout| readout.name));
+    let names = columns.chain(others.map(|readout| readout.name));
     nearest(wrong, names.chain(keys.map(|key| key.path)))
 }
 
-/// The value of `key` in the scenario of `run`.
+/// Returns the value of `key` in the scenario of `run`.
 fn number_in(run: &LiveRun, key: &str) -> Option<f64> {
     let table = table_at(run.scenario(), run.simulation().step_number());
-    dotted::find(&table, key)
-        .and_then(float)
-        .or_else(|| ZERO_BY_ITSELF.contains(&key).then_some(0.0))
+    let number = dotted::find(&table, key).and_then(float);
+    number.or(ZERO_BY_ITSELF.contains(&key).then_some(0.0))
 }
 
 /// The keys that are 0 where a scenario does not have them.
@@ -117,7 +116,7 @@ impl RunNumbers {
 }
 
 impl PresentNumbers<'_> {
-    /// The number of `source`; `None` if there is none at this step.
+    /// Returns the number of `source`; `None` if there is none at this step.
     pub fn value(&mut self, source: &NumberSource) -> Option<f64> {
         match source {
             NumberSource::Column(column) => {
@@ -136,11 +135,11 @@ impl PresentNumbers<'_> {
 
     fn readouts(&mut self, source: readouts::ReadoutSource) -> &Readouts {
         let RunNumbers { readouts, read } = &mut *self.numbers;
-        let readouts = readouts.get_or_insert_with(|| self.run.readouts());
+        let known = readouts.get_or_insert_with(|| self.run.readouts());
         if !read.contains(&source) {
-            self.run.read_again(readouts, source);
+            self.run.read_again(known, source);
             read.push(source);
         }
-        readouts
+        known
     }
 }

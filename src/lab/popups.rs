@@ -45,8 +45,8 @@ impl Popups {
 
     /// Adds `digit` to `count`, the count that the key has removed.
     pub(super) fn add_digit(&mut self, count: Option<u64>, digit: u8) {
-        let count = count.unwrap_or(0) * 10 + u64::from(digit);
-        self.count = Some(count.min(MOST_COUNTED));
+        let longer = count.unwrap_or(0) * 10 + u64::from(digit);
+        self.count = Some(longer.min(MOST_COUNTED));
     }
 
     pub(super) fn open_dialog(&mut self, dialog: Dialog) {

@@ -125,7 +125,7 @@ impl Lab {
 
     fn ask(&mut self, ask: Ask) -> Result<(), String> {
         let (files, edits) = (&self.files, &self.edits);
-        let dialog = Dialog::of(ask, files, edits, &self.player, &self.view)?;
+        let dialog = Dialog::open(ask, files, edits, &self.player, &self.view)?;
         self.popups.open_dialog(dialog);
         Ok(())
     }
@@ -239,7 +239,7 @@ impl Lab {
         };
         match answer {
             Ok(_) => self.tell_answer(answer),
-            Err(refusal) => self.popups.open_dialog(dialog.refused(refusal)),
+            Err(refusal) => self.popups.open_dialog(dialog.with_error(refusal)),
         }
         None
     }

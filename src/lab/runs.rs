@@ -46,7 +46,7 @@ impl Runs {
     /// Takes up the journal of a session; the present run was opened from `file`.
     pub(super) fn resumed(journal: Journal, file: &Arc<Scenario>) -> Self {
         Self {
-            original: Original::of(&journal.present().name, file),
+            original: Original::find(&journal.present().name, file),
             journal,
             changed_from_file: None,
             kept: None,
@@ -95,12 +95,12 @@ impl Runs {
 
     /// Makes `file` the scenario as the user opened it.
     pub(super) fn set_file(&mut self, file: &Arc<Scenario>) {
-        self.original = Original::of(self.name(), file);
+        self.original = Original::find(self.name(), file);
     }
 
     /// `scenario`, the present run's, as it is to be written to a file: what its words say of another motion is marked.
-    pub(super) fn marked(&self, scenario: &Arc<Scenario>) -> Arc<Scenario> {
-        self.original.marked(scenario)
+    pub(super) fn flag_stale_text(&self, scenario: &Arc<Scenario>) -> Arc<Scenario> {
+        self.original.flag_stale_text(scenario)
     }
 
     /// Describes how `scenario`, the present run's, differs from the scenario as it was opened.

@@ -31,8 +31,8 @@ pub struct StepWorkings {
 }
 
 impl StepWorkings {
-    /// The workings of the step taken last; `None` at step 0.
-    fn of(player: &mut Player) -> Option<Self> {
+    /// Reads the workings of the step taken last; `None` at step 0.
+    fn read(player: &mut Player) -> Option<Self> {
         let now = player.run().simulation().now();
         let (step, states) = (now.number(), (*now.before()?, *now.after()));
         let scenario = Arc::clone(now.scenario());
@@ -102,13 +102,13 @@ impl StepPane {
         let now = player.run().simulation().now();
         let (number, scenario) = (now.number(), Arc::clone(now.scenario()));
         let is_large = scenario.body.mechanics.points().len() > MOST_POINTS_MOVING;
-        let is_known = |known: &StepWorkings| {
+        let is_known = self.shown.as_ref().is_some_and(|known| {
             known.step == number && Arc::ptr_eq(&known.scenario, player.run().scenario())
-        };
+        });
         if !player.keeps_workings || number == 0 || (is_large && player.is_moving()) {
             self.shown = None;
-        } else if !self.shown.as_ref().is_some_and(is_known) {
-            self.shown = StepWorkings::of(player);
+        } else if !is_known {
+            self.shown = StepWorkings::read(player);
         }
         if player.keeps_workings {
             player.run.keep_workings(false);
@@ -131,8 +131,10 @@ impl StepPane {
         names.dedup();
         let scheme = player.run().simulation().now().motion().scheme.name;
         let texts: Vec<_> = names.into_iter().map(PhaseName::text).collect();
-        let texts = texts.join(", ");
-        Err(format!("{scheme} has no phase {name}: it has {texts}"))
+        Err(format!(
+            "{scheme} has no phase {name}: it has {}",
+            texts.join(", ")
+        ))
     }
 
     /// The commands that go `times` phases forward or back. The first phase of the next step follows the last phase of

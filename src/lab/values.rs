@@ -15,7 +15,7 @@ use std::time::Duration;
 use toml::Table;
 
 /// Nudges of the same value with shorter pauses than this between them are one act: one undo takes back all of them.
-const BELONGS: Duration = Duration::from_secs(3);
+const NUDGE_PAUSE: Duration = Duration::from_secs(3);
 
 /// The order of the groups in the list. The scenario's pushes come after the start, its points after the body.
 const GROUP_ORDER: [&str; 6] = [
@@ -40,11 +40,11 @@ pub struct Values {
 }
 
 impl Values {
-    /// An empty list, and a first push to come that is possible in `scenario`.
+    /// Creates an empty list, and a first push to come that is possible in `scenario`.
     pub(super) fn new(scenario: &Scenario) -> Self {
         Self {
             list: ValueList::default(),
-            next_push: NextPush::of(scenario),
+            next_push: NextPush::suggested_for(scenario),
             entries_listed: 0,
             last_nudged: None,
         }
@@ -58,15 +58,14 @@ impl Values {
         let table = parameters::table_at(scenario, step);
         // A push that is given at a later step cannot be edited here: an edit here would discard it.
         let pushes = journal.pushes_by(step);
-        let first_added = scenario.file.push.len(); // by an edit, which stands in the table once it is made
-        let parameters = parameters(&table, scenario)
-            .into_iter()
-            .filter(|parameter| {
-                number_of_push(&parameter.key)
-                    .is_none_or(|number| number < pushes || number >= first_added)
-            });
-        let values = parameters.map(ListedValue::from);
-        let mut values: Vec<_> = values.chain(ListedValue::all_of(&self.next_push)).collect();
+        let first_added = scenario.file.push.len(); // by an edit, which is in the table once it is made
+        let mut parameters = parameters(&table, scenario);
+        parameters.retain(|parameter| {
+            number_of_push(&parameter.key)
+                .is_none_or(|number| number < pushes || number >= first_added)
+        });
+        let mut values: Vec<_> = parameters.into_iter().map(ListedValue::from).collect();
+        values.extend(ListedValue::all_of(&self.next_push));
         values.sort_by_key(|value| rank(&value.group)); // stable: within a group nothing moves
         self.list.set(values);
     }
@@ -82,7 +81,7 @@ impl Values {
             .select(NEXT_PUSH_HEADING, PushField::Size.label().0);
     }
 
-    /// The listed value of the scenario with the dotted `key`.
+    /// Returns the listed value of the scenario with the dotted `key`.
     pub(super) fn parameter(&self, key: &str) -> Option<&Parameter> {
         self.list.values.iter().find_map(|value| match &value.of {
             Of::Scenario(parameter) if parameter.key == key => Some(&**parameter),
@@ -90,7 +89,7 @@ impl Values {
         })
     }
 
-    /// The value of `key` with its label and unit; the key alone where it is not listed.
+    /// Returns the value of `key` with its label and unit; the key alone where it is not listed.
     pub(super) fn in_words(&self, key: &str) -> String {
         let mut values = self.list.values.iter();
         let words = match values.find(|value| value.key.as_deref() == Some(key)) {
@@ -102,9 +101,8 @@ impl Values {
 
     /// Returns whether a nudge of `key` at `now` and the nudge before it are one act.
     pub(super) fn coalesces_with_last_nudge(&self, key: &str, now: Duration) -> bool {
-        let belongs =
-            |(last, at): &(String, Duration)| *last == key && now.saturating_sub(*at) < BELONGS;
-        self.last_nudged.as_ref().is_some_and(belongs)
+        let last = self.last_nudged.as_ref();
+        last.is_some_and(|(last, at)| *last == key && now.saturating_sub(*at) < NUDGE_PAUSE)
     }
 
     pub(super) fn note_nudge(&mut self, key: &str, now: Duration) {
@@ -121,7 +119,7 @@ impl Values {
         self.next_push = self.next_push.clone().suited_to(scenario);
     }
 
-    /// The push to come, with the values that `choice` has in place of its own. `time_step_s` is the time step in force, s.
+    /// Returns the push to come, with the values that `choice` has in place of its own. `time_step_s` is the time step in force, s.
     pub(super) fn chosen(
         &self,
         choice: &PushChoice,
@@ -146,7 +144,7 @@ impl Values {
         push.checked()
     }
 
-    /// The command that nudges the selected value; `None` where none is shown.
+    /// Returns the command that nudges the selected value; `None` where none is shown.
     pub(super) fn selected_nudged(
         &self,
         times: i32,
@@ -165,7 +163,7 @@ impl Values {
         })
     }
 
-    /// The command that gives the selected value what `text` says; `None` if it already has that value.
+    /// Returns the command that gives the selected value what `text` says; `None` if it already has that value.
     pub(super) fn value_typed(
         &self,
         text: &str,
@@ -206,20 +204,15 @@ impl PushChoice {
     }
 }
 
-/// The place of a group in the list; groups with a smaller number come first.
+/// Returns the place of a group in the list; groups with a smaller number come first.
 fn rank(group: &str) -> usize {
-    let listed = GROUP_ORDER.iter().position(|known| *known == group);
-    let place = |of: &str| {
-        GROUP_ORDER
-            .iter()
-            .position(|known| *known == of)
-            .unwrap_or(0)
+    let place = |of: &str| GROUP_ORDER.iter().position(|known| *known == of);
+    let (before, offset) = match place(group) {
+        Some(place) => (Some(place), 0),
+        None if group.starts_with("push") => (place("start"), 1),
+        None => (place("body"), 1),
     };
-    match listed {
-        Some(rank) => 2 * rank,
-        None if group.starts_with("push") => 2 * place("start") + 1,
-        None => 2 * place("body") + 1,
-    }
+    2 * before.unwrap_or(0) + offset
 }
 
 #[cfg(test)]

@@ -267,7 +267,7 @@ fn the_drift_of_a_balanced_body_is_measured_by_its_kinetic_energy() {
     };
     for height in ["0", "1e-15", "1e-11"] {
         let scenario = balanced(height, "[0,-30,60]");
-        let scale = EnergyScale::of(&scenario).unwrap();
+        let scale = EnergyScale::find(&scenario).unwrap();
         assert_eq!(scale.unit, EnergyUnit::KineticAtStart, "{height}");
         let off = readouts(&scenario).number("energy_drift").unwrap().abs();
         println!("rim at {height} m: {off:e}");
@@ -284,12 +284,12 @@ fn the_drift_of_a_balanced_body_is_measured_by_its_kinetic_energy() {
         };
         has(table.to_string(), "of the kinetic energy at the start");
     }
-    let heavy = EnergyScale::of(&balanced("1", "[0,-30,60]")).unwrap();
+    let heavy = EnergyScale::find(&balanced("1", "[0,-30,60]")).unwrap();
     assert_eq!(heavy.unit, EnergyUnit::Weight);
     assert!((heavy.size - 49.0).abs() < 1e-9);
     // At rest, and balanced but for rounding: there is nothing to measure by.
     let rest = balanced("1e-16", "[0,0,0]");
-    assert_eq!(EnergyScale::of(&rest), None);
+    assert_eq!(EnergyScale::find(&rest), None);
     assert_eq!(readouts(&rest).health.energy_drift, None);
 }
 
@@ -433,7 +433,7 @@ fn no_table_shows_what_is_no_number() {
             ControlFlow::Continue(())
         })
         .unwrap();
-        let energy_unit = EnergyScale::of(&scenario).map(|scale| scale.unit);
+        let energy_unit = EnergyScale::find(&scenario).map(|scale| scale.unit);
         let table = ComparisonTable {
             rows: &rows,
             energy_unit,

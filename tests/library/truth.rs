@@ -798,7 +798,7 @@ fn an_edit_on_the_way_leads_to_the_truth_that_was_edited_from_the_start() {
         let edited = with_less_gravity(file, step);
         let mut on_the_way = Truth::new(Arc::clone(&plain));
         on_the_way.state_at(step as f64 * plain.motion.time_step_s);
-        on_the_way.go_on_in(&edited);
+        on_the_way.branch(&edited);
         let mut from_the_start = Truth::new(edited);
         for share in [0.2, 0.5, 1.0] {
             let at_s = here_s + 0.3 * share * LENGTH_S; // not long: chaos would make much of rounding
@@ -816,7 +816,7 @@ fn an_edit_at_the_start_is_in_force_from_the_start() {
     for (from, to) in [(&plain, &edited), (&edited, &plain)] {
         let mut on_the_way = Truth::new(Arc::clone(from));
         on_the_way.state_at(0.0);
-        on_the_way.go_on_in(to);
+        on_the_way.branch(to);
         let mut from_the_start = Truth::new(Arc::clone(to));
         assert_eq!(on_the_way.state_at(30.0), from_the_start.state_at(30.0));
     }

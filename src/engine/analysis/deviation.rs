@@ -51,7 +51,7 @@ impl ExactReference {
         self.settle(); // its steps so far belong to the forces so far
         self.together = looked_at_together(scenario);
         match &mut self.truth {
-            Some(truth) => truth.go_on_in(scenario),
+            Some(truth) => truth.branch(scenario),
             None => {
                 self.truth = Some(Truth::new(Arc::clone(scenario)));
                 self.companion = None;

@@ -89,7 +89,7 @@ impl Companion {
 
     /// Goes on beside the exact motion of `scenario`, whose past is the same.
     pub fn go_on_in(&mut self, scenario: &Arc<Scenario>) {
-        self.motion.go_on_in(scenario);
+        self.motion.branch(scenario);
         if self.until_s.is_none() {
             // When to look next follows from the forces, which are others now.
             self.next_look_s = self.next_look_s.min(self.asked_s);

@@ -2,7 +2,6 @@
 //! written for, and what is done with these texts then.
 
 use super::restart::in_force;
-use crate::scenario::file::ScenarioFile;
 use crate::scenario::presets::{PRESETS, Preset};
 use crate::scenario::rescale::at_time_step;
 use crate::scenario::{Document, Scenario, float};
@@ -37,41 +36,47 @@ pub struct Original {
 }
 
 impl Original {
-    /// The original of `opened`, which was opened as `name`: the preset whose words it has, as an exported run has them,
-    /// or else itself.
-    pub fn of(name: &str, opened: &Arc<Scenario>) -> Self {
+    /// Finds the original of `opened`, which was opened as `name`: the preset whose words it has, as an exported run has
+    /// them, or else itself.
+    pub fn find(name: &str, opened: &Arc<Scenario>) -> Self {
         if let Some((preset, scenario)) = preset_with_words_of(opened) {
             return Self {
                 scenario: Arc::new(scenario),
                 name: format!("the preset {}", preset.name),
             };
         }
-        let file = Path::new(name).file_name().unwrap_or_default();
-        let file = printable(&file.to_string_lossy()).into_owned();
-        let is_short = (1..=LONGEST_FILE_NAME).contains(&file.chars().count());
-        let file = Some(file).filter(|_| is_short);
+        let file_name = Path::new(name).file_name().unwrap_or_default();
+        let shown = printable(&file_name.to_string_lossy()).into_owned();
+        let is_short = (1..=LONGEST_FILE_NAME).contains(&shown.chars().count());
         Self {
             scenario: Arc::clone(opened),
-            name: file.unwrap_or("what was opened".to_owned()),
+            name: if is_short {
+                shown
+            } else {
+                "what was opened".to_owned()
+            },
         }
     }
 
     /// Lists the differences that make `now` move differently. `None` where there are none, or where the `look_at` line
     /// itself is a new one.
     pub fn difference(&self, now: &Scenario) -> Option<String> {
-        let is_its = look_at(&self.scenario) == look_at(now);
-        self.change(now).filter(|_| is_its)
+        self.change(now).filter(|_| self.has_look_at_of(now))
+    }
+
+    fn has_look_at_of(&self, now: &Scenario) -> bool {
+        look_at(&self.scenario) == look_at(now)
     }
 
     /// Lists the differences that make `now` move differently; `None` where there are none.
     fn change(&self, now: &Scenario) -> Option<String> {
-        let changes = changes(&self.scenario, now);
-        (!changes.is_empty()).then(|| format!("differs from {}: {}", self.name, changes.join(", ")))
+        let list = changes(&self.scenario, now).join(", ");
+        (!list.is_empty()).then(|| format!("differs from {}: {list}", self.name))
     }
 
-    /// `now` as it is to be written to a file: where it moves differently, the words say of which motion they were
-    /// written, `look_at` says what was changed, and the numbers expected of the original are left out.
-    pub fn marked(&self, now: &Arc<Scenario>) -> Arc<Scenario> {
+    /// Returns `now` as it is to be written to a file. Where it moves differently, the words say of which motion they were
+    /// written, `look_at` says what was changed, and the numbers expected of the original are removed.
+    pub fn flag_stale_text(&self, now: &Arc<Scenario>) -> Arc<Scenario> {
         let Some(difference) = self.change(now) else {
             return Arc::clone(now);
         };
@@ -89,8 +94,7 @@ impl Original {
         {
             source.push_str(CHANGED);
         }
-        let is_its = look_at(&self.scenario) == look_at(now);
-        if let Some(view) = file.view.as_mut().filter(|_| is_its) {
+        if let Some(view) = file.view.as_mut().filter(|_| self.has_look_at_of(now)) {
             if let Some(look_at) = view.get_mut("look_at") {
                 *look_at = difference.into();
             }
@@ -101,48 +105,53 @@ impl Original {
     }
 }
 
-/// The preset with the same `look_at` or `about` as `scenario`, as it is shipped.
+/// Finds the preset with the same `look_at` or `about` as `scenario`, as it is shipped.
 fn preset_with_words_of(scenario: &Scenario) -> Option<(&'static Preset, Scenario)> {
-    let words = |file: &ScenarioFile| {
-        let look_at = file.viewed_text("look_at");
-        (file.about.clone(), look_at.map(str::to_owned))
-    };
-    let (about, look_at) = words(&scenario.file);
-    let may_have = |preset: &&Preset| {
-        let mut some = about.iter().chain(&look_at);
-        some.any(|words| words.lines().all(|line| preset.text.contains(line)))
-    };
-    PRESETS.iter().filter(may_have).find_map(|preset| {
-        let shipped = Document::parse(preset.name, preset.text).and_then(|it| it.scenario());
-        let shipped = shipped.ok()?;
-        let (its_about, its_look_at) = words(&shipped.file);
-        let is_same = |one: &Option<String>, other| one.is_some() && one == other;
-        (is_same(&about, &its_about) || is_same(&look_at, &its_look_at))
-            .then_some((preset, shipped))
+    let words = words_of(scenario);
+    PRESETS.iter().find_map(|preset| {
+        let may_have = |text: &Option<&str>| {
+            text.is_some_and(|text| text.lines().all(|line| preset.text.contains(line)))
+        };
+        if !words.iter().any(may_have) {
+            return None; // parsing it would take long
+        }
+        let document = Document::parse(preset.name, preset.text).ok()?;
+        let shipped = document.scenario().ok()?;
+        let is_same = words
+            .iter()
+            .zip(words_of(&shipped))
+            .any(|(text, its)| text.is_some() && *text == its);
+        is_same.then_some((preset, shipped))
     })
+}
+
+/// Returns the words by which a preset is recognized: `about` and `look_at`.
+fn words_of(scenario: &Scenario) -> [Option<&str>; 2] {
+    [scenario.file.about.as_deref(), look_at(scenario)]
 }
 
 fn changes(before: &Scenario, now: &Scenario) -> Vec<String> {
     let [old, new] = [before, now].map(|run| in_force(run, u64::MAX).0);
     let (old_file, new_file) = (&before.file, &now.file);
-    let motion = |name: &str, unit: &str, [new, old]: [f64; 2]| {
-        (new != old).then(|| format!("{name} {} {unit}, not {}", shortest(new), shortest(old)))
-    };
     let [scheme, old_scheme] = [new, old].map(|motion| motion.scheme.name);
-    let changes = [
-        motion("dt", "s", [new.time_step_s, old.time_step_s]),
+    let found = [
+        number_change("dt", "s", [new.time_step_s, old.time_step_s]),
         (scheme != old_scheme).then(|| format!("{scheme} scheme, not {old_scheme}")),
-        motion("gravity", "m/s2", [new.gravity, old.gravity]),
+        number_change("gravity", "m/s2", [new.gravity, old.gravity]),
         (new_file.body != old_file.body).then(|| "another body".to_owned()),
         values("start", &old_file.start, &new_file.start),
         values("friction", &old_file.friction, &new_file.friction),
         push_change(before, now).map(str::to_owned),
     ];
-    let mut changes: Vec<String> = changes.into_iter().flatten().collect();
+    let mut changes: Vec<String> = found.into_iter().flatten().collect();
     if changes.is_empty() && new_file.edit != old_file.edit {
         changes.push("edits on the way".to_owned());
     }
     changes
+}
+
+fn number_change(name: &str, unit: &str, [new, old]: [f64; 2]) -> Option<String> {
+    (new != old).then(|| format!("{name} {} {unit}, not {}", shortest(new), shortest(old)))
 }
 
 /// How the table `name` has changed: the new values, or, where they are many, that it is another. `None` if it has not.
@@ -150,31 +159,39 @@ fn values<T: Serialize + PartialEq>(name: &str, before: &T, now: &T) -> Option<S
     if before == now {
         return None;
     }
-    // What is not there, as friction may be, is an empty table.
-    let [before, now] = [before, now].map(|table| Table::try_from(table).unwrap_or_default());
-    let new = now
-        .iter()
-        .filter(|(key, value)| before.get(*key) != Some(*value))
-        .map(|(key, value)| {
-            let is_plain = |value: &&Value| float(value).is_some() || value.is_array();
-            let old = before.get(key).filter(is_plain);
-            let old = old.filter(|_| is_plain(&value)).map(written);
-            let old = old.map_or(String::new(), |old| format!(", not {old}"));
-            format!("{name}.{key} {}{old}", written(value))
-        });
-    let new: Vec<_> = new.collect();
+    // A table that is absent, as friction may be, is an empty one.
+    let [old_table, new_table] =
+        [before, now].map(|table| Table::try_from(table).unwrap_or_default());
+    let mut new = Vec::new();
+    for (key, value) in &new_table {
+        match old_table.get(key) {
+            Some(old) if old == value => {}
+            Some(old) if is_plain(old) && is_plain(value) => {
+                new.push(format!(
+                    "{name}.{key} {}, not {}",
+                    written(value),
+                    written(old)
+                ));
+            }
+            _ => new.push(format!("{name}.{key} {}", written(value))),
+        }
+    }
     Some(match new.len() {
         1..=MOST_LISTED_CHANGES => new.join(", "),
         _ => format!("another {name}"),
     })
 }
 
-/// `value` as a reader writes it: as short as it can be.
+fn is_plain(value: &Value) -> bool {
+    float(value).is_some() || value.is_array()
+}
+
+/// Returns `value` as a reader writes it: as short as it can be.
 fn written(value: &Value) -> String {
     match value {
         Value::Array(list) => {
-            let list: Vec<_> = list.iter().map(written).collect();
-            format!("[{}]", list.join(", "))
+            let items: Vec<_> = list.iter().map(written).collect();
+            format!("[{}]", items.join(", "))
         }
         Value::String(word) => word.clone(),
         Value::Float(number) => shortest(*number),
@@ -186,7 +203,7 @@ fn written(value: &Value) -> String {
 fn push_change(before: &Scenario, now: &Scenario) -> Option<&'static str> {
     let (old, new) = (&before.file, &now.file);
     if new.push == old.push
-        || at_time_step(old, now.motion.time_step_s).is_ok_and(|rescaled| rescaled.push == new.push)
+        || at_time_step(old, now.motion.time_step_s).is_ok_and(|scaled| scaled.push == new.push)
     {
         return None;
     }

@@ -83,11 +83,12 @@ impl Operator {
         }
     }
 
+    /// The result with the value `left`; `right` computes the other one where it is needed.
     fn value(&self, left: Option<f64>, right: impl FnOnce() -> Option<f64>) -> Option<f64> {
         self.decided_by(left).or_else(|| {
-            let right = right();
-            let decided = self.decided_by(right);
-            decided.or_else(|| Some((self.apply)(left?, right?)))
+            let other = right();
+            let decided = self.decided_by(other);
+            decided.or_else(|| Some((self.apply)(left?, other?)))
         })
     }
 }
@@ -186,16 +187,19 @@ impl Expression {
             rest = left;
         }
         parts.push(rest);
-        let conjunct = |part: &ExpressionNode| Conjunct {
-            holds: part.value(&mut name).is_some_and(|value| value != 0.0),
-            left: match part {
-                ExpressionNode::Computed(operator, left, _) if operator.power == COMPARES => {
-                    left.off_by().unwrap_or(left).value(&mut name)
-                }
-                _ => None,
-            },
-        };
-        parts.into_iter().rev().map(conjunct).collect()
+        parts
+            .into_iter()
+            .rev()
+            .map(|part| Conjunct {
+                holds: part.value(&mut name).is_some_and(|value| value != 0.0),
+                left: match part {
+                    ExpressionNode::Computed(operator, left, _) if operator.power == COMPARES => {
+                        left.off_by().unwrap_or(left).value(&mut name)
+                    }
+                    _ => None,
+                },
+            })
+            .collect()
     }
 }
 
@@ -248,8 +252,8 @@ impl ExpressionNode {
             Self::Negated(inner) => Some(-inner.value(name)?),
             Self::Absolute(inner) => Some(inner.value(name)?.abs()),
             Self::Computed(operator, left, right) => {
-                let left = left.value(name);
-                operator.value(left, || right.value(name))
+                let known = left.value(name);
+                operator.value(known, || right.value(name))
             }
         }
     }
@@ -309,19 +313,21 @@ impl<'a> Parser<'a> {
 
     fn operator(&mut self) -> Option<&'static Operator> {
         let rest = self.rest();
-        let word = word(rest);
-        OPERATORS.iter().find(|operator| match word {
+        let read = word(rest);
+        OPERATORS.iter().find(|operator| match read {
             "" => rest.starts_with(operator.name),
             word => operator.name == word,
         })
     }
 
     fn fault<T>(column: usize, rule: impl Into<String>) -> Result<T, Fault> {
-        let rule = rule.into();
-        Err(Fault { column, rule })
+        Err(Fault {
+            column,
+            rule: rule.into(),
+        })
     }
 
-    /// Refuses what stands here, of which `rule` is true where it has a meaning elsewhere.
+    /// Error for the token at the cursor: `rule` if the token is known, else that it has no meaning.
     fn misplaced<T>(&mut self, rule: &str) -> Result<T, Fault> {
         let column = self.column();
         let rest = self.rest();
@@ -375,7 +381,7 @@ impl<'a> Parser<'a> {
 
     fn operand(&mut self) -> Result<ExpressionNode, Fault> {
         let (column, rest, operator) = (self.column(), self.rest(), self.operator());
-        let word = word(rest);
+        let read = word(rest);
         match (operator, rest.chars().next()) {
             (_, None) => Self::fault(column, "a number or a name is missing at the end"),
             (Some(operator), Some('-')) => {
@@ -386,24 +392,24 @@ impl<'a> Parser<'a> {
             }
             (None, Some('(')) => {
                 self.at += 1;
-                let inner = self.expression(0)?;
+                let inside = self.expression(0)?;
                 if !self.rest().starts_with(')') {
                     let rule = format!("the parenthesis of column {column} is not closed");
                     return Self::fault(self.column(), rule);
                 }
                 self.at += 1;
-                Ok(inner)
+                Ok(inside)
             }
             (None, Some(c)) if c.is_ascii_digit() || c == '.' => {
-                self.at += word.len();
-                match word.parse::<f64>() {
+                self.at += read.len();
+                match read.parse::<f64>() {
                     Ok(number) if number.is_finite() => Ok(ExpressionNode::Number(number)),
-                    _ => Self::fault(column, format!("{word} is no number")),
+                    _ => Self::fault(column, format!("{read} is no number")),
                 }
             }
-            (None, Some(_)) if !word.is_empty() => {
-                self.at += word.len();
-                match word {
+            (None, Some(_)) if !read.is_empty() => {
+                self.at += read.len();
+                match read {
                     "abs" => self.absolute(column),
                     name => Ok(ExpressionNode::Name(self.number_of(name, column))),
                 }
@@ -437,12 +443,13 @@ mod tests {
     use super::*;
 
     fn value(text: &str) -> Option<f64> {
-        Expression::parse(text).unwrap().value(|name| match name {
+        let numbers = |name: &str| match name {
             "t_s" => Some(60.0),
             "tilt_deg" => Some(-3.0),
             "push.0.force_N.2" => Some(-50.0),
             _ => None,
-        })
+        };
+        Expression::parse(text).unwrap().value(numbers)
     }
 
     fn fault(text: &str) -> (usize, String) {

@@ -14,7 +14,7 @@ const PUSH_DURATION_SHARE: f64 = 0.1;
 /// Force of the default push, in weights of the body.
 const WEIGHTS: f64 = 2.0;
 
-/// A point stands on the vertical, where "out" has no direction, if its distance from it is at most this share of its
+/// A point is on the vertical, where "out" has no direction, if its distance from it is at most this share of its
 /// distance from the pivot.
 const ON_VERTICAL: f64 = 1e-9;
 
@@ -71,8 +71,8 @@ impl PushField {
 }
 
 impl NextPush {
-    /// The first push of `scenario`; where it has none, a default push that visibly moves its body.
-    pub fn of(scenario: &Scenario) -> Self {
+    /// Returns the first push of `scenario`; where it has none, a default push that visibly moves its body.
+    pub fn suggested_for(scenario: &Scenario) -> Self {
         let own = scenario.file.push.first().zip(scenario.pushes.first());
         let Some((file, push)) = own.filter(|(_, push)| push.force.norm() > 0.0) else {
             return Self::default_for(scenario);
@@ -80,12 +80,11 @@ impl NextPush {
         let size = push.force.norm();
         let unit = push.force / size;
         let mut named = Toward::NAMED.into_iter().map(|(_, toward)| toward);
+        let same = named.find(|toward| toward.direction(&Vector3::zeros()) == Ok(unit));
         Self {
             point: file.point.clone(),
             size_N: size,
-            toward: named
-                .find(|toward| toward.direction(&Vector3::zeros()) == Ok(unit))
-                .unwrap_or(Toward::Along(unit.into())),
+            toward: same.unwrap_or(Toward::Along(unit.into())),
             from_s: 0.0,
             for_s: match push.window {
                 Window::Steps { count, .. } => count as f64 * scenario.written_for_s,
@@ -94,16 +93,15 @@ impl NextPush {
         }
     }
 
-    /// A push of two weights downwards on the traced point, for a tenth of the run.
+    /// Returns a push of two weights downwards on the traced point, for a tenth of the run.
     fn default_for(scenario: &Scenario) -> Self {
         let body = &scenario.body.mechanics;
         let weight = body.mass() * scenario.motion.gravity.abs().max(1.0);
         let length_s = scenario.steps as f64 * scenario.motion.time_step_s;
         let names = scenario.body.names();
-        let point = names
-            .iter()
-            .find(|name| scenario.body.point(name) == Some(scenario.trace))
-            .or(names.first());
+        let mut points = names.iter();
+        let traced = points.find(|name| scenario.body.point(name) == Some(scenario.trace));
+        let point = traced.or(names.first());
         Self {
             point: point.copied().unwrap_or_default().to_owned(),
             size_N: at_or_below(WEIGHTS * weight),
@@ -113,7 +111,7 @@ impl NextPush {
         }
     }
 
-    /// The same push, on the default point where the body of `scenario` has no point of its name.
+    /// Returns the same push, on the default point where the body of `scenario` has no point of its name.
     pub fn suited_to(self, scenario: &Scenario) -> Self {
         if scenario.body.point(&self.point).is_some() {
             return self;
@@ -122,7 +120,7 @@ impl NextPush {
         Self { point, ..self }
     }
 
-    /// The value of `field` as text that [`typed`](Self::typed) reads back.
+    /// Returns the value of `field` as text that [`typed`](Self::typed) reads back.
     pub fn shown(&self, field: PushField) -> String {
         match field {
             PushField::Point => self.point.clone(),
@@ -135,7 +133,7 @@ impl NextPush {
         }
     }
 
-    /// The push with `field` nudged `times` times, downwards where negative.
+    /// Returns the push with `field` nudged `times` times, downwards where negative.
     pub fn nudged(
         &self,
         field: PushField,
@@ -160,7 +158,7 @@ impl NextPush {
         next.checked()
     }
 
-    /// The push with the value of `field` that the user typed. A duration in steps is converted with `time_step_s` (s).
+    /// Returns the push with the value of `field` that the user typed. A duration in steps is converted with `time_step_s` (s).
     pub fn typed(
         &self,
         field: PushField,
@@ -212,7 +210,7 @@ impl NextPush {
         Ok(self)
     }
 
-    /// The push as a table of a run file, beginning at the time of `state`. Its times are in seconds, so that an edit of
+    /// Returns the push as a table of a run file, beginning at the time of `state`. Its times are in seconds, so that an edit of
     /// the time step does not change its duration.
     pub fn given(&self, scenario: &Scenario, state: &State) -> Result<PushFile, String> {
         let body = &scenario.body;
@@ -289,7 +287,7 @@ impl Toward {
         ("-y", Self::Along([0.0, -1.0, 0.0])),
     ];
 
-    /// The direction as text that [`typed`](Self::typed) reads back.
+    /// Returns the direction as text that [`typed`](Self::typed) reads back.
     pub fn shown(self) -> String {
         let named = Self::NAMED.iter().find(|(_, toward)| *toward == self);
         match (named, self) {
@@ -301,24 +299,25 @@ impl Toward {
 
     /// Reads a direction: a name, or three numbers.
     pub fn typed(text: &str) -> Result<Self, String> {
-        let text = text.trim().trim_matches(['[', ']']);
-        if let Some((_, toward)) = Self::NAMED.iter().find(|(name, _)| *name == text) {
+        let written = text.trim().trim_matches(['[', ']']);
+        if let Some((_, toward)) = Self::NAMED.iter().find(|(name, _)| *name == written) {
             return Ok(*toward);
         }
-        let numbers: Vec<f64> = text
+        let numbers: Vec<f64> = written
             .split([' ', ','])
             .filter(|part| !part.is_empty())
             .map_while(|part| part.parse().ok().filter(|number: &f64| number.is_finite()))
             .collect();
-        let direction = <[f64; 3]>::try_from(numbers).ok();
-        let direction = direction.filter(|direction| Vector3::from(*direction).norm() > 0.0);
-        direction.map(Self::Along).ok_or_else(|| {
-            let names = Self::NAMED.map(|(name, _)| name).join(", ");
-            format!("toward must be one of {names}, or three numbers")
-        })
+        match <[f64; 3]>::try_from(numbers) {
+            Ok(direction) if Vector3::from(direction).norm() > 0.0 => Ok(Self::Along(direction)),
+            _ => {
+                let names = Self::NAMED.map(|(name, _)| name).join(", ");
+                Err(format!("toward must be one of {names}, or three numbers"))
+            }
+        }
     }
 
-    /// The unit vector of the direction, world frame, for a point that stands at `at` (world frame, m).
+    /// Returns the unit vector of the direction, world frame, for a point at `at` (world frame, m).
     fn direction(self, at: &Vector3<f64>) -> Result<Vector3<f64>, String> {
         let out = Vector3::new(at.x, at.y, 0.0);
         let around = Vector3::new(-at.y, at.x, 0.0);
@@ -351,9 +350,9 @@ mod tests {
 
     #[test]
     fn the_first_suggestion_is_the_scenarios_own_push_or_a_strong_one() {
-        let own = NextPush::of(&scenario("wobble-push"));
+        let own = NextPush::suggested_for(&scenario("wobble-push"));
         assert_eq!(own.in_words(), "100 N on top, down, for 20 s");
-        let default = NextPush::of(&scenario("method-2"));
+        let default = NextPush::suggested_for(&scenario("method-2"));
         assert!(default.in_words().contains("N on top, down, for "));
         assert!(default.size_N >= 49.0 && default.for_s > 0.0, "{default:?}");
     }
@@ -361,7 +360,7 @@ mod tests {
     #[test]
     fn shown_values_can_be_typed_and_invalid_ones_are_refused() {
         let scenario = scenario("method-2");
-        let push = NextPush::of(&scenario);
+        let push = NextPush::suggested_for(&scenario);
         for field in PushField::ALL {
             assert_eq!(
                 push.typed(field, &push.shown(field), &scenario, 0.1),

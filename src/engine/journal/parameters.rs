@@ -115,9 +115,10 @@ fn length(table: &Table, array: &str) -> usize {
 }
 
 fn names(table: &Table, array: &str) -> Vec<String> {
-    let names = (0..length(table, array))
-        .filter_map(|index| find(table, &format!("{array}.{index}.name"))?.as_str());
-    names.map(str::to_owned).collect()
+    (0..length(table, array))
+        .filter_map(|index| find(table, &format!("{array}.{index}.name"))?.as_str())
+        .map(str::to_owned)
+        .collect()
 }
 
 /// The parameters of one key, at its `place` in `table`: none, one, or the three components of a vector.
@@ -131,9 +132,11 @@ fn parameters_of(
         return Vec::new();
     };
     let written = find(table, place);
-    let unwritten =
-        || present(key, place, table, scenario).or_else(|| key.default.map(Value::from));
-    let Some(value) = written.cloned().or_else(unwritten) else {
+    let value = written.cloned();
+    let Some(value) = value
+        .or_else(|| present(key, place, table, scenario))
+        .or_else(|| key.default.map(Value::from))
+    else {
         return Vec::new();
     };
     let parameter = Parameter {
@@ -162,11 +165,10 @@ fn parameters_of(
 /// momentum of a start that is given in another way, the axis and the length of a part.
 fn present(key: &SchemaRow, place: &str, table: &Table, scenario: &Scenario) -> Option<Value> {
     let start = &scenario.start;
-    let spin = || scenario.spin_rad_per_s(start);
     match key.path {
         "start.momentum_Js" => Some(vector(&start.momentum)),
-        "start.spin_rpm" => Some(start::rpm(spin()).into()),
-        "start.spin_rad_per_s" => Some(spin().into()),
+        "start.spin_rpm" => Some(start::rpm(scenario.spin_rad_per_s(start)).into()),
+        "start.spin_rad_per_s" => Some(scenario.spin_rad_per_s(start).into()),
         "start.precession_rad_per_s" | "start.nutation_rad_per_s" | "start.psi_dot_rad_per_s" => {
             Some(Value::Float(0.0))
         }
@@ -185,14 +187,16 @@ fn is_offered(place: &str, table: &Table) -> bool {
     let Some((inside, name)) = place.rsplit_once('.') else {
         return true;
     };
-    let has = |name: &str| find(table, &join(inside, name)).is_some();
-    let is_in_seconds = || has("from_s") || has("for_s");
+    let has = |names: &[&str]| {
+        let mut keys = names.iter().map(|name| join(inside, name));
+        keys.any(|key| find(table, &key).is_some())
+    };
     match (inside.split('.').next(), name) {
-        (Some("start"), "omega_rad_per_s" | "omega_frame") => has("omega_rad_per_s"),
-        (Some("start"), name) if start::EULER.contains(&name) => start::EULER.into_iter().any(has),
-        (Some("body"), "about") => has("moments_kg_m2"),
-        (Some("push"), "first_step" | "steps" | "accumulates") => !is_in_seconds(),
-        (Some("push"), "from_s" | "for_s") => is_in_seconds(),
+        (Some("start"), "omega_rad_per_s" | "omega_frame") => has(&["omega_rad_per_s"]),
+        (Some("start"), name) if start::EULER.contains(&name) => has(&start::EULER),
+        (Some("body"), "about") => has(&["moments_kg_m2"]),
+        (Some("push"), "first_step" | "steps" | "accumulates") => !has(&["from_s", "for_s"]),
+        (Some("push"), "from_s" | "for_s") => has(&["from_s", "for_s"]),
         _ => true,
     }
 }
@@ -202,9 +206,10 @@ fn group(place: &str, table: &Table) -> String {
     match names[..] {
         [_] => "scenario".to_owned(),
         ["body", kind @ ("point" | "part"), index, ..] => {
-            let name = find(table, &format!("body.{kind}.{index}.name")).and_then(Value::as_str);
-            let name = name.map_or(index.to_owned(), |name| brief(name, 40));
-            format!("{kind} {name}")
+            match find(table, &format!("body.{kind}.{index}.name")).and_then(Value::as_str) {
+                Some(name) => format!("{kind} {}", brief(name, 40)),
+                None => format!("{kind} {index}"),
+            }
         }
         ["push", index, ..] => format!("push {index}"),
         _ => names[0].to_owned(),
@@ -267,10 +272,9 @@ impl Parameter {
             (Value::Integer(value), _) => Value::Integer(nudge::whole(*value, times)),
             (value, rule) => {
                 let number = float(value);
-                let nudged = number
-                    .and_then(|number| nudge::number(number, self.size, rule, times))
-                    .ok_or("cannot be nudged: type it")?;
-                Value::Float(nudged)
+                let nudged =
+                    number.and_then(|number| nudge::number(number, self.size, rule, times));
+                Value::Float(nudged.ok_or("cannot be nudged: type it")?)
             }
         };
         self.checked(value)
@@ -279,10 +283,10 @@ impl Parameter {
     /// The choice `times` places after the present one; after the last comes the first.
     fn cycled(&self, times: i32) -> Result<String, String> {
         let is_now = |choice: &String| Some(choice.as_str()) == self.value.as_str();
-        let next = nudge::cycled(&self.choices, is_now, times);
-        let next = next.filter(|next| self.choices.len() > 1 || !is_now(next));
-        let next = next.ok_or("has no other choice")?;
-        Ok(next.clone())
+        match nudge::cycled(&self.choices, is_now, times) {
+            Some(next) if self.choices.len() > 1 || !is_now(next) => Ok(next.clone()),
+            _ => Err("has no other choice".to_owned()),
+        }
     }
 
     /// The value that the user typed: a number with or without its unit, a word, true or false, or text.
@@ -307,16 +311,19 @@ impl Parameter {
     }
 
     fn components(self) -> Vec<Parameter> {
-        let numbers = self.value.as_array().into_iter().flatten();
-        let numbers = numbers.filter_map(float);
-        let component = |(index, number)| Parameter {
-            key: join(&self.key, &format!("{index}")),
-            label: format!("{}{}", self.label, ["x", "y", "z"][index]),
-            value: Value::Float(number),
-            kind: ValueKind::Number(Range::Any),
-            ..self.clone()
-        };
-        numbers.take(3).enumerate().map(component).collect()
+        let items = self.value.as_array().into_iter().flatten();
+        items
+            .filter_map(float)
+            .zip(["x", "y", "z"])
+            .enumerate()
+            .map(|(index, (number, axis))| Parameter {
+                key: join(&self.key, &format!("{index}")),
+                label: format!("{}{axis}", self.label),
+                value: Value::Float(number),
+                kind: ValueKind::Number(Range::Any),
+                ..self.clone()
+            })
+            .collect()
     }
 }
 
@@ -345,6 +352,6 @@ fn typed_flag(text: &str) -> Result<bool, String> {
 /// `text` with each written `\n` replaced by a line end, and each `\\` by a backslash.
 fn unescaped(text: &str) -> String {
     const BACKSLASH: &str = "\0"; // for a while: no text may hold it
-    let text = text.replace(r"\\", BACKSLASH).replace(r"\n", "\n");
-    text.replace(BACKSLASH, r"\")
+    let with_line_ends = text.replace(r"\\", BACKSLASH).replace(r"\n", "\n");
+    with_line_ends.replace(BACKSLASH, r"\")
 }

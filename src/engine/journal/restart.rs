@@ -33,10 +33,10 @@ pub fn scenario_from(scenario: &Scenario, state: &State, step: u64) -> Result<Sc
         step,
         motion: &motion,
     };
-    let moved = pushes.iter().enumerate();
-    let moved = moved.filter_map(|(index, push)| now.push(index, push).transpose());
-    let push: Result<_, _> = moved.collect();
-    let push = push.map_err(|problem| Problems::one(origin, problem))?;
+    let numbered = pushes.iter().enumerate();
+    let push: Result<_, _> = numbered
+        .filter_map(|(index, push)| now.push(index, push).transpose())
+        .collect();
     let old = &scenario.file;
     let time_s = number::significant(state.time_s, 7);
     let speed = old.viewed("speed").cloned();
@@ -54,7 +54,7 @@ pub fn scenario_from(scenario: &Scenario, state: &State, step: u64) -> Result<Sc
             time_step_s: motion.time_step_s,
             steps: steps_of_same_length(scenario, &motion),
         },
-        push,
+        push: push.map_err(|problem| Problems::one(origin, problem))?,
         friction: old.friction,
         view: speed.map(|speed| Table::from_iter([("speed".to_owned(), speed)]).into()),
         ..ScenarioFile::default()
@@ -232,8 +232,8 @@ pub fn as_advised(
 /// The edits of `scenario` that a run as advised leaves out, in words: time step, scheme or both. `None` where it has
 /// none.
 pub fn replaced(scenario: &Scenario) -> Option<&'static str> {
-    let edits = |key: &str| (scenario.file.edit.iter()).any(|edit| edit.set.contains_key(key));
-    match REPLACED.map(edits) {
+    let edits = &scenario.file.edit;
+    match REPLACED.map(|key| edits.iter().any(|edit| edit.set.contains_key(key))) {
         [true, true] => Some("the edits of dt and scheme"),
         [true, false] => Some("the edits of dt"),
         [false, true] => Some("the edits of the scheme"),
@@ -243,11 +243,10 @@ pub fn replaced(scenario: &Scenario) -> Option<&'static str> {
 
 /// Whether `value`, set at `key`, makes a push count in steps.
 fn counts(key: &str, value: &Value) -> bool {
-    let is_counted = |name: &str| COUNTED.contains(&name);
     let last = key.rsplit('.').next().unwrap_or_default();
-    let inside = value.as_table().into_iter().flat_map(Table::keys);
+    let mut inside = value.as_table().into_iter().flat_map(Table::keys);
     number_of_push(key).is_some()
-        && (is_counted(last) || inside.into_iter().any(|name| is_counted(name)))
+        && (COUNTED.contains(&last) || inside.any(|name| COUNTED.contains(&name.as_str())))
 }
 
 #[cfg(test)]

@@ -207,7 +207,7 @@ fn a_new_run_begins_with_the_settings_of_the_old_one() {
 }
 
 fn leave(journal: &mut Journal, step: u64) {
-    journal.set_left_at(step, &NextPush::of(&opened_scenario("method-2")));
+    journal.set_left_at(step, &NextPush::suggested_for(&opened_scenario("method-2")));
 }
 
 fn begin_with_tilt(journal: &mut Journal, left_at: u64, tilt_deg: f64, coalesces: bool) {

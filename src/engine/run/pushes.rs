@@ -53,11 +53,11 @@ pub fn acting(
 ) {
     forces.clear();
     for push in pushes {
-        let factor = factor(push, counting, stretch);
-        if factor != 0.0 {
+        let multiple = factor(push, counting, stretch);
+        if multiple != 0.0 {
             forces.push(PointForce {
                 point: push.point,
-                force: push.force * factor,
+                force: push.force * multiple,
             });
         }
     }
@@ -77,12 +77,9 @@ fn factor(push: &Push, counting: Counting, stretch: &Stretch) -> f64 {
         (Window::Steps { first, count }, Counting::Seconds { written_for_s })
             if push.accumulates =>
         {
-            let own_steps = |time_s: f64| time_s / written_for_s - (first - 1) as f64;
-            mean_growth(
-                own_steps(stretch.begin),
-                own_steps(stretch.end),
-                count as f64,
-            )
+            let [begin, end] = [stretch.begin, stretch.end]
+                .map(|time_s| time_s / written_for_s - (first - 1) as f64);
+            mean_growth(begin, end, count as f64)
         }
         (window, counting) => {
             let (from, to) = seconds(window, counting);
@@ -99,14 +96,14 @@ fn mean_growth(begin: f64, end: f64, count: f64) -> f64 {
         return nth.clamp(0.0, count);
     }
     // The factors summed up to a time: whole steps 1 + 2 + ..., and the begun one.
-    let sum = |time: f64| {
+    let [sum_to_begin, sum_to_end] = [begin, end].map(|time: f64| {
         let growing = time.clamp(0.0, count);
         let whole = growing.floor();
         whole * (whole + 1.0) / 2.0
             + (growing - whole) * (whole + 1.0)
             + (time - count).max(0.0) * count
-    };
-    (sum(end) - sum(begin)) / (end - begin)
+    });
+    (sum_to_end - sum_to_begin) / (end - begin)
 }
 
 impl Counting {
@@ -144,13 +141,10 @@ fn share(from: f64, to: f64, stretch: &Stretch) -> f64 {
         // A time step so small that it does not move t.
         return f64::from(from <= stretch.begin && stretch.begin < to);
     }
-    let share = (to.min(stretch.end) - from.max(stretch.begin)) / length;
-    if share <= STEP_PART_ROUNDING {
-        0.0
-    } else if share >= 1.0 - STEP_PART_ROUNDING {
-        1.0
-    } else {
-        share
+    match (to.min(stretch.end) - from.max(stretch.begin)) / length {
+        share if share <= STEP_PART_ROUNDING => 0.0,
+        share if share >= 1.0 - STEP_PART_ROUNDING => 1.0,
+        share => share,
     }
 }
 

@@ -121,7 +121,7 @@ impl Simulation {
         }
         self.now.derived = Derived::default();
         let mut workings = self.keeps_workings.then(Workings::default);
-        let work = self.advance(workings.as_mut());
+        let work = self.integrate_step(workings.as_mut());
         let now = &mut self.now;
         now.after.time_s = self.clock.time_s(now.number + 1);
         // Only near the largest numbers can one of them overflow: there each is checked.
@@ -178,9 +178,9 @@ impl Simulation {
         Ok(())
     }
 
-    /// Goes on in `scenario` from here. It must have the same past: what differs in it acts on the steps to come, and the
-    /// steps taken so far are those it would have led to. A run that has [ended](Self::has_ended) cannot go on.
-    pub fn go_on_in(&mut self, scenario: Arc<Scenario>) {
+    /// Continues in `scenario` from here. It must have the same past: what differs in it acts on the steps to come, and the
+    /// steps taken so far are those it would have led to. A run that has [ended](Self::has_ended) cannot continue.
+    pub fn branch(&mut self, scenario: Arc<Scenario>) {
         self.edits_made = scenario
             .edits
             .partition_point(|edit| edit.step < self.now.number);
@@ -200,10 +200,10 @@ impl Simulation {
     }
 
     /// Takes the state through the coming step and returns the work the pushes did on the way, J.
-    fn advance(&mut self, mut workings: Option<&mut Workings>) -> f64 {
+    fn integrate_step(&mut self, mut workings: Option<&mut Workings>) -> f64 {
         let time_step_s = self.now.motion.time_step_s;
         if self.pushes.is_empty() {
-            self.take_part(time_step_s, workings);
+            self.integrate_part(time_step_s, workings);
             return 0.0;
         }
         let mut stretch = Stretch::step(self.now.number + 1, &self.clock);
@@ -213,7 +213,7 @@ impl Simulation {
             while let Some(change) = pushes::next_change(&self.pushes, self.counting, &stretch) {
                 stretch.end = change;
                 let length = change - stretch.begin;
-                work += self.advance_under_push(&stretch, length, workings.as_deref_mut());
+                work += self.integrate_under_push(&stretch, length, workings.as_deref_mut());
                 (stretch.begin, stretch.end) = (change, end);
             }
         }
@@ -223,10 +223,10 @@ impl Simulation {
         } else {
             end - stretch.begin
         };
-        work + self.advance_under_push(&stretch, length, workings)
+        work + self.integrate_under_push(&stretch, length, workings)
     }
 
-    fn advance_under_push(
+    fn integrate_under_push(
         &mut self,
         stretch: &Stretch,
         length: f64,
@@ -239,20 +239,22 @@ impl Simulation {
             self.scheme.load(&self.now.loads);
         }
         let before = self.now.after;
-        self.take_part(length, workings);
+        self.integrate_part(length, workings);
         let now = &self.now;
         let body = &now.scenario.body.mechanics;
-        let at = |state: &State, push: &PointForce| observables::position(body, state, push.point);
-        now.loads
-            .pushes
-            .iter()
-            .map(|push| push.force.dot(&(at(&now.after, push) - at(&before, push))))
+        let pushes = now.loads.pushes.iter();
+        pushes
+            .map(|push| {
+                let [from, to] = [&before, &now.after]
+                    .map(|state| observables::position(body, state, push.point));
+                push.force.dot(&(to - from))
+            })
             .sum()
     }
 
     /// Lets the scheme take the state `length_s` further under the present loads.
     #[inline]
-    fn take_part(&mut self, length_s: f64, workings: Option<&mut Workings>) {
+    fn integrate_part(&mut self, length_s: f64, workings: Option<&mut Workings>) {
         let state = &mut self.now.after;
         match workings {
             None => self.scheme.step(length_s, state),

@@ -56,7 +56,7 @@ impl EnergyAccount {
             start: kinetic + scenario.motion.gravity * observables::weight_height(body, state),
             work: 0.0,
             friction: 0.0,
-            scale: EnergyScale::of(scenario),
+            scale: EnergyScale::find(scenario),
         }
     }
 }
@@ -114,28 +114,25 @@ impl Step {
     /// The traced point, world frame, m.
     #[inline]
     pub fn position(&self) -> &Vector3<f64> {
-        let body = &self.scenario.body.mechanics;
-        self.derived
-            .position
-            .get_or_init(|| observables::position(body, &self.after, self.scenario.trace))
+        self.derived.position.get_or_init(|| {
+            let body = &self.scenario.body.mechanics;
+            observables::position(body, &self.after, self.scenario.trace)
+        })
     }
 
     /// ω = I⁻¹L after it, world frame, rad/s.
     #[inline]
     pub fn angular_velocity(&self) -> &Vector3<f64> {
-        let body = &self.scenario.body.mechanics;
-        self.derived
-            .angular_velocity
-            .get_or_init(|| observables::angular_velocity(body, &self.after))
+        self.derived.angular_velocity.get_or_init(|| {
+            observables::angular_velocity(&self.scenario.body.mechanics, &self.after)
+        })
     }
 
     /// Angle of the axle from +z, degrees.
     #[inline]
     pub fn tilt_deg(&self) -> f64 {
-        *self
-            .derived
-            .tilt_deg
-            .get_or_init(|| observables::tilt_deg(&self.after))
+        let tilt = &self.derived.tilt_deg;
+        *tilt.get_or_init(|| observables::tilt_deg(&self.after))
     }
 
     /// Kinetic and potential energy, from the pivot, J.
@@ -265,12 +262,12 @@ pub struct EnergyScale {
 }
 
 impl EnergyScale {
-    /// M g |c|, or the kinetic energy at the start where M g |c| is below 1e-9 of it; `None` where both are 0 (M g |c| but
-    /// for rounding), or beyond the range of numbers.
-    pub fn of(scenario: &Scenario) -> Option<Self> {
+    /// Returns M g |c|, or the kinetic energy at the start where M g |c| is below 1e-9 of it; `None` where both are 0 (M g
+    /// |c| up to rounding), or beyond the range of numbers.
+    pub fn find(scenario: &Scenario) -> Option<Self> {
         let body = &scenario.body.mechanics;
         let kinetic = observables::kinetic_energy(body, &scenario.start);
-        let weight = scenario.motion.gravity.abs() * moment(body);
+        let weight = scenario.motion.gravity.abs() * first_moment(body);
         let (size, unit) = if weight > 0.0 && weight >= LEAST_ENERGY_PART * kinetic {
             (weight, EnergyUnit::Weight)
         } else {
@@ -280,15 +277,13 @@ impl EnergyScale {
     }
 }
 
-/// M |c|, kg m; 0 where it is what rounding leaves of a sum that should be 0.
-fn moment(body: &Body) -> f64 {
-    let moment = body.first_moment().norm();
-    let parts = body
-        .points()
-        .iter()
-        .map(|point| point.mass * point.at.norm());
-    if moment > CENTER_ROUNDING * parts.sum::<f64>() {
-        moment
+/// Returns M |c|, kg m; 0 where rounding leaves it of a sum that should be 0.
+fn first_moment(body: &Body) -> f64 {
+    let first_moment = body.first_moment().norm();
+    let points = body.points().iter();
+    let parts: f64 = points.map(|point| point.mass * point.at.norm()).sum();
+    if first_moment > CENTER_ROUNDING * parts {
+        first_moment
     } else {
         0.0
     }

@@ -95,8 +95,8 @@ impl Truth {
         }
     }
 
-    /// Goes on as the exact motion of `scenario`, whose past is the same up to the time asked for last.
-    pub fn go_on_in(&mut self, scenario: &Arc<Scenario>) {
+    /// Continues as the exact motion of `scenario`, whose past is the same up to the time asked for last.
+    pub fn branch(&mut self, scenario: &Arc<Scenario>) {
         self.eras = eras(scenario);
         self.scenario = Arc::clone(scenario);
         let begin_s = self.piece.begin_s();
@@ -150,14 +150,13 @@ impl Truth {
     /// When the forces change next after `begin` (s).
     fn end_of_piece(&self, begin: f64) -> f64 {
         let index = self.era_at(begin);
-        let next_era = self.eras.get(index + 1);
-        let next_era = next_era.map_or(f64::INFINITY, |era| era.begin_s);
-        pushes::next_after(
-            &self.eras[index].pushes,
-            Counting::in_seconds(&self.scenario),
-            begin,
-        )
-        .min(next_era)
+        let counting = Counting::in_seconds(&self.scenario);
+        let next_push = pushes::next_after(&self.eras[index].pushes, counting, begin);
+        let next_era = self
+            .eras
+            .get(index + 1)
+            .map_or(f64::INFINITY, |era| era.begin_s);
+        next_push.min(next_era)
     }
 
     /// The forces of the piece from `begin` to [`end_s`](Self::end_s), s.
@@ -199,14 +198,13 @@ fn eras(scenario: &Scenario) -> Vec<Era> {
     }];
     for (begin_s, edit) in Clock::edits(scenario) {
         // An edit of the time step or the scheme touches no force, and so not a bit of the exact motion.
-        let goes_on =
-            |last: &Era| last.gravity == edit.motion.gravity && last.pushes == edit.pushes;
-        if !eras.last().is_some_and(goes_on) {
-            eras.push(Era {
+        match eras.last() {
+            Some(last) if last.gravity == edit.motion.gravity && last.pushes == edit.pushes => {}
+            _ => eras.push(Era {
                 begin_s,
                 gravity: edit.motion.gravity,
                 pushes: edit.pushes.clone(),
-            });
+            }),
         }
     }
     eras

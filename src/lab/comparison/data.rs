@@ -116,7 +116,7 @@ impl DataComparison {
         if self.simulation.step_number() > step || self.has_broken {
             return self.begin(scenario);
         }
-        self.simulation.go_on_in(Arc::clone(scenario));
+        self.simulation.branch(Arc::clone(scenario));
         self.reader.forget_after(self.simulation.now().time_s());
     }
 

@@ -136,7 +136,7 @@ impl LiveRun {
         };
         let mut again = stored.simulation.clone();
         if !Arc::ptr_eq(again.scenario(), self.scenario()) {
-            again.go_on_in(Arc::clone(self.scenario()));
+            again.branch(Arc::clone(self.scenario()));
         }
         again
     }
@@ -165,7 +165,7 @@ impl LiveRun {
     /// step on. The pictures stay: where it leads to other numbers, call [`branch`](Self::branch).
     pub fn replace_metadata(&mut self, scenario: &Arc<Scenario>) {
         if !Arc::ptr_eq(self.simulation.scenario(), scenario) {
-            self.simulation.go_on_in(Arc::clone(scenario));
+            self.simulation.branch(Arc::clone(scenario));
             self.monitor.beside.go_on_in(scenario);
         }
     }

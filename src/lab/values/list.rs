@@ -53,10 +53,8 @@ impl ValueList {
 
     /// Selects the value `label` of `group`; returns whether there is one.
     pub fn select(&mut self, group: &str, label: &str) -> bool {
-        let found = self
-            .values
-            .iter()
-            .position(|value| value.group == group && value.label == label);
+        let mut values = self.values.iter();
+        let found = values.position(|value| value.group == group && value.label == label);
         self.selected = found.unwrap_or(self.selected);
         found.is_some()
     }
@@ -153,7 +151,7 @@ impl ListedValue {
     /// How its group, label and key answer the search for `name`.
     pub(super) fn answers(&self, name: &str) -> Option<Match> {
         let key = self.key.as_deref().unwrap_or_default();
-        Match::of(&format!("{} {} {key}", self.group, self.label), name)
+        Match::find(&format!("{} {} {key}", self.group, self.label), name)
     }
 }
 
@@ -167,20 +165,18 @@ pub enum Match {
 }
 
 impl Match {
-    /// How `names` answer the search for `name`; `None` where they do not.
-    pub fn of(names: &str, name: &str) -> Option<Self> {
-        let (names, name) = (names.to_lowercase(), name.to_lowercase());
+    /// Returns how `names` answer the search for `name`; `None` where they do not.
+    pub fn find(names: &str, name: &str) -> Option<Self> {
+        let (text, search) = (names.to_lowercase(), name.to_lowercase());
         let begins = |wanted: &str| {
-            let mut words = names.split(|c: char| !c.is_alphanumeric());
-            names.starts_with(wanted) || words.any(|word| word.starts_with(wanted))
+            let mut words = text.split(|c: char| !c.is_alphanumeric());
+            text.starts_with(wanted) || words.any(|word| word.starts_with(wanted))
         };
-        let mut wanted = name.split_whitespace();
+        let mut wanted = search.split_whitespace();
         if wanted.clone().all(begins) {
             return Some(Self::Word);
         }
-        wanted
-            .all(|word| names.contains(word))
-            .then_some(Self::Part)
+        wanted.all(|word| text.contains(word)).then_some(Self::Part)
     }
 }
 
@@ -191,7 +187,7 @@ mod tests {
     use crate::lab::for_tests::scenario;
 
     /// A value of a scenario that is listed under this group and label.
-    fn of((group, label): (&str, &str)) -> ListedValue {
+    fn listed((group, label): (&str, &str)) -> ListedValue {
         let scenario = scenario();
         let mut parameter = parameters(&table_of(&scenario.file), &scenario).remove(0);
         parameter.key.clear();
@@ -202,7 +198,7 @@ mod tests {
 
     fn list(values: &[(&str, &str)]) -> ValueList {
         let mut list = ValueList::default();
-        list.set(values.iter().copied().map(of).collect());
+        list.set(values.iter().copied().map(listed).collect());
         list
     }
 
@@ -217,12 +213,12 @@ mod tests {
         assert!(list.select("motion", "dt"));
         list.set(
             [("body", "dt"), ("start", "tilt"), ("motion", "dt")]
-                .map(of)
+                .map(listed)
                 .into(),
         );
         assert_eq!(selected(&list), "motion dt");
         // Gone: the value that stands there now, or the last.
-        list.set([("start", "tilt"), ("start", "Lx")].map(of).into());
+        list.set([("start", "tilt"), ("start", "Lx")].map(listed).into());
         assert_eq!(selected(&list), "start Lx");
         list.set(Vec::new());
         assert_eq!(list.selected(), None);

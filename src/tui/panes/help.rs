@@ -239,10 +239,10 @@ impl HelpEntry {
         }
         let further = self.binding.map_or("", |binding| binding.search);
         let all = format!("{} {short} {} {further}", self.name(), self.text);
-        match Match::of(&all, lower) {
+        match Match::find(&all, lower) {
             Some(Match::Word) => Some(3),
             Some(Match::Part) => Some(4),
-            None => Match::of(&format!("{all} {}", self.group), lower).map(|_| 5),
+            None => Match::find(&format!("{all} {}", self.group), lower).map(|_| 5),
         }
     }
 }

@@ -172,7 +172,7 @@ impl Parameters<'_> {
         lines.extend(shown(self.view, now_lines(self.reading)));
         lines.extend(shown(self.view, further_lines(self.reading)));
         let answer =
-            |line: &ParameterLine| Match::of(&line.label, name).filter(|_| !line.is_heading());
+            |line: &ParameterLine| Match::find(&line.label, name).filter(|_| !line.is_heading());
         let best = lines.iter().filter_map(answer).min();
         let mut is_found = false;
         lines.retain(|line| {

@@ -166,7 +166,7 @@ impl Overlay {
 
     /// Continues as the exact motion of `scenario`, which has the same motion up to the present time.
     pub fn branch(&mut self, scenario: &Arc<Scenario>) {
-        self.truth.go_on_in(scenario);
+        self.truth.branch(scenario);
     }
 
     /// Advances to `time_s` (s), or until `is_over` returns true.
