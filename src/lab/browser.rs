@@ -230,8 +230,8 @@ fn may_hold_run(name: &str) -> bool {
     }
     let text = String::from_utf8_lossy(&head);
     text.lines().any(|line| {
-        let name = line.trim_start_matches(['#', ' ', '\t', '\u{feff}', '[']);
-        let rest = name.strip_prefix("motion").map(str::trim_start);
+        let begun = line.trim_start_matches(['#', ' ', '\t', '\u{feff}', '[']);
+        let rest = begun.strip_prefix("motion").map(str::trim_start);
         rest.is_some_and(|rest| rest.starts_with([']', '.', '=']))
     })
 }

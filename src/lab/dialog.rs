@@ -315,9 +315,11 @@ impl Dialog {
         self.form.info = match self.every() {
             Ok(every) => {
                 let Estimate { rows, bytes } = exporting::estimate(scenario, every);
-                let rows = format!("{} rows, about {}", HumanCount(rows), DecimalBytes(bytes));
-                let every = "every 10 writes each tenth row, and the last".to_owned();
-                vec![rows, every]
+                let (rows, bytes) = (HumanCount(rows), DecimalBytes(bytes));
+                vec![
+                    format!("{rows} rows, about {bytes}"),
+                    "every 10 writes each tenth row, and the last".to_owned(),
+                ]
             }
             Err(reason) => vec![reason],
         };

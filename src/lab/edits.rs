@@ -102,11 +102,9 @@ impl Edits {
     /// Sets all keys of `table` as one act; with `coalesces`, undo takes it back together with the act before. Keys of body
     /// and start begin a new run; the others act from the next step on.
     pub(super) fn set(&mut self, table: &Table, coalesces: bool, player: &Player) -> Edited {
-        let begins_run = |key: &str| Effect::of_key(key) == Effect::NewRun;
-        let (new, rest): (Table, Table) = table
-            .clone()
-            .into_iter()
-            .partition(|(key, _)| begins_run(key));
+        let keys = table.clone().into_iter();
+        let (new, rest): (Table, Table) =
+            keys.partition(|(key, _)| Effect::of_key(key) == Effect::NewRun);
         let acts = Act::set(rest);
         if !new.is_empty() {
             return self.begin_with(&new, acts, coalesces, player);
@@ -217,8 +215,10 @@ impl Edits {
     /// Begins the run anew as the advice says.
     pub(super) fn take_offer(&mut self, offer: Offer, player: &Player) -> ScenarioEdit {
         let Offer { what, scenario, .. } = offer;
-        let replaced = replaced(player.run().scenario());
-        let in_place = replaced.map_or(String::new(), |edits| format!(", in place of {edits}"));
+        let in_place = match replaced(player.run().scenario()) {
+            Some(edits) => format!(", in place of {edits}"),
+            None => String::new(),
+        };
         let left_at = player.step_to_leave_at();
         self.leave_at(left_at).begin_as_advised(&scenario);
         self.values.suit(&scenario);
@@ -252,7 +252,11 @@ impl Edits {
         } else {
             player.step_number()
         };
-        let later = self.runs.journal().later_than(step);
+        let later = if is_metadata {
+            0
+        } else {
+            self.runs.journal().later_than(step)
+        };
         let scenario = self.runs.journal_mut().perform(step, acts, coalesces)?;
         Ok(ScenarioEdit {
             change: if is_metadata {
@@ -268,7 +272,6 @@ impl Edits {
             scenario,
             said: match later {
                 0 => said,
-                _ if is_metadata => said,
                 1 => EditMessage::Text(
                     "a later action has made way for it; u brings it back".to_owned(),
                 ),

@@ -133,15 +133,14 @@ impl Messages {
 
     /// Says `text`, that the numbers have stopped being finite, and what helps: a key that mends the run, if that is known,
     /// and, of a run with edits, what takes back the last.
-    pub(super) fn tell_of_break(&mut self, text: &str, remedy: Option<String>, is_edited: bool) {
+    pub(super) fn tell_of_break(&mut self, text: &str, remedy: Option<&str>, is_edited: bool) {
         let unknown = "a shorter time step or another scheme may mend it (e)";
-        let remedy = remedy.as_deref().unwrap_or(unknown);
         let undo = if is_edited {
             ", u takes the last edit back"
         } else {
             ""
         };
-        self.keep_saying(format!("{text}: {remedy}{undo}"));
+        self.keep_saying(format!("{text}: {}{undo}", remedy.unwrap_or(unknown)));
     }
 }
 
@@ -222,8 +221,8 @@ mod tests {
         messages.warn_of_export(at(0));
         let cleared = messages.clear(None);
         assert!(cleared.anything && cleared.was_warned);
-        let cleared = messages.clear(Some(4));
-        assert!(cleared.anything && !cleared.was_warned);
+        let counted = messages.clear(Some(4));
+        assert!(counted.anything && !counted.was_warned);
         assert!(!messages.clear(None).anything);
     }
 }

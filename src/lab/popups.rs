@@ -154,9 +154,9 @@ impl Popups {
             (None, Mode::Help) => self.help.search(|line| type_into(line, text)),
             (None, Mode::Filter) => self.browser.filter_by(|line| type_into(line, text)),
             _ => {
-                let text =
+                let place =
                     "what is pasted goes into fields and filters; rows of your own program go here";
-                return Some(text.to_owned());
+                return Some(place.to_owned());
             }
         }
         None

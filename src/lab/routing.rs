@@ -413,7 +413,8 @@ impl Lab {
             let edits = self.edits.runs.journal();
             let is_edited = edits.count_by(self.player.step_number()) > 0;
             let mends = self.adviser.offer(&self.player).map(|[_, short]| short);
-            self.messages.tell_of_break(&text, mends, is_edited);
+            self.messages
+                .tell_of_break(&text, mends.as_deref(), is_edited);
             self.changed = true;
         } else {
             self.tell(text);

@@ -32,8 +32,8 @@ pub(super) struct Reference {
 
 impl PartialEq for Reference {
     fn eq(&self, other: &Self) -> bool {
-        let run = |of: &Self| of.run.as_ref().map(Arc::as_ptr);
-        (self.step, run(self)) == (other.step, run(other))
+        let [own, others] = [self, other].map(|it| it.run.as_ref().map(Arc::as_ptr));
+        (self.step, own) == (other.step, others)
     }
 }
 
@@ -108,19 +108,19 @@ impl Runs {
         self.changed_from_file = self.original.difference(scenario);
     }
 
-    /// The journal as the session keeps it, with the pinned run; `written` writes them.
+    /// The journal as the session keeps it, with the pinned run; `write` writes them.
     pub(super) fn kept(
         &mut self,
         reference: Option<Reference>,
-        written: fn(&Journal, Option<&Reference>) -> SharedText,
+        write: fn(&Journal, Option<&Reference>) -> SharedText,
     ) -> SharedText {
         if self.kept_reference != reference {
             self.kept = None;
             self.kept_reference = reference;
         }
-        let (journal, reference) = (&self.journal, self.kept_reference.as_ref());
-        let written = || written(journal, reference);
-        self.kept.get_or_insert_with(written).clone()
+        let (journal, pinned) = (&self.journal, self.kept_reference.as_ref());
+        let kept = self.kept.get_or_insert_with(|| write(journal, pinned));
+        kept.clone()
     }
 
     /// The scenario of the run from step 0 to `step`, with all that was done up to there; `to` says what it is for.

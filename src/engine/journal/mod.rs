@@ -93,9 +93,9 @@ pub struct RunRecord {
 impl Act {
     /// Returns the acts that set the keys of `table`, none of which begins a new run: an edit, metadata, or both.
     pub fn set(table: Table) -> Vec<Self> {
-        let has_no_effect = |key: &str| Effect::of_key(key) == Effect::None;
-        let (metadata, edit): (Table, Table) =
-            table.into_iter().partition(|(key, _)| has_no_effect(key));
+        let (metadata, edit): (Table, Table) = table
+            .into_iter()
+            .partition(|(key, _)| Effect::of_key(key) == Effect::None);
         let acts = [Self::Edit(edit), Self::Metadata(metadata)];
         let sets_keys =
             |act: &Self| !matches!(act, Self::Edit(set) | Self::Metadata(set) if set.is_empty());
@@ -247,17 +247,18 @@ impl Journal {
         let begun = earlier
             .rev()
             .filter_map(|(index, entry)| Some((index + 1, entry.run()?)));
-        let mut points = 0;
-        let kept = begun
-            .chain([(0, &self.first)])
-            .enumerate()
-            .take_while(|(nth, (_, run))| {
-                points += run.base.body.point.len() + run.base.body.part.len();
-                *nth == 0 || (*nth < MOST_RUNS && points <= MOST_HISTORY_POINTS)
-            });
-        if let Some((begun, first)) = kept.last().map(|(_, (begun, run))| (begun, run.clone())) {
-            self.first = first;
-            self.entries.drain(..begun);
+        let (mut runs, mut points, mut oldest) = (0, 0, None);
+        for (entries, run) in begun.chain([(0, &self.first)]) {
+            points += run.base.body.point.len() + run.base.body.part.len();
+            if runs > 0 && (runs >= MOST_RUNS || points > MOST_HISTORY_POINTS) {
+                break;
+            }
+            runs += 1;
+            oldest = Some((entries, run));
+        }
+        if let Some((entries, run)) = oldest {
+            self.first = run.clone();
+            self.entries.drain(..entries);
         }
     }
 
@@ -274,7 +275,7 @@ impl Journal {
     ) -> Result<Arc<Scenario>, Problems> {
         let mut changed = self.clone();
         changed.drop_undone();
-        let coalesces = coalesces && changed.done() > changed.begun();
+        let is_joined = coalesces && changed.done() > changed.begun();
         for (index, act) in acts.into_iter().enumerate() {
             let act = match act {
                 Act::Push(push) => changed.added(push),
@@ -283,7 +284,7 @@ impl Journal {
             changed.entries.push(Arc::new(JournalEntry {
                 step,
                 is_from_file: false,
-                is_joined: coalesces || index > 0,
+                is_joined: is_joined || index > 0,
                 act,
             }));
         }

@@ -167,7 +167,8 @@ impl NextPush {
         time_step_s: f64,
     ) -> Result<Self, String> {
         let (label, unit) = field.label();
-        let number = |text| nudge::typed(text, unit).map_err(|reason| format!("{label} {reason}"));
+        let number =
+            |typed| nudge::typed(typed, unit).map_err(|reason| format!("{label} {reason}"));
         let mut next = self.clone();
         match field {
             PushField::Point => {

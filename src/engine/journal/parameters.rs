@@ -188,7 +188,7 @@ fn is_offered(place: &str, table: &Table) -> bool {
         return true;
     };
     let has = |names: &[&str]| {
-        let mut keys = names.iter().map(|name| join(inside, name));
+        let mut keys = names.iter().map(|sibling| join(inside, sibling));
         keys.any(|key| find(table, &key).is_some())
     };
     match (inside.split('.').next(), name) {

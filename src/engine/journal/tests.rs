@@ -118,8 +118,8 @@ fn an_act_that_passes_a_limit_is_refused() {
             set: one("motion.gravity_m_per_s2", 1.0),
         })
         .collect();
-    let refusal = |file: &ScenarioFile, step, act| {
-        let refused = perform(&mut journal_of(file.clone()), step, act);
+    let refusal = |edited: &ScenarioFile, step, act| {
+        let refused = perform(&mut journal_of(edited.clone()), step, act);
         refused.unwrap_err().in_one_line()
     };
     let edits = refusal(&file, 1_000_000, gravity(2.0));

@@ -212,9 +212,13 @@ mod tests {
 
     /// The times from `begin` on at which the forces of `push` change.
     fn changes(push: Push, counting: Counting, begin: f64, end: f64) -> Vec<f64> {
-        let change = |&begin: &f64| {
-            let step = 1;
-            next_change(&[push], counting, &Stretch { step, begin, end })
+        let change = |&from: &f64| {
+            let stretch = Stretch {
+                step: 1,
+                begin: from,
+                end,
+            };
+            next_change(&[push], counting, &stretch)
         };
         std::iter::successors(change(&begin), change).collect()
     }
