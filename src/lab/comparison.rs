@@ -72,8 +72,8 @@ impl Comparison {
         if let Some(data) = &mut self.data {
             match change {
                 RunChange::Described => {}
-                RunChange::GoesOn => data.go_on_in(scenario, player.step_number()),
-                RunChange::ContinuesAt(step) => data.go_on_in(scenario, step),
+                RunChange::GoesOn => data.branch(scenario, player.step_number()),
+                RunChange::ContinuesAt(step) => data.branch(scenario, step),
                 _ if is_ghost => data.begin_after_ghost(scenario),
                 _ => data.begin(scenario),
             }
@@ -380,7 +380,11 @@ mod tests {
         let mut go_over = |player: &mut Player, change| {
             let scenario = scenario();
             comparison.leave(player, change, &scenario);
-            player.change_run(change, &scenario, crate::engine::run::Clock::end_s(&scenario));
+            player.change_run(
+                change,
+                &scenario,
+                crate::engine::run::Clock::end_s(&scenario),
+            );
             comparison.ghost().map(Ghost::end_s)
         };
         let anew = RunChange::BeginsAnew {

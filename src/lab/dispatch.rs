@@ -117,7 +117,8 @@ impl Lab {
             self.view.fit(scenario);
         }
         self.comparison.leave(&self.player, change, scenario);
-        self.player.change_run(change, scenario, self.edits.runs.present().end_s);
+        self.player
+            .change_run(change, scenario, self.edits.runs.present().end_s);
         self.view.keep_cursor(&self.player);
         self.edits.follow(&self.player);
         let named = |of: &Scenario| of.file.viewed_text("measured").map(str::to_owned);

@@ -247,11 +247,7 @@ impl Edits {
         let is_metadata = acts.iter().all(Act::is_metadata);
         let nudges_at_start = coalesces && player.nudges_at_start();
         let from_start = is_edited && (nudges_at_start || player.restarts_on_edit());
-        let step = if from_start {
-            0
-        } else {
-            player.step_number()
-        };
+        let step = if from_start { 0 } else { player.step_number() };
         let later = if is_metadata {
             0
         } else {

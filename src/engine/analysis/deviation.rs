@@ -47,7 +47,7 @@ impl ExactReference {
     }
 
     /// Goes on beside a run of `scenario`, whose past is the same.
-    pub fn go_on_in(&mut self, scenario: &Arc<Scenario>) {
+    pub fn branch(&mut self, scenario: &Arc<Scenario>) {
         self.settle(); // its steps so far belong to the forces so far
         self.together = looked_at_together(scenario);
         match &mut self.truth {
@@ -58,7 +58,7 @@ impl ExactReference {
             }
         }
         if let Some(companion) = &mut self.companion {
-            companion.go_on_in(scenario);
+            companion.branch(scenario);
         }
         self.truth.take_if(|_| !is_affordable(scenario));
     }

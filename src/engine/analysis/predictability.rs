@@ -88,7 +88,7 @@ impl Companion {
     }
 
     /// Goes on beside the exact motion of `scenario`, whose past is the same.
-    pub fn go_on_in(&mut self, scenario: &Arc<Scenario>) {
+    pub fn branch(&mut self, scenario: &Arc<Scenario>) {
         self.motion.branch(scenario);
         if self.until_s.is_none() {
             // When to look next follows from the forces, which are others now.

@@ -112,7 +112,7 @@ impl DataComparison {
     }
 
     /// Goes on with `scenario`, which has the same motion up to `step`.
-    pub(super) fn go_on_in(&mut self, scenario: &Arc<Scenario>, step: u64) {
+    pub(super) fn branch(&mut self, scenario: &Arc<Scenario>, step: u64) {
         if self.simulation.step_number() > step || self.has_broken {
             return self.begin(scenario);
         }

@@ -166,7 +166,7 @@ impl LiveRun {
     pub fn replace_metadata(&mut self, scenario: &Arc<Scenario>) {
         if !Arc::ptr_eq(self.simulation.scenario(), scenario) {
             self.simulation.branch(Arc::clone(scenario));
-            self.monitor.beside.go_on_in(scenario);
+            self.monitor.beside.branch(scenario);
         }
     }
 
