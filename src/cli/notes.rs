@@ -123,7 +123,8 @@ fn watch_session(
                 .as_ref()
                 .and_then(open_in)
                 .and_then(|(lesson, place)| Some((reading::open(&lesson).ok()?, place)));
-            let page = |open: &(Lesson, LessonProgress)| (open.0.name.clone(), open.1.page);
+            let page =
+                |(lesson, place): &(Lesson, LessonProgress)| (lesson.name.clone(), place.page);
             if let Some((lesson, place)) = &now
                 && now.as_ref().map(page) != open.as_ref().map(page)
             {
@@ -153,13 +154,13 @@ fn tell(live: Option<&LiveLine<Stdout>>, text: &str) -> io::Result<()> {
         .flat_map(|line| wrapped(line, NOTES_WIDTH))
         .collect();
     let words = lines.join("\n");
-    let text = printable_lines(&words);
+    let shown = printable_lines(&words);
     if let Some(line) = live {
-        line.print_above(&text);
+        line.print_above(&shown);
         return Ok(());
     }
     let mut stdout = io::stdout();
-    writeln!(stdout, "{text}")?;
+    writeln!(stdout, "{shown}")?;
     stdout.flush()
 }
 

@@ -9,7 +9,7 @@ use crate::engine::export::stream::{self, Ended};
 use crate::engine::export::{CsvWriter, RunSummary};
 use crate::engine::run::{Clock, Simulation, Step};
 use crate::engine::scenario::Scenario;
-use crate::engine::text::advice::advised;
+use crate::engine::text::io_errors::advised;
 use crate::engine::text::number::shortest;
 use crate::engine::text::printable::PrintablePath;
 use anyhow::{Context, anyhow, bail};

@@ -6,7 +6,7 @@ use super::{fit, print, tell, writeup};
 use crate::engine::export::OutputFolder;
 use crate::engine::scenario::csv::{self, Renaming, renaming};
 use crate::engine::scenario::{Document, Problems, Scenario};
-use crate::engine::text::advice::unread;
+use crate::engine::text::io_errors::unread;
 use crate::engine::text::number::counted;
 use crate::engine::text::printable::{PrintablePath, brief, printable_lines};
 use crate::report::figure::redraw;
@@ -120,12 +120,12 @@ fn folder(folder: &Path, interruption: &Interruption) -> anyhow::Result<bool> {
         .transpose()
         .with_context(|| PrintablePath(&csv).to_string())?;
     let again = writeup::again(scenario, data.as_deref(), against, &csv, interruption);
-    let (again, against) = again?;
+    let (again, compared) = again?;
     let notes: Vec<_> = other_version(version)
         .into_iter()
         .chain([again.verdict()])
         .collect();
-    let mut is_good = match against.map(Against::end).transpose()? {
+    let mut is_good = match compared.map(Against::end).transpose()? {
         Some((rows, difference)) => say_of_rows(&csv, rows, difference.as_ref(), &notes)?,
         None => say(&csv, "", Some(&MISSING), &notes)?,
     };

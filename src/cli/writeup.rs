@@ -10,7 +10,7 @@ use crate::engine::export::stream::Ended;
 use crate::engine::export::{CsvWriter, OutputFolder};
 use crate::engine::journal::changed::Original;
 use crate::engine::scenario::{Document, Scenario};
-use crate::engine::text::advice::advised;
+use crate::engine::text::io_errors::advised;
 use crate::engine::text::printable::{PrintablePath, printable};
 use crate::report::writeup::figures::{figures, recorder};
 use crate::report::writeup::{CSV, MeasuredComparison, Writeup};

@@ -7,7 +7,7 @@ use super::view::step::StepPageChoice;
 use super::view::{Pane, View};
 use crate::engine::scenario::Scenario;
 use crate::engine::scenario::screen::ALL_ROWS;
-use crate::lab::playback::dip::Dip;
+use crate::lab::playback::loop_minimum::Dip;
 use crate::physics::workings::{ColumnSums, Phase, PhaseName, PointTable, WorkedValue};
 use crate::physics::{State, Workings};
 use std::sync::Arc;

@@ -35,7 +35,7 @@ pub fn weight_height(body: &Body, state: &State) -> f64 {
 }
 
 /// Σ m dz/dt, kg m/s: what of the body's momentum is vertical.
-pub fn rise(body: &Body, state: &State) -> f64 {
+pub fn vertical_momentum(body: &Body, state: &State) -> f64 {
     let moment = state.orientation * body.first_moment();
     angular_velocity(body, state).cross(&moment).z
 }
@@ -151,7 +151,7 @@ mod tests {
                 orientation: crate::rotation::about(&omega, time_s) * turn,
                 momentum: state.momentum + torque * time_s,
             };
-            rise(&body, &later)
+            vertical_momentum(&body, &later)
         };
         let gained = (after(short_s) - after(-short_s)) / (2.0 * short_s);
         let carried = gained + body.mass() * loads.gravity - push.force.z;

@@ -1,7 +1,7 @@
 //! The parallel projection of the world onto a picture, along a direction that the user turns.
 
 use crate::engine::scenario::kind::{PITCH_DEG, ZOOM_RANGE};
-use crate::engine::text::ladder;
+use crate::engine::text::nice_numbers;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
@@ -46,7 +46,7 @@ impl Default for Zoom {
 impl Zoom {
     /// `zoom` moved by `rungs` on the ladder 1, 2, 5, ..., down if negative; `None` if it is at its limit already.
     pub fn shifted(zoom: f64, rungs: i32) -> Option<f64> {
-        let next = ladder::climbed(zoom, rungs).clamp(ZOOM_RANGE.0, ZOOM_RANGE.1);
+        let next = nice_numbers::climbed(zoom, rungs).clamp(ZOOM_RANGE.0, ZOOM_RANGE.1);
         (next != zoom).then_some(next)
     }
 

@@ -4,7 +4,7 @@ use crate::engine::export::layout::above_run_file;
 use crate::engine::scenario::csv::{self, Csv};
 use crate::engine::scenario::head::Head;
 use crate::engine::scenario::{Problem, Problems};
-use crate::engine::text::advice::unread;
+use crate::engine::text::io_errors::unread;
 use crate::engine::text::number::NOT_AVAILABLE;
 use serde::{Deserialize, Serialize};
 use std::fs::File;
@@ -145,17 +145,20 @@ fn subject(head: &Head) -> Option<(TableSubject, String)> {
         .map(|name| name.trim_matches('"'))
         .collect();
     let (header, names) = (head.header().unwrap_or_default(), names.as_slice());
-    let table: Option<toml::Table> = header.parse().ok();
+    let parsed: Option<toml::Table> = header.parse().ok();
     let title = |table: &toml::Table| {
-        let title = table.get("title").and_then(toml::Value::as_str);
-        title.unwrap_or_default().to_owned()
+        table
+            .get("title")
+            .and_then(toml::Value::as_str)
+            .unwrap_or_default()
+            .to_owned()
     };
     let has = |name: &str| names.contains(&name);
     if has("scheme") && has("time_step_s") && has("error_m") {
-        let title = table.as_ref().map(title).unwrap_or_default();
+        let title = parsed.as_ref().map(title).unwrap_or_default();
         return Some((TableSubject::Comparison, title));
     }
-    let table = table?;
+    let table = parsed?;
     if let Some(settings) = settings_of_fit(names) {
         let fit = FitTable {
             settings,

@@ -1,7 +1,7 @@
 //! A plane, m to the right and up, on an area of cells: circles are round at every size. And places for its letters and
 //! words, where they cover neither each other nor its marks.
 
-use crate::engine::text::ladder::at_or_below;
+use crate::engine::text::nice_numbers::at_or_below;
 use crate::engine::text::number::shortest;
 use crate::lab::view::theme::Marker;
 use crate::tui::dots::on_sheet;

@@ -475,7 +475,7 @@ fn drifts_and_deviation_are_those_of_known_cases() {
     assert!((cusped.energy_drift.unwrap() - 0.116).abs() < 5e-4);
     let looping = health(reference_top("[0, -20, 30]"));
     let deviation = looping.deviation.unwrap();
-    let off = (deviation.spin / 30.0 - 0.125).abs();
+    let off = (deviation.axle_momentum / 30.0 - 0.125).abs();
     assert!(off < 5e-4, "{deviation:?}");
     assert!(deviation.lz.abs() < 1e-11);
     let top = reference_top("[0, -20, 30]");

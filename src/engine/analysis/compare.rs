@@ -200,7 +200,7 @@ impl ComparisonTrial {
         let off = Deviation::between(state, truth);
         self.end_distance_m = off.distance_m;
         self.most_distance_m = greater(self.most_distance_m, off.distance_m);
-        self.spin_drift = greater(self.spin_drift, (off.spin / scale).abs());
+        self.spin_drift = greater(self.spin_drift, (off.axle_momentum / scale).abs());
         self.lz_drift = greater(self.lz_drift, (off.lz / scale).abs());
     }
 

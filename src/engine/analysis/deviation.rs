@@ -272,7 +272,7 @@ pub struct Deviation {
     /// Distance of the traced point from where it should be, m.
     pub distance_m: f64,
     /// L·axle less the exact motion's, J s.
-    pub spin: f64,
+    pub axle_momentum: f64,
     /// L_z less the exact motion's, J s.
     pub lz: f64,
 }
@@ -283,7 +283,7 @@ impl Deviation {
         let exact = truth.state_at(seen.time_s);
         Self {
             distance_m: distance_m(seen, &exact.orientation, truth.scenario()),
-            spin: seen.momentum.dot(&seen.axle()) - exact.momentum.dot(&exact.axle()),
+            axle_momentum: seen.momentum.dot(&seen.axle()) - exact.momentum.dot(&exact.axle()),
             lz: seen.momentum.z - exact.momentum.z,
         }
     }

@@ -10,7 +10,7 @@
 
 use super::turns::MeasuredNumber;
 use crate::physics::State;
-use crate::physics::observables::{pivot_force_z, rise, weight_height};
+use crate::physics::observables::{pivot_force_z, vertical_momentum, weight_height};
 use crate::run::Step;
 
 /// A center of mass that swings by less than this part of its distance from the pivot does not swing.
@@ -47,7 +47,7 @@ struct Span {
 struct TurningPoint {
     time_s: f64,
     /// Vertical momentum, kg m/s.
-    rise: f64,
+    vertical_momentum: f64,
 }
 
 impl FootForce {
@@ -80,11 +80,17 @@ impl FootForce {
     #[cold]
     fn begin(&mut self, step: &Step, start: &State) {
         let body = &step.scenario().body.mechanics;
-        let rise = rise(body, start);
+        let momentum = vertical_momentum(body, start);
         let push = pivot_force_z(body, start, step.loads()) - self.at_rest;
-        if rise.abs() <= AT_TURN * (push * (step.time_s() - start.time_s)).abs() {
+        if momentum.abs() <= AT_TURN * (push * (step.time_s() - start.time_s)).abs() {
             let time_s = start.time_s;
-            self.count(push < 0.0, TurningPoint { time_s, rise });
+            self.count(
+                push < 0.0,
+                TurningPoint {
+                    time_s,
+                    vertical_momentum: momentum,
+                },
+            );
         }
     }
 
@@ -102,7 +108,7 @@ impl FootForce {
         let push = pivot_force_z(body, row, step.loads()) - self.at_rest;
         let turn = TurningPoint {
             time_s: row.time_s + shift_s,
-            rise: rise(body, row) + push * shift_s,
+            vertical_momentum: vertical_momentum(body, row) + push * shift_s,
         };
         self.count(at > before, turn);
     }
@@ -133,8 +139,11 @@ impl FootForce {
         let time_s = span.last.time_s - span.first.time_s;
         let rounding = f64::EPSILON * self.at_rest.abs();
         (span.nutations > 0).then(|| MeasuredNumber {
-            value: self.at_rest + (span.last.rise - span.first.rise) / time_s,
-            uncertainty: libm::hypot(span.first.rise, span.last.rise) / time_s + rounding,
+            value: self.at_rest
+                + (span.last.vertical_momentum - span.first.vertical_momentum) / time_s,
+            uncertainty: libm::hypot(span.first.vertical_momentum, span.last.vertical_momentum)
+                / time_s
+                + rounding,
             nutations: span.nutations,
         })
     }

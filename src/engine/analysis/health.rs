@@ -15,7 +15,7 @@ use crate::physics::loads::torque;
 use crate::physics::{SchemeInfo, SymmetricTop, observables};
 use crate::run::{Clock, EnergyUnit, Simulation, Step, resampled};
 use crate::scenario::{Edit, Motion, Scenario, rescale};
-use crate::text::ladder::rung;
+use crate::text::nice_numbers::rung;
 use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;

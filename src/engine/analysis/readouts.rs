@@ -32,7 +32,7 @@ pub struct Readouts {
     pub time_step_s: f64,
     pub sample: Sample,
     /// L·axle, J s.
-    pub spin: f64,
+    pub axle_momentum: f64,
     /// The rate of the spin about the axle, rad/s; of the rotor alone where the scenario names one.
     pub spin_rad_per_s: f64,
     /// Whether a rotor spins in a frame that does not.
@@ -90,7 +90,7 @@ impl Readouts {
             scheme_kind: simulation.remark(),
             time_step_s: step.motion().time_step_s,
             sample: step.sample(),
-            spin: state.momentum.dot(&state.axle()),
+            axle_momentum: state.momentum.dot(&state.axle()),
             spin_rad_per_s: step.scenario().spin_rad_per_s(state),
             has_rotor: step.scenario().rotor().is_some(),
             kappa: top.map(|(top, _)| top.kappa()),

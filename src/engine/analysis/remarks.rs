@@ -357,7 +357,7 @@ pub fn constants_in_full(health: &Health) -> Option<String> {
     let off = health.deviation?;
     Some(format!(
         "L.axle is off by {} J s, L_z by {} J s",
-        of_rounding(off.spin),
+        of_rounding(off.axle_momentum),
         of_rounding(off.lz)
     ))
 }

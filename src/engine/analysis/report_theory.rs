@@ -85,10 +85,11 @@ impl ReportTheory {
             libm::hypot(offset[0], offset[1]),
         );
         let tilt = libm::acos(state.momentum.z / size);
-        let off_by =
-            |lag: f64| 2.5 * psi * kick.abs() * lag / size_2 + 1.5 * lag / libm::tan(tilt).abs();
+        let off_by = |angle: f64| {
+            2.5 * psi * kick.abs() * angle / size_2 + 1.5 * angle / libm::tan(tilt).abs()
+        };
         Some(Self {
-            lag: Some(lag_size).filter(|&lag| off_by(lag) <= THEORY_TOLERANCE),
+            lag: Some(lag_size).filter(|&angle| off_by(angle) <= THEORY_TOLERANCE),
             growth: 0.5 * libm::log1p(-2.0 * kappa * (1.0 - kappa) * (1.0 - cos)),
             swing: (off_by(lag_size.max(swing_size)) <= THEORY_TOLERANCE).then_some(LagSwing {
                 lag,

@@ -19,7 +19,7 @@ pub struct Theory {
     /// Moment of the load, N m: M g h for gravity alone, negative where it pulls the axle to +z.
     pub load: f64,
     /// L3 = L·axle, J s, a constant of the motion.
-    pub spin: f64,
+    pub axle_momentum: f64,
     /// The fast top's precession mgl/L3, rad/s; `None` without spin.
     pub fast_top_precession: Option<f64>,
     /// Steady precession at this tilt, the slow root, rad/s; `None` where the top is too slow for it.
@@ -177,7 +177,7 @@ impl Theory {
         Self {
             axis: TheoryAxis::new(up, size > 0.0),
             load: upward_load,
-            spin,
+            axle_momentum: spin,
             fast_top_precession: spins.then(|| upward_load / spin),
             slow_precession: slow,
             fast_precession: fast,

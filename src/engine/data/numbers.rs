@@ -98,7 +98,7 @@ impl<'a> CellParser<'a> {
     /// The values of a measured column, with their uncertainties; `None` for a column that is left out.
     fn points(&mut self, column: &NamedColumn) -> Option<Vec<MeasuredPoint>> {
         let own = &self.cells.own[column.place];
-        if own.is_mapped || !self.cells.own.iter().any(|own| own.is_mapped) {
+        if own.is_mapped || !self.cells.own.iter().any(|other| other.is_mapped) {
             return Some(self.every_point(column));
         }
         let before = (self.found.clone(), self.uses_points, self.uses_commas);

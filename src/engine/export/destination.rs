@@ -1,7 +1,7 @@
 //! The output of an export: a file or a folder that appears only once it is complete, or a stream.
 
 use super::temporary;
-use crate::text::advice::unwritten;
+use crate::text::io_errors::unwritten;
 use crate::text::printable::PrintablePath;
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, File, OpenOptions};

@@ -250,7 +250,7 @@ impl RunSummary {
 
     /// Whether the axle would sleep upright.
     fn upright(&self, theory: &Theory) -> String {
-        let spin = self.readouts.spin;
+        let spin = self.readouts.axle_momentum;
         let Some(limit) = theory.sleeping_limit else {
             let about = on(" about", &theory.axis);
             return format!("stands{about} without spin too: the forces pull the axle up");

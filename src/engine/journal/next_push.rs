@@ -4,7 +4,7 @@ use crate::physics::{State, observables};
 use crate::scenario::file::PushFile;
 use crate::scenario::problem::listed;
 use crate::scenario::{Scenario, Window, nudge};
-use crate::text::ladder::{at_or_below, climbed};
+use crate::text::nice_numbers::{at_or_below, climbed};
 use crate::text::number::shortest;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};

@@ -10,7 +10,7 @@ mod pdf;
 mod png;
 mod svg;
 
-use crate::text::advice::unread;
+use crate::text::io_errors::unread;
 use crate::text::printable::brief;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};

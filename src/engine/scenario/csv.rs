@@ -3,7 +3,7 @@
 
 use super::head::{Head, bytes_of, utf8};
 use super::problem::{Problem, Problems, at_line, nearest};
-use crate::text::advice::unread;
+use crate::text::io_errors::unread;
 use crate::text::printable::brief;
 use crate::text::unit::{Unit, in_known_unit};
 use ::csv::{ReaderBuilder, StringRecord, Trim};

@@ -3,7 +3,7 @@
 use super::limits::{self, LONGEST_HEADER, LONGEST_SCENARIO_FILE};
 use super::problem::{Problem, at_line};
 use crate::provenance::{FigureFile, Payload};
-use crate::text::advice::unread;
+use crate::text::io_errors::unread;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;

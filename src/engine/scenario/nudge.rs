@@ -1,7 +1,7 @@
 //! Numbers as they are nudged and typed: steps of 1, 2 and 5 times a power of ten, free of binary noise, and units.
 
 use super::schema::Nudge;
-use crate::text::ladder::{at_or_below, climbed};
+use crate::text::nice_numbers::{at_or_below, climbed};
 use crate::text::printable::brief;
 
 /// `value` nudged `times` times by the rule `nudge`, its size being `size`; `None` where the rule is not one for numbers.

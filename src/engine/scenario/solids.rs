@@ -3,7 +3,7 @@
 use super::kind::vector;
 use super::problem::{Problem, Problems};
 use crate::physics::part::{PartError, PlacedSolid, Shape};
-use crate::text::ladder::at_or_below;
+use crate::text::nice_numbers::at_or_below;
 use crate::text::number::{shortest, significant};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};

@@ -1,19 +1,19 @@
 //! Numbers and words as people read them: what every other room writes with. It knows nothing of gyroscopes.
 //!
-//! - [`advice`]: why a file cannot be read or written.
 //! - [`ascii`]: formulas for terminals without UTF-8.
 //! - [`checksum`]: the CRC-32 of a file's content.
-//! - [`ladder`]: the numbers 1, 2 and 5 times a power of ten.
+//! - [`io_errors`]: why a file cannot be read or written.
+//! - [`nice_numbers`]: the numbers 1, 2 and 5 times a power of ten.
 //! - [`number`]: numbers in as few digits as a reader needs.
 //! - [`printable`]: text with nothing in it that steers a terminal.
 //! - [`shipped`]: files that come with the program.
 //! - [`mod@unit`]: units at the end of names.
 //! - [`wrap`]: text in lines of a width.
 
-pub mod advice;
 pub mod ascii;
 pub mod checksum;
-pub mod ladder;
+pub mod io_errors;
+pub mod nice_numbers;
 pub mod number;
 pub mod printable;
 pub mod shipped;

@@ -8,7 +8,7 @@ use super::live::LiveRun;
 use super::strip::{LEAST_DRAWN_SWING_DEG, Strip};
 use crate::engine::analysis::Readouts;
 use crate::engine::recording::{RecordedCurve, Recording};
-use crate::engine::text::ladder;
+use crate::engine::text::nice_numbers;
 
 const MOST_SWINGS: f64 = 12.0;
 /// With this number of swings or fewer in the window, a longer window is taken.
@@ -180,9 +180,9 @@ fn length_s(swing_s: f64, before_s: Option<f64>) -> f64 {
     before_s
         .filter(|length_s| {
             (FEWEST_SWINGS..=MOST_SWINGS + 1.0).contains(&(length_s / swing_s))
-                && ladder::at_or_below(*length_s) == *length_s
+                && nice_numbers::at_or_below(*length_s) == *length_s
         })
-        .unwrap_or_else(|| ladder::at_or_below(MOST_SWINGS * swing_s))
+        .unwrap_or_else(|| nice_numbers::at_or_below(MOST_SWINGS * swing_s))
 }
 
 /// The time between `begin_s - swing_s` and `begin_s` (s) at which `curve` is highest; before the first swing the
@@ -225,7 +225,7 @@ mod tests {
             let (mut run, detail) = at(preset, steps, 230.0);
             let swings = detail.window_s / run.readouts().swing_s().unwrap();
             assert!((4.0..=12.1).contains(&swings), "{preset}: {swings}");
-            assert_eq!(ladder::at_or_below(detail.window_s), detail.window_s);
+            assert_eq!(nice_numbers::at_or_below(detail.window_s), detail.window_s);
             let shown = detail.begin_s..=detail.begin_s + detail.window_s;
             assert!(shown.contains(&run.now().time_s), "{preset}");
         }

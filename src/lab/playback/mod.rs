@@ -13,10 +13,10 @@
 pub mod ages;
 pub mod background;
 pub mod detail;
-pub mod dip;
 pub mod ghost;
 pub mod live;
 pub mod lookup;
+pub mod loop_minimum;
 pub mod marks;
 pub mod outline;
 pub mod pace;

@@ -1,7 +1,7 @@
 //! Playback speed: how much simulated time passes per wall time, whatever the time step.
 
 use crate::engine::scenario::{Scenario, keys};
-use crate::engine::text::ladder::climbed;
+use crate::engine::text::nice_numbers::climbed;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 use toml::Value;

@@ -1,7 +1,7 @@
 //! The range of values that an axis shows, and the round values at its ticks.
 
 use crate::engine::recording::Extent;
-use crate::engine::text::ladder;
+use crate::engine::text::nice_numbers;
 use crate::engine::text::number::{fixed, rounded};
 
 /// A tick this share of the range beyond an end stands at the end: the difference is rounding.
@@ -31,7 +31,7 @@ impl StripScale {
 
     /// Round numbers around `extent`, at least `least` apart; they change seldom while the extent grows.
     pub fn around(extent: Extent, least: f64) -> Self {
-        let unit = ladder::at_or_below((extent.max - extent.min).max(least) / 4.0);
+        let unit = nice_numbers::at_or_below((extent.max - extent.min).max(least) / 4.0);
         let (low, high) = ((extent.min / unit).floor(), (extent.max / unit).ceil());
         let missing = (least / unit - (high - low)).ceil().max(0.0);
         let below = (0.5 * missing).floor();
@@ -118,9 +118,9 @@ pub fn ticks(low: f64, high: f64, most: usize) -> Vec<f64> {
     if !(range > 0.0 && range.is_finite()) || most == 0 {
         return Vec::new();
     }
-    let first = ladder::rung_below(range / most as f64);
+    let first = nice_numbers::rung_below(range / most as f64);
     for rung in first..first + 4 {
-        let apart = ladder::rung(rung);
+        let apart = nice_numbers::rung(rung);
         let from = (low / apart - STRIP_TICK_ROUNDING).ceil();
         let to = (high / apart + STRIP_TICK_ROUNDING).floor();
         if to - from < most as f64 {

@@ -4,7 +4,7 @@
 //! 0.30000000000000004. Large and small numbers leave a power of ten to the axis's title, and numbers that differ in far
 //! digits only leave an offset to it.
 
-use crate::engine::text::ladder;
+use crate::engine::text::nice_numbers;
 
 /// Numbers from this power of ten on leave a power to the title, and those up to the other.
 const LARGE_POWER: i32 = 4;
@@ -45,7 +45,7 @@ impl Ticks {
         if !(span > 0.0 && span.is_finite()) {
             return Self::default();
         }
-        let first = ladder::rung_below(span / MOST_TICKS);
+        let first = nice_numbers::rung_below(span / MOST_TICKS);
         let choices = (first..first + 6).map(|rung| Self::with_step(low, high, rung));
         let mut best = Self::default();
         for ticks in choices {
@@ -81,7 +81,7 @@ impl Ticks {
 
     /// The ticks whose step is the number on that rung of the ladder.
     fn with_step(low: f64, high: f64, rung: i64) -> Self {
-        let step = ladder::rung(rung);
+        let step = nice_numbers::rung(rung);
         let numbers = RoundMultiples::of_rung(rung);
         let largest = low.abs().max(high.abs());
         let counts = between(low / step, high / step);
@@ -135,7 +135,7 @@ impl Ticks {
             1 => (first - 1..=last).flat_map(parts_of_decade).collect(),
             _ => (first..=last)
                 .filter(|power| power.rem_euclid(every) != 0)
-                .map(|power| ladder::rung(3 * power))
+                .map(|power| nice_numbers::rung(3 * power))
                 .collect::<Vec<_>>(),
         };
         Self {
@@ -149,8 +149,8 @@ impl Ticks {
     }
 
     fn of_rungs(low: f64, high: f64) -> Self {
-        let begin = ladder::rung_below(low);
-        let rungs = (begin..).map(|rung| (rung, ladder::rung(rung)));
+        let begin = nice_numbers::rung_below(low);
+        let rungs = (begin..).map(|rung| (rung, nice_numbers::rung(rung)));
         let rungs: Vec<_> = rungs
             .take_while(|(_, at)| *at <= high * (1.0 + TICK_ROUNDING))
             .filter(|(_, at)| *at >= low * (1.0 - TICK_ROUNDING))
@@ -194,7 +194,7 @@ fn leading_power(largest: f64) -> i32 {
 
 /// 2, 3, ..., 9 times ten to this power.
 fn parts_of_decade(power: i64) -> impl Iterator<Item = f64> {
-    (2..10).map(move |digit| f64::from(digit) * ladder::rung(3 * power))
+    (2..10).map(move |digit| f64::from(digit) * nice_numbers::rung(3 * power))
 }
 
 fn decade(power: i32) -> Tick {
@@ -204,7 +204,7 @@ fn decade(power: i32) -> Tick {
         power => power_of_ten(power),
     };
     Tick {
-        at: ladder::rung(3 * i64::from(power)),
+        at: nice_numbers::rung(3 * i64::from(power)),
         label,
     }
 }

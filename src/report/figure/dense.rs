@@ -6,7 +6,7 @@ use super::path::TracedPath;
 use super::request::{Dense, FigureRequest, SampledRunNumbers};
 use crate::engine::export::CsvColumn;
 use crate::engine::recording::Extent;
-use crate::engine::text::ladder;
+use crate::engine::text::nice_numbers;
 use crate::plot::chart::Chart;
 use crate::plot::chart::curve;
 use crate::plot::chart::layout::{ChartLayout, PlacedPanel};
@@ -196,6 +196,6 @@ fn proposal(window_s: f64, request: &FigureRequest, what: String) -> Dense {
     Dense {
         what,
         from_s: request.from_s,
-        to_s: request.from_s + ladder::at_or_below(window_s),
+        to_s: request.from_s + nice_numbers::at_or_below(window_s),
     }
 }

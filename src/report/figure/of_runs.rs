@@ -16,7 +16,7 @@ use crate::engine::analysis::health::LEAST_SWING_DEG;
 use crate::engine::export::CsvColumn;
 use crate::engine::run::Truth;
 use crate::engine::scenario::Scenario;
-use crate::engine::text::ladder;
+use crate::engine::text::nice_numbers;
 use crate::engine::text::number::{short, shortest};
 use crate::physics::exact::LagrangeTop;
 use crate::plot::chart::legend::longest_name;
@@ -379,7 +379,7 @@ fn few_a_swing(run: &FigureRun) -> Option<String> {
             run.named,
             short(steps),
             short(period_s),
-            shortest(ladder::at_or_below(period_s / A_SMOOTH_SWING))
+            shortest(nice_numbers::at_or_below(period_s / A_SMOOTH_SWING))
         )
     })
 }

@@ -103,11 +103,11 @@ impl Chart {
             chart.limit(Rule::Least(place), &unit(place), key.from);
             chart.limit(Rule::Greatest(place), &-unit(place), -key.to);
         }
-        for ((part, rows), row) in moments.iter().zip(second.chunks(3)) {
+        for ((part, rows), second_row) in moments.iter().zip(second.chunks(3)) {
             let sum: DVector<f64> = rows.iter().map(|row| &row.slopes).sum();
             let sum_at_zero: f64 = rows.iter().map(|row| row.at_zero).sum();
             for axis in 0..3 {
-                let (part, of_second, of_moment) = (*part, &row[axis], &rows[axis]);
+                let (part, of_second, of_moment) = (*part, &second_row[axis], &rows[axis]);
                 let rule = Rule::SecondMoment { part, axis };
                 chart.limit(rule, &of_second.slopes, -of_second.at_zero);
                 let slopes = &of_moment.slopes - LEAST_MOMENT * &sum;

@@ -95,7 +95,7 @@ fn start(
             .and_then(|axis| axis.parse::<usize>().ok());
         let value = match (&axes_of_key[..], axis) {
             ([_, ..], _) => {
-                let moment: f64 = axes_of_key.iter().map(|axis| moments[*axis]).sum();
+                let moment: f64 = axes_of_key.iter().map(|own| moments[*own]).sum();
                 factor * moment / axes_of_key.len() as f64
             }
             ([], Some(axis)) => rates[axis.min(2)],

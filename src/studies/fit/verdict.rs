@@ -118,8 +118,8 @@ impl Fit {
                 first.join(", ")
             ),
             (first, count) => {
-                let (names, more) = (first.join(", "), count - MOST_FAR_ROWS);
-                format!("rows {names} and {more} more are {least} to {worst} sigma off")
+                let (listed, more) = (first.join(", "), count - MOST_FAR_ROWS);
+                format!("rows {listed} and {more} more are {least} to {worst} sigma off")
             }
         }
     }

@@ -239,7 +239,7 @@ pub fn compare_rows<A: Stepper, B: Stepper>(
     let count = rows.count;
     let goes_on = |lane: &RowAgreement| lane.next < count && lane.differs.is_none();
     let mut step = 0;
-    while lanes.iter().any(goes_on) && !(lanes[0].is_whole() && !goes_on(&lanes[0])) {
+    while lanes.iter().any(goes_on) && (goes_on(&lanes[0]) || !lanes[0].is_whole()) {
         let Some(at) = run.now(rows) else {
             for lane in lanes.iter_mut().filter(|lane| goes_on(lane)) {
                 lane.parted = Some(step);

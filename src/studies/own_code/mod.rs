@@ -218,8 +218,8 @@ impl CheckOutcome<'_> {
             return;
         }
         self.try_pairs(&search);
-        let differs = single.and_then(|single| single.differs);
-        if let Some(differs) = differs.filter(|_| self.explanations.is_empty()) {
+        let single_differs = single.and_then(|single| single.differs);
+        if let Some(differs) = single_differs.filter(|_| self.explanations.is_empty()) {
             search.is_single = true;
             search.first = (differs.row, differs.step);
             self.explanations = search.alone().0;

@@ -9,7 +9,7 @@ use crate::engine::analysis::readouts::ReadoutValue;
 use crate::engine::export::Destination;
 use crate::engine::export::destination::{DestinationError, is_workbook};
 use crate::engine::scenario::Problems;
-use crate::engine::text::advice::{unread, unwritten};
+use crate::engine::text::io_errors::{unread, unwritten};
 use crate::engine::text::printable::{PrintablePath, brief};
 use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions, TryLockError};

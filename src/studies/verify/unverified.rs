@@ -1,7 +1,7 @@
 //! Why a file cannot be made again, and which version wrote it.
 
 use crate::engine::scenario::{Problem, Problems};
-use crate::engine::text::advice::unread;
+use crate::engine::text::io_errors::unread;
 use crate::engine::text::printable::printable;
 use std::io;
 

@@ -340,7 +340,7 @@ readouts! {
     "most_distance_m", "m", Exact, "the largest such distance so far, up to predictable_until_s", |r| r.health.most_distance_m;
     "predictable_until_s", "s", Exact, "the time after which no double-precision computation can predict the motion; null where the run ends before that", |r| r.health.predictability.until_s;
     "reliable", "", Exact, "whether the numbers of this step hold; false after predictable_until_s, null where that is not known", |r| r.health.is_reliable();
-    "L_axle_drift_Js", "J s", Exact, "L along the axle less the exact motion's", |r| r.health.deviation.map(|off| off.spin);
+    "L_axle_drift_Js", "J s", Exact, "L along the axle less the exact motion's", |r| r.health.deviation.map(|off| off.axle_momentum);
     "Lz_drift_Js", "J s", Exact, "L_z less the exact motion's", |r| r.health.deviation.map(|off| off.lz);
     "kappa", "", Scenario, "I3/I1 of a body that is symmetric about its axle; with start.rotor I3 is of that part alone; of one that is symmetric to 1 % only, I1 is the mean moment", |r| r.kappa, "*κ*";
     "asymmetry", "", Scenario, "how far the body is from symmetric about its axle: the largest of the difference of its moments across over their mean, the angle of its principal axis to the axle (rad), and the distance of its center of mass from the axle over its radius of gyration; 0 if symmetric, null where there is no theory (moments: above 0.01, or above a fifth of their difference from the one along the axle; the others: above 0.001)", |r| r.asymmetry;
@@ -363,7 +363,7 @@ readouts! {
     "predicted_body_cone_period_s", "s", Theory, "free symmetric body: time in which the instantaneous axis goes once round the axle, seen from the body, (I1/|I3 - I1|) 2 pi/omega3; null under a load, without spin, for I3 = I1, and where only a rotor spins", |r| r.theory.filter(|theory| !r.has_rotor && !theory.is_of_a_moment).and_then(|theory| theory.body_cone_period_s), "*T*_{c}";
     "fast_top_nutation_rad_per_s", "rad/s", Theory, "the fast top's nutation L3/I1", |r| r.theory.map(|theory| theory.fast_top_nutation), "*ω*_{n}";
     "fast_top_nutation_rpm", "rpm", Theory, "the same in revolutions a minute", |r| r.theory.map(|theory| start::rpm(theory.fast_top_nutation)), "*ω*_{n}";
-    "L_axle_Js", "J s", State, "L along the axle", |r| r.spin, "*L*_{3}" => wheel(0, "L on axle", 3, 9);
+    "L_axle_Js", "J s", State, "L along the axle", |r| r.axle_momentum, "*L*_{3}" => wheel(0, "L on axle", 3, 9);
     "spin_rpm", "rpm", State, "rate of the spin about the axle: omega along it", |r| start::rpm(r.spin_rad_per_s), "*ω*_{3}";
     "w1_rad_per_s", "rad/s", State, "angular velocity along the body's own x", |r| r.sample.omega().x, "*ω*_{1}";
     "w2_rad_per_s", "rad/s", State, "angular velocity along the body's own y", |r| r.sample.omega().y, "*ω*_{2}";
