@@ -9,7 +9,7 @@ use crate::lessons::page::for_teacher;
 use crate::lessons::{Predict, reading};
 use chrono::Local;
 
-/// The lines of the board, at most `width` columns wide.
+/// Returns the lines of the board, at most `width` columns wide.
 pub fn lines(folder: &ClassFolder, width: usize) -> Vec<String> {
     let (seats, unread) = match seat_statuses(folder) {
         Ok(seats) => (seats, None),
@@ -56,7 +56,7 @@ pub fn lines(folder: &ClassFolder, width: usize) -> Vec<String> {
     lines
 }
 
-/// The page in words, with the votes on its questions.
+/// Returns the page in words, with the votes on its questions.
 fn page_lines(state: &ClassState, seats: &[SeatStatus]) -> Vec<String> {
     let told = match reading::open_again(&state.lesson) {
         Ok(lesson) => for_teacher(&lesson, state.page, |predict| {
@@ -67,7 +67,7 @@ fn page_lines(state: &ClassState, seats: &[SeatStatus]) -> Vec<String> {
     told.lines().map(str::to_owned).collect()
 }
 
-/// The votes on `predict`, a round after the other. While a round goes on nobody's choice is shown.
+/// Returns the votes on `predict`, a round after the other. While a round goes on nobody's choice is shown.
 fn round_lines(predict: &Predict, state: &ClassState, seats: &[SeatStatus]) -> String {
     let question = state.question(&predict.name);
     let mut text = String::new();
@@ -83,7 +83,7 @@ fn round_lines(predict: &Predict, state: &ClassState, seats: &[SeatStatus]) -> S
     text
 }
 
-/// The seats in columns.
+/// Returns the seats in columns.
 fn seat_lines(state: &ClassState, seats: &[SeatStatus], width: usize) -> Vec<String> {
     let mut cells = Vec::new();
     for seat in seats {

@@ -94,14 +94,14 @@ pub struct PresentedRun {
 }
 
 impl ClassFolder {
-    /// The class in the folder DIR.
+    /// Finds the class in the folder DIR.
     pub fn at(dir: &Path) -> Result<Self, String> {
         let root =
             fs::canonicalize(dir).map_err(|error| format!("{}: {error}", PrintablePath(dir)))?;
         Ok(Self { root })
     }
 
-    /// The same; its own folders are made where they do not exist.
+    /// Opens the class in the folder DIR, and makes its own folders if they do not exist.
     pub fn open(dir: &Path) -> Result<Self, String> {
         let folder = Self::at(dir)?;
         for path in [folder.own(), folder.seats(), folder.wrong()] {
@@ -132,7 +132,7 @@ impl ClassFolder {
         let _ = fs::remove_file(self.wrong().join(word)); // where it stays, it counts on
     }
 
-    /// The folder of the teacher, for the state and the sessions.
+    /// Returns the folder of the teacher, for the state and the sessions.
     pub fn teacher(&self) -> PathBuf {
         self.own().join("teacher")
     }
@@ -141,7 +141,7 @@ impl ClassFolder {
         self.teacher().join("state")
     }
 
-    /// The teacher's state; `None` before any class.
+    /// Reads the teacher's state; `None` before any class.
     ///
     /// # Errors
     /// When it cannot be read, or another version has written it.
@@ -179,12 +179,12 @@ impl ClassFolder {
         let _ = shared::touch(&self.state_file()); // what is wrong is said where it is written
     }
 
-    /// Whether the teacher's lab has touched its state a moment ago.
+    /// Returns whether the teacher's lab has touched its state a moment ago.
     pub fn is_teacher_alive(&self) -> bool {
         shared::modified(&self.state_file()).is_some_and(|time| ago(time) < GONE)
     }
 
-    /// Whether nothing more can be written.
+    /// Returns whether nothing more can be written.
     pub fn is_full(&self) -> bool {
         rustix::fs::statvfs(self.own()).is_ok_and(|there| there.f_bavail == 0)
     }
@@ -202,14 +202,14 @@ fn make(path: &Path, mode: u32) -> Result<(), String> {
 }
 
 impl QuestionState {
-    /// The present round, from 1.
+    /// Returns the present round, from 1.
     pub fn round(&self) -> u32 {
         self.earlier_rounds.saturating_add(1)
     }
 }
 
 impl ClassState {
-    /// What its lesson shows; `is_there` says whether the run has come where the teacher's is.
+    /// Returns what its lesson shows; `is_there` says whether the run has come where the teacher's is.
     pub(super) fn followed(&self, is_there: bool) -> ClassPage<'_> {
         ClassPage {
             lesson: &self.lesson,

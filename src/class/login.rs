@@ -84,7 +84,7 @@ impl WrongCodes {
     }
 }
 
-/// The seat that `typed` asks for, and whether it is new.
+/// Returns the seat that `typed` asks for, and whether it is new.
 ///
 /// # Errors
 /// Why there is none, in words for the student.
@@ -212,7 +212,7 @@ pub fn waiting(folder: &ClassFolder, now_unix_s: u64) -> Vec<WaitingSeat> {
     waiting
 }
 
-/// A time in whole minutes, or in seconds below two.
+/// Returns a time in whole minutes, or in seconds below two.
 fn in_words(seconds: u64) -> String {
     match seconds {
         0..120 => format!("{seconds} s"),

@@ -38,7 +38,7 @@ const LEAST_WAIT: Duration = Duration::from_millis(10);
 
 /// What a class adds to a lab.
 pub trait ClassRole {
-    /// The state of the lessons with which the lab begins; its session has `kept` this one.
+    /// Returns the state of the lessons with which the lab begins; its session has `kept` this one.
     fn lessons(&self, kept: Table) -> Table {
         kept
     }
@@ -64,12 +64,12 @@ pub trait ClassRole {
     /// Takes note of what keys have done.
     fn after_keys(&mut self, _lab: &mut Lab, _lessons: &Lessons) {}
 
-    /// How long the loop may wait until the files are looked at again.
+    /// Returns how long the loop may wait until the files are looked at again.
     fn wait(&self, _now: Duration) -> Duration {
         Duration::MAX
     }
 
-    /// Why the files cannot be written, if they cannot.
+    /// Returns why the files cannot be written, if they cannot.
     fn trouble(&self) -> Option<String> {
         None
     }
@@ -96,7 +96,7 @@ fn unix_ms() -> u64 {
     since.unwrap_or_default().as_millis() as u64
 }
 
-/// How long ago `time` was. One that is to come, as the clock was set back, counts as long ago as it is ahead.
+/// Returns how long ago `time` was. One that is to come, as the clock was set back, counts as long ago as it is ahead.
 fn ago(time: SystemTime) -> Duration {
     let since = SystemTime::now().duration_since(time);
     since.unwrap_or_else(|ahead| ahead.duration())

@@ -64,15 +64,15 @@ pub(super) fn is_name(name: &str) -> bool {
         && !name.starts_with('-')
 }
 
-/// The name of a seat, if `word` is that of one. A word whose code lacks a digit is none, and no name either: nobody who
-/// mistypes a word gets a new seat.
+/// Returns the name of a seat, if `word` is that of one. A word whose code lacks a digit is none, and no name either:
+/// nobody who mistypes a word gets a new seat.
 pub(super) fn name_of(word: &str) -> Option<&str> {
     let (name, code) = word.rsplit_once('-')?;
     let is_code = code.len() >= OLD_DIGITS && code.bytes().all(|digit| digit.is_ascii_digit());
     (is_code && is_name(name)).then_some(name)
 }
 
-/// The seats of the class, in the order of their names.
+/// Returns the seats of the class, in the order of their names.
 ///
 /// # Errors
 /// When the folder of the seats cannot be read.
@@ -86,7 +86,7 @@ pub fn all_seats(folder: &ClassFolder) -> Result<Vec<Seat>, String> {
     Ok(words.iter().map(|it| Seat::named(folder, it)).collect())
 }
 
-/// The words of the seats in the folder `seats`.
+/// Returns the words of the seats in the folder `seats`.
 fn words_in(seats: &Path) -> io::Result<Vec<String>> {
     let mut words = Vec::new();
     for found in fs::read_dir(seats)? {
@@ -125,7 +125,7 @@ impl Seat {
         self.folder.join(SESSIONS).join(name)
     }
 
-    /// What its file holds.
+    /// Reads its file.
     ///
     /// # Errors
     /// When it cannot be read, or another version has written it.
@@ -144,7 +144,7 @@ impl Seat {
         Ok(record)
     }
 
-    /// What its file holds, with the places in the lessons.
+    /// Reads its file, and the progress in the lessons.
     ///
     /// # Errors
     /// As for [`record`](Self::record), and when the places are damaged; with the name of the seat.
@@ -180,7 +180,7 @@ impl Seat {
         Ok(word)
     }
 
-    /// Whether the seat is still open under `word`. Gives a sign then.
+    /// Returns whether the seat is still open under `word`, and gives a sign then.
     pub(super) fn is_held(&self, word: &str) -> bool {
         let path = self.file("open");
         match shared::read(&path, 100) {

@@ -82,7 +82,8 @@ fn playback_snapshot(lab: &Lab, lessons: &Lessons) -> PlaybackSnapshot {
 }
 
 impl Student {
-    /// The lab of `seat`, which this process has open under the word `lock_token`; `record` is what its file holds.
+    /// Returns the lab of `seat`, which this process has open under the word `lock_token`; `record` is what its file
+    /// holds.
     pub fn new(folder: ClassFolder, seat: Seat, lock_token: String, record: SeatRecord) -> Self {
         Self {
             folder,
@@ -94,14 +95,14 @@ impl Student {
         }
     }
 
-    /// Whether the lab shows what the teacher's shows.
+    /// Returns whether the lab shows what the teacher's shows.
     fn follows(&self) -> bool {
         let state = self.state.as_ref();
         let is_followed = state.is_some_and(|state| state.shown.is_some());
         self.is_on && is_followed && !self.record.is_aside
     }
 
-    /// The state of the class, while it is on.
+    /// Returns the state of the class, while it is on.
     fn class(&self) -> Option<&ClassState> {
         self.state.as_ref().filter(|_| self.is_on)
     }
@@ -217,7 +218,7 @@ impl Student {
         }
     }
 
-    /// What the class adds to the page.
+    /// Returns what the class adds to the page.
     fn overlay(&self, lessons: &Lessons) -> ClassOverlay {
         let Some(open) = lessons.open_lesson().filter(|_| self.has_begun) else {
             return ClassOverlay::default();
@@ -251,7 +252,7 @@ impl Student {
         overlay
     }
 
-    /// The title of the page, a form a line; `asks` says whether the page has a question.
+    /// Returns the title of the page, a form a line; `asks` says whether the page has a question.
     fn title(&self, open: &OpenLesson, asks: bool) -> String {
         let page = open.place.page;
         let of = format!("{page} of {}", open.lesson.pages.len());
@@ -299,7 +300,7 @@ impl Student {
         lab.refuse("back in the class");
     }
 
-    /// What the header of an export says: the seat, and the page beside which it was made.
+    /// Returns what the header of an export says: the seat, and the page beside which it was made.
     fn note_for_exports(&self, lessons: &Lessons) -> Option<String> {
         let open = lessons.open_lesson().filter(|_| self.record.is_aside)?;
         let (page, lesson) = (open.place.page, &open.lesson.name);
@@ -395,8 +396,8 @@ impl ClassRole for Student {
     }
 }
 
-/// What is hidden where the teacher's lab hides `presented`: what the page hides stays so until the predictions here are
-/// locked, whatever the teacher sees.
+/// Returns what is hidden where the teacher's lab hides `presented`: what the page hides stays so until the predictions
+/// here are locked, whatever the teacher sees.
 fn hidden(presented: &[HideablePart], open: Option<&OpenLesson>) -> Vec<HideablePart> {
     let page = open.and_then(|open| Some((open.page()?, &open.place.predictions)));
     let Some((page, predictions)) = page.filter(|(page, _)| page.predicts().next().is_some())
@@ -410,7 +411,7 @@ fn hidden(presented: &[HideablePart], open: Option<&OpenLesson>) -> Vec<Hideable
     hidden
 }
 
-/// The step at which `run` is by now, and how many steps it may be off.
+/// Returns the step at which `run` is by now, and how many steps it may be off.
 fn expected_step(run: &PresentedRun, player: &Player, time_step_s: f64) -> (u64, f64) {
     let since_s = unix_ms().saturating_sub(run.at_ms) as f64 / 1000.0;
     let (ahead, off) = match run.snapshot.speed {

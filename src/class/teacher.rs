@@ -48,7 +48,7 @@ enum SeatEntry<'a> {
 }
 
 impl Teacher {
-    /// The class in `folder`, with the rounds of an earlier lab.
+    /// Returns the class in `folder`, with the rounds of an earlier lab.
     pub fn new(folder: ClassFolder, before: ClassState) -> Self {
         let state = ClassState {
             gyrolab: CLASS_VERSION.to_owned(),
@@ -109,7 +109,7 @@ impl Teacher {
         }
     }
 
-    /// The run in `lab`, as the class follows it.
+    /// Returns the run in `lab`, as the class follows it.
     fn shown(&mut self, lab: &Lab) -> Option<PresentedRun> {
         let player = lab.player();
         let scenario = player.run().scenario();
@@ -139,7 +139,7 @@ impl Teacher {
         })
     }
 
-    /// What the class adds to the page.
+    /// Returns what the class adds to the page.
     fn overlay(&self, lessons: &Lessons) -> ClassOverlay {
         let (here, counts) = present(&self.seats);
         let framed = lessons.open_lesson().map(|open| {
@@ -174,7 +174,7 @@ impl Teacher {
         }
     }
 
-    /// The name of the question that the class is at, and the votes as far as they are shown.
+    /// Returns the name of the question that the class is at, and the votes as far as they are shown.
     fn votes(&self, page: &LessonPage) -> Option<(String, Vec<Paragraph>)> {
         let (predict, question) = votes::question(page, &self.state)?;
         let (round, answered, here) = (question.round(), self.state.answered, self.state.here);
@@ -204,7 +204,7 @@ impl Teacher {
         Some((predict.name.clone(), lines))
     }
 
-    /// The seats that accept no code, then all seats.
+    /// Returns the seats that accept no code, then all seats.
     fn entries(&self) -> Vec<SeatEntry<'_>> {
         let waiting = login::waiting(&self.folder, unix_ms() / 1000).into_iter();
         let seats = self.seats.iter().map(SeatEntry::Seat);
@@ -353,7 +353,7 @@ impl ClassRole for Teacher {
     }
 }
 
-/// The run file as the class gets it: without measured data that are a file of the teacher's.
+/// Returns the run file as the class gets it: without measured data that are a file of the teacher's.
 fn published(scenario: &Scenario) -> String {
     let mut run = scenario.clone();
     let named = run.file.viewed_text("measured");

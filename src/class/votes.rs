@@ -40,7 +40,7 @@ pub fn seat_statuses(folder: &ClassFolder) -> Result<Vec<SeatStatus>, String> {
     Ok(seats.map(SeatStatus::read).collect())
 }
 
-/// How many of `seats` are here, and in words with those that are aside, lost or away.
+/// Returns how many of `seats` are here, and in words with those that are aside, lost or away.
 pub fn present(seats: &[SeatStatus]) -> (usize, String) {
     let (mut here, mut aside, mut lost, mut away) = (0, 0, 0, 0);
     for seat in seats {
@@ -80,7 +80,7 @@ impl SeatStatus {
         self.presence == Presence::Here
     }
 
-    /// What it has answered to `of`, a question of `lesson`, in this round.
+    /// Returns what it has answered to `of`, a question of `lesson`, in this round.
     pub fn vote<'a>(
         &'a self,
         lesson: &str,
@@ -143,7 +143,7 @@ impl Tally {
         }
     }
 
-    /// The bars for the teacher, those of late votes below them.
+    /// Returns the bars for the teacher, those of late votes below them.
     pub fn drawn(&self) -> Paragraph {
         let mut text = drawn(&self.bars).text();
         if self.late > 0 {
@@ -181,7 +181,7 @@ fn bars(asked: &AnswerKind, answers: Vec<f64>) -> Vec<(String, usize)> {
     bars
 }
 
-/// The numbers to two digits, the most frequent of them, in their order.
+/// Returns the numbers to two digits, the most frequent of them, in their order.
 fn bars_of_numbers(mut numbers: Vec<f64>) -> Vec<(String, usize)> {
     numbers.sort_by(f64::total_cmp);
     let mut bars: Vec<(String, usize)> = Vec::new();
@@ -212,7 +212,7 @@ pub fn drawn(bars: &[(String, usize)]) -> Paragraph {
     Paragraph::new(SheetLineKind::Code, text)
 }
 
-/// The question of `page` that the class is at: the first that is not closed, or else the first.
+/// Returns the question of `page` that the class is at: the first that is not closed, or else the first.
 pub fn question<'a>(
     page: &'a LessonPage,
     state: &ClassState,
@@ -227,8 +227,8 @@ const VOTE_COLUMNS: [&str; 8] = [
     "lesson", "question", "round", "seat", "choice", "late", "page", "time",
 ];
 
-/// The votes of `seats` as CSV, in the order of seats, lessons and questions. A choice that the lesson no longer has is
-/// told in its words.
+/// Returns the votes of `seats` as CSV, in the order of seats, lessons and questions. A choice that the lesson no longer
+/// has is told in its words.
 pub fn csv(folder: &ClassFolder, seats: &[SeatStatus]) -> Result<String, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(VOTE_COLUMNS)?;
@@ -265,7 +265,7 @@ pub fn csv(folder: &ClassFolder, seats: &[SeatStatus]) -> Result<String, csv::Er
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-/// The time of `given`, as RFC 3339 writes it.
+/// Returns the time of `given`, as RFC 3339 writes it.
 fn time(given: &LockedAnswer) -> String {
     let time = DateTime::<Utc>::from_timestamp(given.time_unix_s as i64, 0).unwrap_or_default();
     time.format("%Y-%m-%dT%H:%M:%SZ").to_string()

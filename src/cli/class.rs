@@ -228,7 +228,7 @@ fn asked(folder: &ClassFolder) -> anyhow::Result<Option<Seat>> {
     }
 }
 
-/// A line that was typed, cut off where it is too long; `None` at the end.
+/// Reads a line that was typed, cut off where it is too long; `None` at the end.
 fn line() -> io::Result<Option<String>> {
     let mut stdin = io::stdin().lock();
     let mut bytes = Vec::new();

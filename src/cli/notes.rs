@@ -75,7 +75,7 @@ pub(super) fn notes(name: &str) -> anyhow::Result<ExitCode> {
     bail!(Interrupted)
 }
 
-/// The name of the session that is meant: of those with an open lesson, the one in use that was written last.
+/// Returns the name of the session that is meant: of those with an open lesson, the one in use that was written last.
 fn find(folder: &Path, name: &str) -> anyhow::Result<Option<String>> {
     let is_meant =
         |session: &ListedSession| session.name == name || name.is_empty() && session.is_in_use;
@@ -91,7 +91,7 @@ fn lessons_of(session: &ListedSession) -> Option<KeptLessons> {
     KeptLessons::read(&lessons_in(content)).ok()
 }
 
-/// The lesson that is open in `session`, and its page.
+/// Returns the lesson that is open in `session`, and its page.
 fn open_in(session: &ListedSession) -> Option<(String, LessonProgress)> {
     let mut lessons = lessons_of(session)?;
     let open = lessons.open?;
@@ -99,7 +99,7 @@ fn open_in(session: &ListedSession) -> Option<(String, LessonProgress)> {
     Some((open, place))
 }
 
-/// A line at the bottom of the terminal that changes; without a terminal there is none.
+/// Returns a line at the bottom of the terminal that changes; without a terminal there is none.
 fn live_line() -> Option<LiveLine<Stdout>> {
     let stdout = io::stdout();
     stdout.is_terminal().then(|| LiveLine::new(stdout))

@@ -53,7 +53,7 @@ pub(super) fn list(folder: Option<&Path>) -> anyhow::Result<ExitCode> {
     print(&text)
 }
 
-/// The folder of the sessions: of the user, or of a confined lab.
+/// Returns the folder of the sessions: of the user, or of a confined lab.
 pub(super) fn folder_of(confined: Option<&Confined>) -> Result<PathBuf, String> {
     match confined {
         Some(confined) => confined.sessions(),
@@ -85,7 +85,7 @@ fn row(session: &ListedSession, now: SystemTime) -> [String; 5] {
     [session.name.clone(), written, step, in_use, run].map(|text| printable(&text).into_owned())
 }
 
-/// How long ago, in the largest unit of which it is at least two.
+/// Returns how long ago, in the largest unit of which it is at least two.
 fn ago(time: Duration) -> String {
     let seconds = time.as_secs();
     let units = [(86_400, "days"), (3600, "hours"), (60, "minutes")];
@@ -136,7 +136,7 @@ pub(super) fn tell_of_session(
 /// A lab, the state of its lessons, and its session or why there is none.
 type SessionLab = (Lab, Table, Result<Session, String>);
 
-/// The lab that a session has kept, as the command line wants it to look, and the state of its lessons.
+/// Returns the lab that a session has kept, as the command line wants it to look, and the state of its lessons.
 fn resumed(
     content: &session::SessionContent,
     look: DisplayArgs,
@@ -149,7 +149,7 @@ fn resumed(
     Ok((lab, lessons_in(content)))
 }
 
-/// The session called `name`, or an error that says why it cannot be had.
+/// Returns the session called `name`, or an error that says why it cannot be had.
 pub(super) fn come_back_to(
     name: &str,
     args: &WorkbenchArgs,
@@ -172,8 +172,8 @@ pub(super) fn come_back_to(
     bail!("--resume {name_shown}: {why}")
 }
 
-/// The newest session that is not in use; where there is none, a new lab that says so. What is damaged, or cannot be
-/// kept, never keeps the lab from opening.
+/// Returns the newest session that is not in use; where there is none, a new lab that says so. What is damaged, or cannot
+/// be kept, never keeps the lab from opening.
 pub(super) fn come_back(
     args: &WorkbenchArgs,
     confined: Option<&Confined>,

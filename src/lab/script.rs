@@ -40,17 +40,17 @@ impl CommandScript {
         }
     }
 
-    /// The command that was refused, and why.
+    /// Returns the command that was refused, and why.
     pub fn failure(&self) -> Option<&str> {
         self.failed.as_deref()
     }
 
-    /// Why a command was refused, to be said once more by the caller.
+    /// Returns why a command was refused, to be said once more by the caller.
     pub(super) fn take_failure(&mut self) -> Option<String> {
         self.failed.take()
     }
 
-    /// The titles of the chapters that were begun since this was asked last.
+    /// Returns the titles of the chapters that were begun since this was asked last.
     pub fn take_chapters(&mut self) -> Vec<String> {
         std::mem::take(&mut self.chapters)
     }
@@ -66,12 +66,12 @@ impl CommandScript {
         Done::saying(title)
     }
 
-    /// How many commands are not complete, with the one under way.
+    /// Returns how many commands are not complete, with the one under way.
     pub fn count(&self) -> usize {
         self.left.len() + usize::from(self.under_way.is_some())
     }
 
-    /// How many commands are left, and the keys of a script that waits.
+    /// Returns how many commands are left, and the keys of a script that waits.
     pub(super) fn left_in_words(&self) -> String {
         let origin = &self.origin;
         match self.count() {
@@ -86,12 +86,13 @@ impl CommandScript {
         self.count() == 0
     }
 
-    /// Whether it has ended before its end: it was dropped, or a command was refused.
+    /// Returns whether it has ended before its end: it was dropped, or a command was refused.
     pub fn has_broken_off(&self) -> bool {
         self.is_dropped || self.failed.is_some()
     }
 
-    /// Whether a key has broken it off: the key has dropped its commands, or stopped the run that one of them played.
+    /// Returns whether a key has broken it off: the key has dropped its commands, or stopped the run that one of them
+    /// played.
     pub fn was_stopped(&self) -> bool {
         self.has_broken_off() && self.failure().is_none_or(|why| why.ends_with(STOPPED_TEXT))
     }
@@ -109,7 +110,7 @@ impl CommandScript {
         }
     }
 
-    /// The time until which the command under way waits.
+    /// Returns the time until which the command under way waits.
     pub(super) fn waits_until(&self) -> Option<Duration> {
         match self.under_way {
             Some((_, PendingAction::Waiting(until))) => Some(until),
@@ -117,8 +118,8 @@ impl CommandScript {
         }
     }
 
-    /// The command under way as it is carried out again: a run goes to the same step or until the same condition holds, a
-    /// wait lasts for what is left of it at `now`.
+    /// Returns the command under way as it is carried out again: a run goes to the same step or until the same condition
+    /// holds, a wait lasts for what is left of it at `now`.
     fn under_way_again(&self, player: &Player, now: Duration) -> Option<LocatedCommand> {
         let (placed, under_way) = self.under_way.as_ref()?;
         let command = match under_way {
@@ -156,8 +157,8 @@ impl CommandScript {
         self.waits = false;
     }
 
-    /// The next command to be carried out; `None` where there is none, or where it must wait. `halt` tells why the run has
-    /// just stopped by itself, if it has.
+    /// Returns the next command to be carried out; `None` where there is none, or where it must wait. `halt` tells why the
+    /// run has just stopped by itself, if it has.
     ///
     /// # Errors
     /// Which command has failed, and why: the others are dropped.

@@ -36,7 +36,7 @@ pub(super) struct KeptPinned {
 }
 
 impl KeptPinned {
-    /// What is to be pinned again.
+    /// Returns the pinned run.
     pub(super) fn reference(self) -> Result<Reference, Problems> {
         let run = self
             .run
@@ -97,7 +97,7 @@ impl SessionSummary {
 #[error("{0}")]
 pub struct Unreadable(String);
 
-/// The state of the lessons in `content`; empty where there is none, or it cannot be read.
+/// Returns the state of the lessons in `content`; empty where there is none, or it cannot be read.
 pub fn lessons_in(content: &SessionContent) -> Table {
     read("the place in it", &content.place).map_or(Table::new(), |place: KeptPlace| place.lessons)
 }
@@ -158,7 +158,7 @@ impl KeptPlace {
         }
     }
 
-    /// What is kept of the columns of the measured data.
+    /// Returns the options of the columns of the measured data.
     pub(super) fn columns(&self) -> ColumnOptions {
         ColumnOptions {
             map: self.map.clone(),
@@ -180,7 +180,7 @@ impl KeptPlace {
         Ok(())
     }
 
-    /// What is there again, in words.
+    /// Describes what the session restores.
     pub(super) fn in_words(&self) -> String {
         match &self.exporting {
             Some(path) => {

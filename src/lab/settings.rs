@@ -133,7 +133,7 @@ fn shown(view: &View, part: HideablePart) -> String {
     if view.hides(part) { "hidden" } else { "shown" }.to_owned()
 }
 
-/// The value after `now` among `all`, or the one before; after the last comes the first.
+/// Returns the value after `now` among `all`, or the one before; after the last comes the first.
 fn next<T: Copy + PartialEq>(all: &[T], now: T, forward: bool) -> T {
     let here = all.iter().position(|value| *value == now).unwrap_or(0);
     let step = if forward { 1 } else { all.len() - 1 };

@@ -148,7 +148,7 @@ impl<'a> BlockContent<'a> {
         Ok(content)
     }
 
-    /// The text at `key`, or each text in the list there; none if the key is absent.
+    /// Returns the text at `key`, or each text in the list there; none if the key is absent.
     fn texts(&self, key: &str) -> Vec<String> {
         let value = self.keys.get(key);
         let items = match value {
@@ -243,7 +243,7 @@ fn expression(
     Ok(expression)
 }
 
-/// What the lesson is about, and how many minutes it takes.
+/// Returns what the lesson is about, and how many minutes it takes.
 pub(super) fn head(reader: &BlockReader<'_>) -> BlockResult<(String, Option<u32>)> {
     let content = BlockContent::read(reader, HEAD)?;
     let whole = content.keys.get("minutes").and_then(Value::as_integer);
@@ -251,7 +251,8 @@ pub(super) fn head(reader: &BlockReader<'_>) -> BlockResult<(String, Option<u32>
     Ok((content.text("about"), minutes))
 }
 
-/// What the lab does: a `lab` or `task` block of page `page`, whose kept numbers are known from the page `known_from` on.
+/// Returns what the lab does: a `lab` or `task` block of page `page`, whose kept numbers are known from the page
+/// `known_from` on.
 pub(super) fn setup(
     reader: &BlockReader<'_>,
     names: &mut KeptNames,
@@ -383,7 +384,7 @@ fn predict(
     })
 }
 
-/// The number of the right choice; or the right number, and how far off an answer may be.
+/// Returns the number of the right choice; or the right number, and how far off an answer may be.
 fn read_right(
     right: Option<f64>,
     within: Option<f64>,

@@ -3,7 +3,7 @@
 use chrono::Local;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-/// The time of the day, how long ago the lesson was opened, and how many minutes it should take.
+/// Returns the time of the day, how long ago the lesson was opened, and how many minutes it should take.
 pub fn shown(since: Duration, minutes: Option<u32>) -> String {
     let (time, gone) = (Local::now().format("%H:%M"), since.as_secs());
     let of = minutes.map_or(String::new(), |minutes| format!(" of {minutes} min"));

@@ -58,7 +58,7 @@ pub fn handout(
     Ok(joined(&parts))
 }
 
-/// A page of a worksheet after the first prediction: what is asked and what is to be done, and room for the rest.
+/// Returns a page of a worksheet after the first prediction: what is asked and what is to be done, and room for the rest.
 fn blank_page(
     page: &LessonPage,
     walk: &LessonWalk<'_>,
@@ -100,12 +100,12 @@ fn blank_page(
     parts
 }
 
-/// Whether it is a command to be typed.
+/// Returns whether it is a command to be typed.
 fn is_shell(block: &LessonBlock) -> bool {
     matches!(block, LessonBlock::Shown(code) if code.language == "sh")
 }
 
-/// A question of which no number is told.
+/// Returns a question of which no number is told.
 fn room_for_blank(predict: &Predict) -> String {
     asked(predict, &predict.ask.filled(|_, _| BLANK.to_owned()))
 }
@@ -135,7 +135,7 @@ fn head(lesson: &Lesson, walk: &LessonWalk<'_>) -> Vec<String> {
     parts
 }
 
-/// The parts of a page with these of its `blocks`, with a blank line between each and the next.
+/// Returns the parts of a page with these of its `blocks`, with a blank line between each and the next.
 fn on_pages(
     page: &LessonPage,
     blocks: &[LessonBlock],
@@ -170,7 +170,7 @@ fn room_for(predict: &Predict, lab: &Lab, kept: &KeptNumbers) -> String {
     asked(predict, &predict.ask.with_numbers(lab, kept))
 }
 
-/// The question `ask` with a box for each choice, or room for a number.
+/// Returns the question `ask` with a box for each choice, or room for a number.
 fn asked(predict: &Predict, ask: &str) -> String {
     let room: Vec<_> = match &predict.asked {
         AnswerKind::Choice(choices) => (1..)
@@ -182,7 +182,7 @@ fn asked(predict: &Predict, ask: &str) -> String {
     format!("**Prediction.** {ask}\n\n{}", room.join("\n"))
 }
 
-/// The comparison with room for the prediction.
+/// Returns the comparison with room for the prediction.
 fn blanked(compare: &Compare, lab: &Lab, kept: &KeptNumbers) -> String {
     let with = compare.came_out(lab, kept);
     compare.text.filled(|expression, format| {
@@ -208,7 +208,7 @@ fn fenced(language: &str, text: &str) -> String {
     )
 }
 
-/// The predictions of `place` beside what came out of `lesson`, which is played in a new `lab`; as Markdown.
+/// Returns the predictions of `place` beside what came out of `lesson`, which is played in a new `lab`; as Markdown.
 pub fn answers(
     lesson: &Lesson,
     place: &LessonProgress,
@@ -230,8 +230,8 @@ pub fn answers(
     Ok(joined(&parts))
 }
 
-/// The heading of a page, with what was asked, what came out and what became of its task; nothing where it has none of
-/// these.
+/// Returns the heading of a page, with what was asked, what came out and what became of its task; nothing where it has
+/// none of these.
 fn answers_of(
     lesson: &Lesson,
     page: &LessonPage,
@@ -257,14 +257,14 @@ fn answers_of(
     parts
 }
 
-/// The question with what was predicted; nothing where nothing was.
+/// Returns the question with what was predicted; nothing where nothing was.
 fn predicted(predict: &Predict, place: &LessonProgress, walk: &LessonWalk<'_>) -> Option<String> {
     let ask = predict.ask.with_numbers(&walk.lab, &walk.kept);
     let answer = place.predictions.in_words(predict)?;
     Some(format!("**Question.** {ask}\n\n**Predicted.** {answer}"))
 }
 
-/// What came out; nothing where nothing was predicted: it would give the answer away.
+/// Returns what came out; nothing where nothing was predicted: it would give the answer away.
 fn came_out(
     lesson: &Lesson,
     compare: &Compare,

@@ -90,7 +90,7 @@ pub enum Right {
 }
 
 impl Right {
-    /// Whether `answer` is right: a number, or the number of a choice.
+    /// Returns whether `answer` is right: a number, or the number of a choice.
     pub fn accepts(&self, answer: f64) -> bool {
         match self {
             Self::Choice(number) => answer == *number as f64,
@@ -149,7 +149,7 @@ pub struct CodeBlock {
 }
 
 impl Lesson {
-    /// The page with this number, from 1.
+    /// Returns the page with this number, from 1.
     pub fn page(&self, number: usize) -> Option<&LessonPage> {
         self.pages.get(number.checked_sub(1)?)
     }
@@ -161,7 +161,7 @@ impl Lesson {
 }
 
 impl LessonBlock {
-    /// The text in it, which may hold numbers of the run.
+    /// Returns the text in it, which may hold numbers of the run.
     pub fn text(&self) -> Option<&LessonText> {
         match self {
             Self::Text(text) | Self::Notes(text) => Some(text),
@@ -171,7 +171,7 @@ impl LessonBlock {
         }
     }
 
-    /// The numbers that it states.
+    /// Returns the numbers that it states.
     fn expressions(&self) -> impl Iterator<Item = &Expression> {
         let with = match self {
             Self::Compare(compare) => compare.with.as_ref(),
@@ -183,7 +183,7 @@ impl LessonBlock {
 }
 
 impl LessonPage {
-    /// What the lab does when the page is opened.
+    /// Returns what the lab does when the page is opened.
     pub fn lab(&self) -> Option<&Setup> {
         self.blocks.iter().find_map(|block| match block {
             LessonBlock::Lab(setup) => Some(setup),
@@ -191,7 +191,7 @@ impl LessonPage {
         })
     }
 
-    /// What the student is to do.
+    /// Returns what the student is to do.
     pub fn task(&self) -> Option<&Setup> {
         self.blocks.iter().find_map(|block| match block {
             LessonBlock::Task(setup) => Some(setup),
@@ -206,7 +206,7 @@ impl LessonPage {
         })
     }
 
-    /// What must hold once the student has done the task.
+    /// Returns what must hold once the student has done the task.
     pub fn checks(&self) -> impl Iterator<Item = &Check> {
         self.blocks.iter().filter_map(|block| match block {
             LessonBlock::Check(check) => Some(check),
@@ -214,7 +214,7 @@ impl LessonPage {
         })
     }
 
-    /// Whether it asks for the prediction called `name`.
+    /// Returns whether it asks for the prediction called `name`.
     pub fn asks(&self, name: &str) -> bool {
         self.predicts().any(|predict| predict.name == name)
     }
@@ -226,12 +226,13 @@ impl LessonPage {
         })
     }
 
-    /// Whether its run is played, and what stands behind its `lab` block comes once that has arrived.
+    /// Returns whether its run is played, and what stands behind its `lab` block comes once that has arrived.
     pub fn plays(&self) -> bool {
         self.lab().is_some_and(Setup::plays)
     }
 
-    /// Whether it states numbers of the run that a student has in hand: what `kept` names is known whatever that is.
+    /// Returns whether it states numbers of the run that a student has in hand: what `kept` names is known whatever that
+    /// is.
     pub fn states_numbers(&self, kept: &KeptNumbers) -> bool {
         self.blocks
             .iter()
@@ -250,12 +251,12 @@ impl LessonPage {
 }
 
 impl Setup {
-    /// Whether it opens a run: it then depends on nothing before it but kept numbers.
+    /// Returns whether it opens a run: it then depends on nothing before it but kept numbers.
     pub fn opens(&self) -> bool {
         self.has_command(|command| matches!(command, Command::Open(_)))
     }
 
-    /// Whether it ends with a run that is played until a condition holds.
+    /// Returns whether it ends with a run that is played until a condition holds.
     pub fn plays(&self) -> bool {
         self.has_command(|command| matches!(command, Command::RunUntil(_)))
     }
@@ -264,7 +265,7 @@ impl Setup {
         self.commands.iter().any(|placed| is_meant(&placed.command))
     }
 
-    /// The parts of the screen that its `hide` names.
+    /// Returns the parts of the screen that its `hide` names.
     pub fn hides(&self) -> Vec<HideablePart> {
         self.commands
             .iter()

@@ -3,7 +3,7 @@
 use crate::lab::sheet::{Emphasis, Paragraph, SheetLineKind, StyledText};
 use pulldown_cmark::{Event, Parser, Tag, TagEnd};
 
-/// The paragraphs of `source`; plain ones become `kind`.
+/// Returns the paragraphs of `source`; plain ones become `kind`.
 pub fn paragraphs(source: &str, kind: &SheetLineKind) -> Vec<Paragraph> {
     let mut pen = MarkdownReader {
         kind,

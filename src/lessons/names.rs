@@ -98,7 +98,7 @@ impl KeptNames {
     }
 }
 
-/// The kept number called `name`, or else the run's number in `lab`; `None` if there is none now.
+/// Returns the kept number called `name`, or else the run's number in `lab`; `None` if there is none now.
 pub fn number(name: &str, lab: &Lab, kept: &KeptNumbers) -> Option<f64> {
     match kept.get(name) {
         Some(number) => Some(*number).filter(|number| number.is_finite()),
@@ -106,7 +106,7 @@ pub fn number(name: &str, lab: &Lab, kept: &KeptNumbers) -> Option<f64> {
     }
 }
 
-/// The value of `expression` in `lab`; `None` where a number that it needs is not there.
+/// Returns the value of `expression` in `lab`; `None` where a number that it needs is not there.
 pub fn value(expression: &Expression, lab: &Lab, kept: &KeptNumbers) -> Option<f64> {
     let value = expression.value(|name| number(name, lab, kept));
     value.filter(|value| value.is_finite())

@@ -7,7 +7,7 @@ use super::clock;
 use super::lesson::{Compare, Lesson, LessonBlock, LessonPage, Predict};
 use super::names::value;
 use super::predictions::{LessonProgress, Tried};
-use super::stage::Stage;
+use super::stage::LessonStage;
 use super::watch::Watch;
 use super::{reading, shipped};
 use crate::lab::Lab;
@@ -111,20 +111,20 @@ impl OpenLesson {
         self.lesson.page(self.place.page)
     }
 
-    /// The question of the page that is not answered yet; the first of them.
+    /// Returns the question of the page that is not answered yet; the first of them.
     pub fn asked(&self) -> Option<&Predict> {
         self.page()?
             .predicts()
             .find(|predict| self.is_open(predict))
     }
 
-    /// Whether an answer to the open question is marked, and not locked.
+    /// Returns whether an answer to the open question is marked, and not locked.
     fn has_marked(&self) -> bool {
         let pointed = self.asked().and_then(|it| self.pointed.get(&it.name));
         pointed.is_some_and(|(_, is_marked)| *is_marked)
     }
 
-    /// Whether an answer to `predict` is wanted: there is none, or none of the round that a class is at.
+    /// Returns whether an answer to `predict` is wanted: there is none, or none of the round that a class is at.
     pub fn is_open(&self, predict: &Predict) -> bool {
         let predictions = &self.place.predictions;
         match self.rounds.get(&predict.name) {
@@ -151,22 +151,22 @@ impl OpenLesson {
         self.under_way = is_left.then_some(PendingBlock::Left).or(self.under_way);
     }
 
-    /// Whether the check at this line of the file has held since the page was opened.
+    /// Returns whether the check at this line of the file has held since the page was opened.
     pub fn has_reached(&self, line: usize) -> bool {
         self.reached.contains(&line)
     }
 
-    /// Whether the lab is still on its way to where the page wants it.
+    /// Returns whether the lab is still on its way to where the page wants it.
     pub fn is_under_way(&self) -> bool {
         self.place.stated.is_none()
     }
 
-    /// Whether the page's run is played, and has not arrived yet.
+    /// Returns whether the page's run is played, and has not arrived yet.
     pub fn plays(&self) -> bool {
         self.is_under_way() && self.page().is_some_and(LessonPage::plays)
     }
 
-    /// Whether the student has left the page's run before it arrived.
+    /// Returns whether the student has left the page's run before it arrived.
     pub fn has_left(&self) -> bool {
         self.under_way == Some(PendingBlock::Left)
     }
@@ -180,12 +180,13 @@ impl OpenLesson {
         }
     }
 
-    /// Whether the student has left the place where the page's numbers were stated.
+    /// Returns whether the student has left the place where the page's numbers were stated.
     fn has_wandered(&self, lab: &Lab) -> bool {
         self.arrived_at != Some(place_of(lab))
     }
 
-    /// The text at this line of the file with its numbers, where it is one that the student's own run does not change.
+    /// Returns the text at this line of the file with its numbers, where it is one that the student's own run does not
+    /// change.
     pub fn stated(&self, line: usize) -> Option<&str> {
         let texts = self.place.stated.as_ref()?;
         texts.get(&line.to_string()).map(String::as_str)
@@ -249,7 +250,7 @@ impl OpenLesson {
         lab.set_undo_floor(true);
     }
 
-    fn start_block(&mut self, stage: &Stage<'_>, block: PendingBlock, lab: &mut Lab) {
+    fn start_block(&mut self, stage: &LessonStage<'_>, block: PendingBlock, lab: &mut Lab) {
         let commands = stage.commands(lab);
         self.under_way = Some(block);
         lab.take_commands(commands);
@@ -391,7 +392,7 @@ impl OpenLesson {
     }
 }
 
-/// Where the lab stands: the number of acts done, and the step.
+/// Returns where the lab stands: the number of acts done, and the step.
 fn place_of(lab: &Lab) -> (usize, u64) {
     (lab.runs().journal().done(), lab.player().step_number())
 }
@@ -400,8 +401,8 @@ fn holds(check: &super::Check, lab: &Lab, kept: &super::KeptNumbers) -> bool {
     value(&check.that, lab, kept).is_some_and(|held| held != 0.0)
 }
 
-/// The texts of the page at `place` that the student's own run does not change, by their lines in the file. What stands
-/// behind a task or a check is not among them.
+/// Returns the texts of the page at `place` that the student's own run does not change, by their lines in the file. What
+/// stands behind a task or a check is not among them.
 fn stated(lesson: &Lesson, place: &LessonProgress, lab: &Lab) -> BTreeMap<String, String> {
     let mut texts = BTreeMap::new();
     for block in before_task(lesson, place) {
@@ -415,7 +416,7 @@ fn stated(lesson: &Lesson, place: &LessonProgress, lab: &Lab) -> BTreeMap<String
     texts
 }
 
-/// The introduction's blocks, and those of the page up to its task or its first check.
+/// Returns the introduction's blocks, and those of the page up to its task or its first check.
 fn before_task<'a>(
     lesson: &'a Lesson,
     place: &LessonProgress,

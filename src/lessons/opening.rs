@@ -44,12 +44,13 @@ pub fn open_again(name: &str) -> Result<Lesson, Problems> {
     open(name)
 }
 
-/// Whether NAME names a file: it holds a `/` or ends in `.md`.
+/// Returns whether NAME names a file: it holds a `/` or ends in `.md`.
 pub fn is_file_name(name: &str) -> bool {
     name.contains('/') || name.ends_with(".md")
 }
 
-/// The name by which a session keeps the lesson that NAME names: that of a shipped lesson, or the full path of its file.
+/// Returns the name by which a session keeps the lesson that NAME names: that of a shipped lesson, or the full path of its
+/// file.
 pub fn full_name(name: &str) -> String {
     match std::path::absolute(name) {
         Ok(path) if is_file_name(name) => path.display().to_string(),

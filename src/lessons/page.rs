@@ -35,7 +35,7 @@ pub struct ClassOverlay {
     pub instead: Option<Vec<Paragraph>>,
 }
 
-/// The list of the lessons called `names`, of which one is `selected`; `left` tells where some of them were left.
+/// Returns the list of the lessons called `names`, of which one is `selected`; `left` tells where some of them were left.
 pub(super) fn list(
     names: &[String],
     selected: usize,
@@ -79,7 +79,7 @@ pub(super) fn list(
     sheet
 }
 
-/// The page of `open`; `now` is the time since the lab was opened.
+/// Returns the page of `open`; `now` is the time since the lab was opened.
 pub(super) fn sheet(open: &OpenLesson, overlay: &ClassOverlay, now: Duration, lab: &Lab) -> Sheet {
     let lesson = &open.lesson;
     let (page, pages) = (open.place.page, lesson.pages.len());
@@ -106,8 +106,8 @@ pub(super) fn sheet(open: &OpenLesson, overlay: &ClassOverlay, now: Duration, la
     writer.sheet
 }
 
-/// The page `number` in words for the one who teaches: its questions, each with what `after` says of it, its notes, and
-/// the next page.
+/// Returns the page `number` in words for the one who teaches: its questions, each with what `after` says of it, its
+/// notes, and the next page.
 pub fn for_teacher(lesson: &Lesson, number: usize, after: impl Fn(&Predict) -> String) -> String {
     let mut text = format!("\n== {number} of {} · {}", lesson.pages.len(), lesson.title);
     if let Some(page) = lesson.page(number) {

@@ -20,7 +20,7 @@ const CODE_PT: f64 = 9.0;
 /// A heading is followed by this much text on its sheet, or by a whole picture; so is what stands above a list.
 const BELOW_HEADING_PT: f64 = 90.0;
 
-/// The PDF of a handout's `markdown`; its first heading is the title.
+/// Returns the PDF of a handout's `markdown`; its first heading is the title.
 ///
 /// # Errors
 /// When there is more text than a page's numbers can place.
@@ -143,7 +143,7 @@ fn is_item(paragraph: &Paragraph) -> bool {
     matches!(paragraph.kind, SheetLineKind::Item { .. })
 }
 
-/// The words of a paragraph as markup, with the signs that the letters do not have in others.
+/// Returns the words of a paragraph as markup, with the signs that the letters do not have in others.
 fn words(paragraph: &Paragraph) -> Vec<String> {
     let mut text = String::new();
     for part in &paragraph.words {
@@ -161,7 +161,7 @@ fn words(paragraph: &Paragraph) -> Vec<String> {
     marked.split_whitespace().map(str::to_owned).collect()
 }
 
-/// The room that code takes, at most half a sheet: what is longer goes on on the next; 0 for other paragraphs.
+/// Returns the room that code takes, at most half a sheet: what is longer goes on on the next; 0 for other paragraphs.
 fn code_height_pt(paragraph: &Paragraph) -> f64 {
     let lines = match paragraph.kind {
         SheetLineKind::Code => paragraph.text().lines().count(),
@@ -230,7 +230,7 @@ fn put_cell(sheet: &mut PageScene, c: char, corner: Point) {
     }
 }
 
-/// Where the lines of a character that draws boxes end, in cells, and how wide they are, pt.
+/// Returns where the lines of a character that draws boxes end, in cells, and how wide they are, pt.
 fn arms(c: char) -> Option<(&'static [(f64, f64)], f64)> {
     const LEFT: (f64, f64) = (0.0, 0.5);
     const RIGHT: (f64, f64) = (1.0, 0.5);

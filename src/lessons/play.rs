@@ -3,7 +3,7 @@
 use super::lesson::{Check, Lesson, LessonBlock, LessonPage, Setup};
 use super::names::{self, KeptNumbers};
 use super::predictions::Predictions;
-use super::stage::Stage;
+use super::stage::LessonStage;
 use super::structure::on_line;
 use super::text::LessonText;
 use crate::engine::journal::expression::Expression;
@@ -89,7 +89,7 @@ impl<'a> LessonWalk<'a> {
 
     fn carry_out(
         &mut self,
-        stage: &Stage<'_>,
+        stage: &LessonStage<'_>,
         go_on: LessonProgressCallback<'_>,
     ) -> Result<(), Problem> {
         self.is_open = true;
@@ -97,13 +97,13 @@ impl<'a> LessonWalk<'a> {
         done.map_err(|text| as_problem(&self.lesson.origin, stage.setup.line, &text))
     }
 
-    /// Whether `check` holds now. Before a run is open nothing does.
+    /// Returns whether `check` holds now. Before a run is open nothing does.
     fn holds(&self, check: &Check) -> bool {
         let value = names::value(&check.that, &self.lab, &self.kept);
         self.is_open && value.is_some_and(|value| value != 0.0)
     }
 
-    /// The numbers in `expression` as they are now: `steps is 10, z_m is 0.8`.
+    /// Returns the numbers in `expression` as they are now: `steps is 10, z_m is 0.8`.
     fn numbers_of(&self, expression: &Expression) -> String {
         let mut all = Vec::new();
         for name in expression.names() {
@@ -186,7 +186,7 @@ impl<'a> LessonWalk<'a> {
         }
     }
 
-    /// Whether each check of `page` holds now, and its numbers.
+    /// Returns whether each check of `page` holds now, and its numbers.
     fn states_of_checks(&self, page: &LessonPage) -> Vec<(bool, String)> {
         let checks = page.checks();
         checks
@@ -230,8 +230,8 @@ impl<'a> LessonWalk<'a> {
     }
 }
 
-/// The message `text` of a command that was refused in the file `origin`, `origin:line: ...`, as a problem; it stands on
-/// `line` where it does not say.
+/// Returns the message `text` of a command that was refused in the file `origin`, `origin:line: ...`, as a problem; it
+/// stands on `line` where it does not say.
 fn as_problem(origin: &str, line: usize, text: &str) -> Problem {
     let told = text
         .strip_prefix(origin)

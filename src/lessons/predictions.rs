@@ -54,13 +54,13 @@ impl Predictions {
         self.locked.is_empty()
     }
 
-    /// All of them, each with the name of its question.
+    /// Returns all of them, each with the name of its question.
     pub fn all(&self) -> impl Iterator<Item = (&String, &LockedAnswer)> {
         let locked = self.locked.iter();
         locked.flat_map(|(name, all)| all.iter().map(move |given| (name, given)))
     }
 
-    /// The answers to `predict`. One that it no longer takes, as the file was changed, does not count.
+    /// Returns the answers to `predict`. One that it no longer takes, as the file was changed, does not count.
     pub fn to<'a>(
         &'a self,
         predict: &'a Predict,
@@ -73,12 +73,12 @@ impl Predictions {
         self.to(predict).find(|given| given.round == round)
     }
 
-    /// Whether `predict` is answered, in whatever round.
+    /// Returns whether `predict` is answered, in whatever round.
     pub fn is_locked(&self, predict: &Predict) -> bool {
         self.to(predict).next().is_some()
     }
 
-    /// The answers to `predict` in words, with their rounds where there are several; `None` where there is none.
+    /// Returns the answers to `predict` in words, with their rounds where there are several; `None` where there is none.
     pub fn in_words(&self, predict: &Predict) -> Option<String> {
         let has_rounds = self.to(predict).any(|given| given.round > 1);
         let mut all = Vec::new();
@@ -94,18 +94,18 @@ impl Predictions {
         (!all.is_empty()).then(|| all.join(", "))
     }
 
-    /// The predictions of `page` that are not locked yet.
+    /// Returns the predictions of `page` that are not locked yet.
     pub fn open_on<'a>(&'a self, page: &'a LessonPage) -> impl Iterator<Item = &'a Predict> {
         page.predicts().filter(|predict| !self.is_locked(predict))
     }
 
-    /// Whether `page` asks for predictions, and all of them are locked.
+    /// Returns whether `page` asks for predictions, and all of them are locked.
     pub fn are_locked_on(&self, page: &LessonPage) -> bool {
         page.predicts().next().is_some() && self.open_on(page).next().is_none()
     }
 
-    /// What is hidden once all predictions of `page` are locked, if `hidden` is hidden before: all of it but what the page
-    /// has hidden itself.
+    /// Returns what is hidden once all predictions of `page` are locked, if `hidden` is hidden before: all of it but what
+    /// the page has hidden itself.
     pub fn hidden_after_lock(page: &LessonPage, hidden: &[HideablePart]) -> Vec<HideablePart> {
         let own = page.lab().map(Setup::hides).unwrap_or_default();
         let others = hidden.iter().copied().filter(|part| !own.contains(part));
@@ -133,8 +133,8 @@ impl Compare {
         value(self.with.as_ref()?, lab, kept)
     }
 
-    /// What is said, in Markdown, with the numbers of `lab` and the prediction. Where nothing was predicted, the sentences that
-    /// tell the prediction are left out.
+    /// Returns what is said, in Markdown, with the numbers of `lab` and the prediction. Where nothing was predicted, the
+    /// sentences that tell the prediction are left out.
     pub fn filled(
         &self,
         lesson: &Lesson,
@@ -181,7 +181,7 @@ pub(super) fn without(part: &str, text: &str) -> String {
     }
 }
 
-/// Where the first sentence of `text` ends, the blanks after it counted in. An entry of a list counts as one.
+/// Returns where the first sentence of `text` ends, the blanks after it counted in. An entry of a list counts as one.
 fn end_of_sentence(text: &str) -> usize {
     let stops = text.match_indices(['.', '!', '?']);
     let end = stops

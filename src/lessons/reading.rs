@@ -38,7 +38,7 @@ pub fn read(origin: &str, text: &str) -> Result<Lesson, Problems> {
     assembly.finish()
 }
 
-/// The pages and blocks of a lesson's `text`.
+/// Returns the pages and blocks of a lesson's `text`.
 fn elements(text: &str) -> Result<Vec<Element<'_>>, Problem> {
     let lines = Lines::index(text);
     plain(text, &lines)?;

@@ -28,7 +28,7 @@ pub fn find(name: &str) -> Option<&'static Shipped> {
     Shipped::find(LESSONS, name)
 }
 
-/// The frame of the program that a lesson asks for: what is written is the same in Octave and in MATLAB.
+/// Returns the frame of the program that a lesson asks for: what is written is the same in Octave and in MATLAB.
 pub fn frame(lesson: &str, language: &str) -> Option<&'static str> {
     let frame = match language {
         "python" => include_str!("../../presets/frames/write-it-yourself.py"),

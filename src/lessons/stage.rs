@@ -13,7 +13,7 @@ use crate::plot::camera::{Camera, Zoom};
 use std::ops::ControlFlow;
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Stage<'a> {
+pub struct LessonStage<'a> {
     pub lesson: &'a Lesson,
     pub page: &'a LessonPage,
     pub setup: &'a Setup,
@@ -22,19 +22,19 @@ pub struct Stage<'a> {
 }
 
 impl Lesson {
-    /// What to carry out to stand on the page `number` (from 1), from nothing: a jump. `kept` has the numbers that are known
-    /// already. What the page hides is shown where its predictions are locked; earlier pages hide nothing that they hide
-    /// until their prediction.
+    /// Returns what to carry out to stand on the page `number` (from 1), from nothing: a jump. `kept` has the numbers that
+    /// are known already. What the page hides is shown where its predictions are locked; earlier pages hide nothing that
+    /// they hide until their prediction.
     pub fn stages_to<'a>(
         &'a self,
         number: usize,
         kept: &KeptNumbers,
         predictions: &Predictions,
-    ) -> Vec<Stage<'a>> {
+    ) -> Vec<LessonStage<'a>> {
         let mut stages = Vec::new();
         for page in self.pages.iter().take(number.saturating_sub(1)) {
             for setup in page.lab().into_iter().chain(page.task()) {
-                stages.push(Stage {
+                stages.push(LessonStage {
                     lesson: self,
                     page,
                     setup,
@@ -46,13 +46,22 @@ impl Lesson {
         needed(stages, kept)
     }
 
-    /// What to carry out on turning to the page `number` from the page before: its own `lab` block, where it has one.
-    pub fn stage_of<'a>(&'a self, number: usize, predictions: &Predictions) -> Option<Stage<'a>> {
+    /// Returns what to carry out on turning to the page `number` from the page before: its own `lab` block, where it has
+    /// one.
+    pub fn stage_of<'a>(
+        &'a self,
+        number: usize,
+        predictions: &Predictions,
+    ) -> Option<LessonStage<'a>> {
         self.stage(number, LessonPage::lab, predictions)
     }
 
-    /// What to carry out on the page `number` to show how its task is done.
-    pub fn task_of<'a>(&'a self, number: usize, predictions: &Predictions) -> Option<Stage<'a>> {
+    /// Returns what to carry out on the page `number` to show how its task is done.
+    pub fn task_of<'a>(
+        &'a self,
+        number: usize,
+        predictions: &Predictions,
+    ) -> Option<LessonStage<'a>> {
         self.stage(number, LessonPage::task, predictions)
     }
 
@@ -61,9 +70,9 @@ impl Lesson {
         number: usize,
         setup: impl Fn(&LessonPage) -> Option<&Setup>,
         predictions: &Predictions,
-    ) -> Option<Stage<'_>> {
+    ) -> Option<LessonStage<'_>> {
         let page = self.page(number)?;
-        Some(Stage {
+        Some(LessonStage {
             lesson: self,
             page,
             setup: setup(page)?,
@@ -72,9 +81,9 @@ impl Lesson {
     }
 }
 
-/// Those of `stages` that are needed: the last run, and the runs that keep numbers which `kept` lacks.
-fn needed<'a>(stages: Vec<Stage<'a>>, kept: &KeptNumbers) -> Vec<Stage<'a>> {
-    let mut runs: Vec<Vec<Stage<'a>>> = Vec::new();
+/// Returns those of `stages` that are needed: the last run, and the runs that keep numbers which `kept` lacks.
+fn needed<'a>(stages: Vec<LessonStage<'a>>, kept: &KeptNumbers) -> Vec<LessonStage<'a>> {
+    let mut runs: Vec<Vec<LessonStage<'a>>> = Vec::new();
     for stage in stages {
         match runs.last_mut() {
             Some(run) if !stage.setup.opens() => run.push(stage),
@@ -89,15 +98,15 @@ fn needed<'a>(stages: Vec<Stage<'a>>, kept: &KeptNumbers) -> Vec<Stage<'a>> {
     runs.into_iter().flatten().chain(last).collect()
 }
 
-impl Stage<'_> {
-    /// Whether it keeps numbers that are not among the `kept` ones.
+impl LessonStage<'_> {
+    /// Returns whether it keeps numbers that are not among the `kept` ones.
     fn lacks(&self, kept: &KeptNumbers) -> bool {
         let mut names = self.setup.keep.iter();
         names.any(|keep| !kept.contains_key(&keep.name))
     }
 
-    /// The commands, for the lab as it stands. Where a run is opened, what the lab shows otherwise than at first is put
-    /// back before, so that the page looks the same whatever was done before.
+    /// Returns the commands, for the lab as it stands. Where a run is opened, what the lab shows otherwise than at first
+    /// is put back before, so that the page looks the same whatever was done before.
     pub fn commands(&self, lab: &Lab) -> Commands {
         let mut list = Vec::new();
         if self.setup.opens() {
@@ -141,7 +150,7 @@ impl Stage<'_> {
     }
 }
 
-/// The commands that put back how the lab shows runs, where it is otherwise than at first.
+/// Returns the commands that put back how the lab shows runs, where it is otherwise than at first.
 fn put_back(lab: &Lab) -> Vec<Command> {
     let view = lab.view();
     let shows_exact = lab.player().run().shows_exact();

@@ -54,13 +54,14 @@ pub struct KeptLessons {
 }
 
 impl KeptLessons {
-    /// What `kept`, a table of a session, says.
+    /// Returns what `kept`, a table of a session, says.
     pub fn read(kept: &Table) -> Result<Self, toml::de::Error> {
         kept.clone().try_into()
     }
 }
 
-/// The full paths of the lessons in `folder`, sorted; hidden files and what cannot be read as a lesson are left out.
+/// Returns the full paths of the lessons in `folder`, sorted; hidden files and what cannot be read as a lesson are left
+/// out.
 pub fn files_in(folder: &Path) -> Vec<String> {
     let mut paths = Vec::new();
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
@@ -86,7 +87,8 @@ fn tell(opened: Result<(), String>, lab: &mut Lab) {
 }
 
 impl Lessons {
-    /// The lessons as `kept` has them. The one that was open is opened again, on its page; the run is left where it is.
+    /// Returns the lessons as `kept` has them. The one that was open is opened again, on its page; the run is left where
+    /// it is.
     ///
     /// # Errors
     /// Why the lesson that was open cannot be opened again; where it was left is kept.
@@ -111,7 +113,7 @@ impl Lessons {
         (lessons, opened)
     }
 
-    /// What a session keeps of them: a [`KeptLessons`].
+    /// Returns what a session keeps of them: a [`KeptLessons`].
     pub fn kept(&self) -> &Table {
         &self.kept
     }
@@ -217,8 +219,8 @@ impl Lessons {
         };
     }
 
-    /// The names of the list: the lessons of the lab's folder, those that come with the program, then the files that were
-    /// opened.
+    /// Returns the names of the list: the lessons of the lab's folder, those that come with the program, then the files
+    /// that were opened.
     fn names(&self) -> Vec<String> {
         let mut names = self.own.clone();
         names.extend(shipped::LESSONS.iter().map(|lesson| lesson.name.to_owned()));
@@ -285,7 +287,7 @@ impl Lessons {
         }
     }
 
-    /// How long the caller may wait until the page is looked at again; `None` where nothing waits.
+    /// Returns how long the caller may wait until the page is looked at again; `None` where nothing waits.
     pub fn wait(&self) -> Option<Duration> {
         self.open_lesson().map(|_| Duration::from_secs(1))
     }

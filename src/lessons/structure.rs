@@ -30,7 +30,7 @@ impl Lines {
         Self(text.match_indices('\n').map(|(at, _)| at).collect())
     }
 
-    /// The line of the byte at `offset`, from 1.
+    /// Returns the line of the byte at `offset`, from 1.
     pub(super) fn at(&self, offset: usize) -> usize {
         self.0.partition_point(|&end| end < offset) + 1
     }
@@ -41,7 +41,7 @@ pub(super) fn on_line(line: usize, mut problem: Problem) -> Problem {
     problem
 }
 
-/// The parts of `text` in order; `words` behind a fence mean something in a lesson.
+/// Returns the parts of `text` in order; `words` behind a fence mean something in a lesson.
 pub(super) fn structure<'a>(
     text: &'a str,
     lines: &Lines,
@@ -179,7 +179,7 @@ impl<'a> FileWalk<'a, '_> {
     }
 }
 
-/// How the block with this word behind its fence is called in messages.
+/// Returns how the block with this word behind its fence is called in messages.
 fn named(word: &str) -> &str {
     match word {
         "" => "```",
@@ -187,7 +187,7 @@ fn named(word: &str) -> &str {
     }
 }
 
-/// The fence with which `block` begins.
+/// Returns the fence with which `block` begins.
 fn fence_of(block: &str) -> &str {
     let begun = block.trim_start();
     let sign = begun.chars().next().unwrap_or('`');
@@ -195,7 +195,7 @@ fn fence_of(block: &str) -> &str {
     &begun[..begun.len() - rest.len()]
 }
 
-/// What stands between the fences of `block`; `None` where the second is missing.
+/// Returns what stands between the fences of `block`; `None` where the second is missing.
 fn between_fences(block: &str) -> Option<&str> {
     let fence = fence_of(block);
     let sign = fence.chars().next()?;
@@ -207,7 +207,8 @@ fn between_fences(block: &str) -> Option<&str> {
     (closes && last >= begin).then(|| &lines[begin..last])
 }
 
-/// The line of `inside`, from 0, at which another block of a lesson begins: with a `fence` like the one around it, or longer.
+/// Returns the line of `inside`, from 0, at which another block of a lesson begins: with a `fence` like the one around it,
+/// or longer.
 fn another_fence(inside: &str, fence: &str, words: &[&str]) -> Option<usize> {
     inside.lines().position(|line| {
         let rest = line.strip_prefix(fence);

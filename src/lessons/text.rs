@@ -116,13 +116,13 @@ impl LessonText {
         Ok(Self { line, parts })
     }
 
-    /// The text in Markdown, with the numbers of `lab` and those that were `kept`; "n/a" stands for a number that there is
-    /// not.
+    /// Returns the text in Markdown, with the numbers of `lab` and those that were `kept`; "n/a" stands for a number that
+    /// there is not.
     pub fn with_numbers(&self, lab: &Lab, kept: &KeptNumbers) -> String {
         self.filled(|expression, format| format.written(value(expression, lab, kept)))
     }
 
-    /// The places for numbers, each with its line in the file.
+    /// Returns the places for numbers, each with its line in the file.
     pub(super) fn numbers(&self) -> impl Iterator<Item = (usize, &Expression)> {
         let mut line = self.line;
         self.parts.iter().filter_map(move |part| match part {
@@ -134,7 +134,7 @@ impl LessonText {
         })
     }
 
-    /// The text in Markdown, with what `written` makes of each place for a number.
+    /// Returns the text in Markdown, with what `written` makes of each place for a number.
     pub fn filled(&self, mut written: impl FnMut(&Expression, TextFormat) -> String) -> String {
         let pieces = self.parts.iter();
         pieces

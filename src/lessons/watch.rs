@@ -24,8 +24,8 @@ impl Watch {
         }
     }
 
-    /// Whether the file has changed since it was last looked at; `now` is the time since the lab was opened. A file that
-    /// is gone for a moment, as it is replaced, has not changed.
+    /// Returns whether the file has changed since it was last looked at; `now` is the time since the lab was opened. A
+    /// file that is gone for a moment, as it is replaced, has not changed.
     pub fn has_changed(&mut self, now: Duration) -> bool {
         if now < self.next {
             return false;

@@ -16,8 +16,8 @@ pub enum Release {
 }
 
 impl Release {
-    /// How long all hooks together may delay it. On a busy machine a hook may need seconds until it runs at all; only a disk
-    /// that no longer answers makes the user wait for the whole of it.
+    /// Returns how long all hooks together may delay it. On a busy machine a hook may need seconds until it runs at all;
+    /// only a disk that no longer answers makes the user wait for the whole of it.
     pub fn patience(self) -> Duration {
         match self {
             Self::Exit => Duration::from_secs(5),

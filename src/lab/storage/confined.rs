@@ -60,12 +60,12 @@ impl Confined {
         self.class.is_some()
     }
 
-    /// The folder whose lessons are listed: that of the class, or its own.
+    /// Returns the folder whose lessons are listed: that of the class, or its own.
     pub fn lessons(&self) -> &Path {
         self.class.as_deref().unwrap_or(&self.root)
     }
 
-    /// The folder for sessions; it may not exist yet.
+    /// Returns the folder for sessions; it may not exist yet.
     pub fn sessions(&self) -> Result<PathBuf, String> {
         match fs::symlink_metadata(&self.sessions) {
             Ok(there) if !there.is_dir() => Err(format!(
@@ -150,7 +150,7 @@ impl Confined {
     }
 }
 
-/// What the files in `folder` take together, bytes.
+/// Returns what the files in `folder` take together, bytes.
 fn size_of(folder: &Path) -> u64 {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     entries

@@ -132,7 +132,7 @@ impl Exporting {
         &self.path
     }
 
-    /// The step that the export has reached, and the run's last step.
+    /// Returns the step that the export has reached, and the run's last step.
     pub fn progress(&self) -> (u64, u64) {
         (self.shared.step.load(Ordering::Relaxed), self.shared.steps)
     }
@@ -298,12 +298,12 @@ pub fn estimate(scenario: &Arc<Scenario>, every: NonZeroU64) -> Estimate {
     }
 }
 
-/// The number of rows of a run that ends at step `last`: rows 0, `every`, twice `every` and so on, and the last.
+/// Returns the number of rows of a run that ends at step `last`: rows 0, `every`, twice `every` and so on, and the last.
 fn rows(last: u64, every: u64) -> u64 {
     last / every + 1 + u64::from(!last.is_multiple_of(every))
 }
 
-/// A CSV of 64 rows that have the numbers of the run's beginning, and steps and times spread over the whole run.
+/// Returns a CSV of 64 rows that have the numbers of the run's beginning, and steps and times spread over the whole run.
 fn sample_rows(scenario: &Arc<Scenario>, every: u64) -> io::Result<Vec<u8>> {
     const ROWS_PER_SLICE: u64 = 64;
     const MOST_INTEGRATION: u64 = 50_000_000; // about 0.1 s
@@ -335,9 +335,9 @@ fn sample_rows(scenario: &Arc<Scenario>, every: u64) -> io::Result<Vec<u8>> {
     csv.finish()
 }
 
-/// The `scp` command that the user types on their own machine to fetch the file `path` from this one; `None` where the
-/// lab does not run over SSH. Where the name of the file, the user or the machine cannot be typed in a shell, a message
-/// that says so.
+/// Returns the `scp` command that the user types on their own machine to fetch the file `path` from this one; `None` where
+/// the lab does not run over SSH. Where the name of the file, the user or the machine cannot be typed in a shell, a
+/// message that says so.
 pub fn scp_line(path: &Path) -> Option<String> {
     // ssh sets it to "CLIENT CLIENT_PORT SERVER SERVER_PORT".
     let connection = std::env::var("SSH_CONNECTION").ok()?;
@@ -351,7 +351,7 @@ pub fn scp_line(path: &Path) -> Option<String> {
     }))
 }
 
-/// The command, or which part of it cannot be typed. An empty `user` is left out.
+/// Returns the command, or which part of it cannot be typed. An empty `user` is left out.
 fn scp_line_from(
     port: &str,
     user: &OsStr,
@@ -388,7 +388,7 @@ fn name(text: &OsStr) -> Option<&str> {
 mod tests {
     use super::*;
 
-    /// An export that does nothing until it is cancelled.
+    /// Returns an export that does nothing until it is cancelled.
     fn waiting() -> Exporting {
         Exporting::spawn(PathBuf::from("run.csv"), 10, |shared| {
             while shared.reach(0).is_continue() {

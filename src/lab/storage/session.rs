@@ -86,7 +86,7 @@ pub struct ListedSession {
     pub content: Result<SessionContent, String>,
 }
 
-/// The folder for sessions: `$XDG_STATE_HOME/gyrolab`, by default `~/.local/state/gyrolab`.
+/// Returns the folder for sessions: `$XDG_STATE_HOME/gyrolab`, by default `~/.local/state/gyrolab`.
 pub fn folder() -> Result<PathBuf, String> {
     let state = Xdg::new().ok().and_then(|places| places.state_dir());
     match state.filter(|folder| folder.is_absolute()) {
@@ -148,7 +148,7 @@ pub fn list(folder: &Path) -> io::Result<Vec<ListedSession>> {
     Ok(names.map(|name| listed(folder, name)).collect())
 }
 
-/// The session called `name` in `folder`, as [`list`] has it; `None` if there is none.
+/// Returns the session called `name` in `folder`, as [`list`] has it; `None` if there is none.
 pub fn look_at(folder: &Path, name: &str) -> Option<ListedSession> {
     let names = sessions(folder).ok()?;
     names
@@ -167,7 +167,7 @@ fn listed(folder: &Path, name: String) -> ListedSession {
     }
 }
 
-/// The names of all sessions in `folder`, the one saved last first; none where there is no such folder.
+/// Returns the names of all sessions in `folder`, the one saved last first; none where there is no such folder.
 fn sessions(folder: &Path) -> io::Result<Vec<String>> {
     let found = session_file::sessions(folder);
     found.map_err(|error| error_about(&error, "cannot look for sessions in", folder))
@@ -194,7 +194,7 @@ impl Session {
         }
     }
 
-    /// The session of `held`, of which the disk holds `kept`.
+    /// Returns the session of `held`, of which the disk holds `kept`.
     fn start(held: HeldSession, kept: Option<SessionContent>) -> io::Result<Self> {
         let name = held.name().to_owned();
         let state = Arc::new(Mutex::new(SaveState {
@@ -240,7 +240,7 @@ impl Session {
         flush(&self.flushes, FLUSH_LIMIT, false)
     }
 
-    /// Why the last attempt to save failed; `None` if it succeeded. The thread tries again every half second.
+    /// Returns why the last attempt to save failed; `None` if it succeeded. The thread tries again every half second.
     pub fn trouble(&self) -> Option<String> {
         locked(&self.state).trouble.clone()
     }

@@ -75,7 +75,7 @@ pub(super) fn file(folder: &Path, name: &str, kind: &str) -> PathBuf {
     folder.join(format!("{name}.{kind}"))
 }
 
-/// The names of the files in `folder` that end in `kind`, without that.
+/// Returns the names of the files in `folder` that end in `kind`, without that.
 fn names(folder: &Path, kind: &str) -> io::Result<Vec<String>> {
     let entries = match fs::read_dir(folder) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
@@ -87,7 +87,7 @@ fn names(folder: &Path, kind: &str) -> io::Result<Vec<String>> {
         .collect())
 }
 
-/// The names of the sessions in `folder`, the one written last first.
+/// Returns the names of the sessions in `folder`, the one written last first.
 pub(super) fn sessions(folder: &Path) -> io::Result<Vec<String>> {
     let mut names = names(folder, "session")?;
     names.sort_by_cached_key(|name| (written_at(folder, name), name.clone()));
@@ -95,7 +95,7 @@ pub(super) fn sessions(folder: &Path) -> io::Result<Vec<String>> {
     Ok(names)
 }
 
-/// When the session was written last; the beginning of 1970 if it is not there.
+/// Returns when the session was written last; the beginning of 1970 if it is not there.
 pub(super) fn written_at(folder: &Path, name: &str) -> SystemTime {
     shared::modified(&file(folder, name, "session")).unwrap_or(UNIX_EPOCH)
 }
@@ -105,7 +105,7 @@ pub(super) fn is_in_use(folder: &Path, name: &str) -> bool {
     lock.is_ok_and(|lock| matches!(lock.try_lock_shared(), Err(TryLockError::WouldBlock)))
 }
 
-/// The number of the process that holds, or last held, the session; `None` where its lock file does not tell.
+/// Returns the number of the process that holds, or last held, the session; `None` where its lock file does not tell.
 pub(super) fn owner(folder: &Path, name: &str) -> Option<u32> {
     let bytes = private_files::read(&file(folder, name, "lock"), LONGEST_LOCK).ok()?;
     str::from_utf8(&bytes).ok()?.parse().ok()
@@ -131,7 +131,7 @@ pub(super) fn stored(folder: &Path, name: &str) -> Result<SessionContent, String
     }
 }
 
-/// The content from the text of a session behind its first line; `None` if it is incomplete or changed.
+/// Returns the content from the text of a session behind its first line; `None` if it is incomplete or changed.
 fn content(text: &str) -> Option<SessionContent> {
     let (sum, summed) = text.split_once('\n')?;
     if sum != sum_of(summed) {
@@ -180,13 +180,13 @@ pub(super) fn prune(folder: &Path) {
     }
 }
 
-/// Whether there is anything at `path`; a symbolic link to nothing counts too.
+/// Returns whether there is anything at `path`; a symbolic link to nothing counts too.
 fn exists(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok()
 }
 
 impl HeldSession {
-    /// A new session. Its name is the number above the largest in the folder.
+    /// Returns a new session. Its name is the number above the largest in the folder.
     pub(super) fn new(folder: &Path) -> io::Result<Self> {
         let used = [names(folder, "session")?, names(folder, "lock")?].concat();
         let numbers = used.iter().filter_map(|name| name.parse::<u64>().ok());

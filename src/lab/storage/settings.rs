@@ -30,7 +30,7 @@ pub const SETTINGS_KEYS: &[SchemaRow] = &[
     may("mouse", Flag, "whether the lab takes the mouse"),
 ];
 
-const SETTINGS: Schema = Schema(&[SETTINGS_KEYS]);
+const SETTINGS_SCHEMA: Schema = Schema(&[SETTINGS_KEYS]);
 
 /// The settings of one file, and what is wrong with it.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -40,7 +40,7 @@ pub struct SettingsFile {
     pub problems: Option<Problems>,
 }
 
-/// The settings of the file `path` whose bytes are `read`; where there is no such file, there are no settings.
+/// Returns the settings of the file `path` whose bytes are `read`; where there is no such file, there are no settings.
 fn checked(path: &Path, read: io::Result<Vec<u8>>) -> SettingsFile {
     let origin = path.display().to_string();
     let document = match read {
@@ -69,7 +69,7 @@ fn checked(path: &Path, read: io::Result<Vec<u8>>) -> SettingsFile {
     }
 }
 
-/// The settings in `table` that break no rule, and what is wrong with the others.
+/// Returns the settings in `table` that break no rule, and what is wrong with the others.
 fn sifted(table: &Table) -> (Table, Problems) {
     let (mut good, mut problems) = (Table::new(), Problems::default());
     for (key, value) in table {
@@ -78,7 +78,7 @@ fn sifted(table: &Table) -> (Table, Problems) {
             other => other,
         };
         let setting = Table::from_iter([(name.to_owned(), value.clone())]);
-        match SETTINGS.check(&setting).or(setting) {
+        match SETTINGS_SCHEMA.check(&setting).or(setting) {
             Ok(setting) => good.extend(setting),
             Err(found) => problems.add_all(found),
         }
@@ -86,8 +86,8 @@ fn sifted(table: &Table) -> (Table, Problems) {
     (good, problems)
 }
 
-/// The user's file: `$XDG_CONFIG_HOME/gyrolab/config.toml`, by default `~/.config/gyrolab/config.toml`; `None` where the
-/// user has no home.
+/// Returns the user's file: `$XDG_CONFIG_HOME/gyrolab/config.toml`, by default `~/.config/gyrolab/config.toml`; `None`
+/// where the user has no home.
 pub fn config() -> Option<PathBuf> {
     let folder = Xdg::new().ok()?.config_dir();
     folder

@@ -64,7 +64,7 @@ pub fn touch(path: &Path) -> io::Result<()> {
     private_files::open(path, OpenOptions::new().write(true))?.set_modified(SystemTime::now())
 }
 
-/// When the file was written or touched last; `None` where it is not there.
+/// Returns when the file was written or touched last; `None` where it is not there.
 pub fn modified(path: &Path) -> Option<SystemTime> {
     fs::symlink_metadata(path).ok()?.modified().ok()
 }
