@@ -9,7 +9,7 @@ use super::form::{InputField, InputForm};
 use super::player::{Player, WHERE};
 use super::settings::SETTINGS;
 use super::values::Values;
-use super::values::list::Of;
+use super::values::list::ValueSource;
 use super::view::{Pane, View};
 use crate::engine::export::CsvLayout;
 use crate::engine::journal::parameters::Parameter;
@@ -74,9 +74,9 @@ impl Dialog {
             "" => value.label.clone(),
             unit => format!("{}, {unit}", value.label),
         };
-        let about = match &value.of {
-            Of::Scenario(parameter) => about(parameter),
-            Of::NextPush(field) => vec![
+        let about = match &value.source {
+            ValueSource::Scenario(parameter) => about(parameter),
+            ValueSource::NextPush(field) => vec![
                 field.about().to_owned(),
                 "it acts when p gives the push".to_owned(),
             ],

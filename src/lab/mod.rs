@@ -17,7 +17,7 @@
 //! | [`Messages`] | message, trouble with the session | |
 //! | [`Settings`] | what is remembered | |
 //!
-//! A command that changes the run comes back from [`Edits`] as an `Edit`, which the other parts follow.
+//! For a command that changes the run, [`Edits`] returns a `ScenarioEdit`; `Lab::apply` changes the other parts.
 //! `dispatch` leads commands to the parts, `routing` [actions](action::Action) and time.
 //!
 //! A new command stands in three files: [`command`] with its row in the table, the `match` of `Lab::dispatch`, and the part that

@@ -9,7 +9,7 @@ use crate::engine::journal::parameters::{self, Parameter, parameters};
 use crate::engine::journal::{Journal, number_of_push};
 use crate::engine::scenario::Scenario;
 use crate::lab::playback::live::LiveRun;
-use list::{ListedValue, NEXT_PUSH_HEADING, Of, ValueList};
+use list::{ListedValue, NEXT_PUSH_HEADING, ValueList, ValueSource};
 use nalgebra::Vector3;
 use std::time::Duration;
 use toml::Table;
@@ -33,7 +33,7 @@ pub struct Values {
     pub list: ValueList,
     /// The push to come; the list shows another one once it is listed again.
     pub next_push: NextPush,
-    /// How many entries of the journal had acted when the list was made.
+    /// How many entries of the journal were in force when the list was made.
     entries_listed: usize,
     /// The key that was nudged last, and when; `None` if something else was done since.
     last_nudged: Option<(String, Duration)>,
@@ -59,18 +59,18 @@ impl Values {
         // A push that is given at a later step cannot be edited here: an edit here would discard it.
         let pushes = journal.pushes_by(step);
         let first_added = scenario.file.push.len(); // by an edit, which is in the table once it is made
-        let mut parameters = parameters(&table, scenario);
-        parameters.retain(|parameter| {
+        let mut listed = parameters(&table, scenario);
+        listed.retain(|parameter| {
             number_of_push(&parameter.key)
                 .is_none_or(|number| number < pushes || number >= first_added)
         });
-        let mut values: Vec<_> = parameters.into_iter().map(ListedValue::from).collect();
+        let mut values: Vec<_> = listed.into_iter().map(ListedValue::from).collect();
         values.extend(ListedValue::all_of(&self.next_push));
         values.sort_by_key(|value| rank(&value.group)); // stable: within a group nothing moves
         self.list.set(values);
     }
 
-    /// Whether the list must be made again, as other entries of `journal` have acted at `step`.
+    /// Returns whether the list must be made again, as other entries of `journal` are in force at `step`.
     pub(super) fn is_outdated(&self, step: u64, journal: &Journal) -> bool {
         journal.count_by(step) != self.entries_listed
     }
@@ -83,10 +83,13 @@ impl Values {
 
     /// Returns the listed value of the scenario with the dotted `key`.
     pub(super) fn parameter(&self, key: &str) -> Option<&Parameter> {
-        self.list.values.iter().find_map(|value| match &value.of {
-            Of::Scenario(parameter) if parameter.key == key => Some(&**parameter),
-            _ => None,
-        })
+        self.list
+            .values
+            .iter()
+            .find_map(|value| match &value.source {
+                ValueSource::Scenario(parameter) if parameter.key == key => Some(&**parameter),
+                _ => None,
+            })
     }
 
     /// Returns the value of `key` with its label and unit; the key alone where it is not listed.
@@ -150,12 +153,12 @@ impl Values {
         times: i32,
         scenario: &Scenario,
     ) -> Result<Option<Command>, String> {
-        Ok(match self.list.selected().map(|value| &value.of) {
-            Some(Of::Scenario(parameter)) if times != 0 => {
+        Ok(match self.list.selected().map(|value| &value.source) {
+            Some(ValueSource::Scenario(parameter)) if times != 0 => {
                 let key = parameter.key.clone();
                 Some(Command::Nudge { key, times })
             }
-            Some(Of::NextPush(field)) if times != 0 => {
+            Some(ValueSource::NextPush(field)) if times != 0 => {
                 let next = self.next_push.nudged(*field, times, scenario)?;
                 Some(Command::NextPush(PushChoice::field(*field, &next)))
             }
@@ -170,9 +173,9 @@ impl Values {
         scenario: &Scenario,
         time_step_s: f64,
     ) -> Result<Option<Command>, String> {
-        match self.list.selected().map(|value| &value.of) {
+        match self.list.selected().map(|value| &value.source) {
             None => Ok(None),
-            Some(Of::Scenario(parameter)) => {
+            Some(ValueSource::Scenario(parameter)) => {
                 let value = parameter
                     .typed(text)
                     .map_err(|reason| format!("{} {reason}", parameter.label))?;
@@ -180,7 +183,7 @@ impl Values {
                 let table = Table::from_iter([(parameter.key.clone(), value)]);
                 Ok(is_new.then_some(Command::Set(table)))
             }
-            Some(Of::NextPush(field)) => {
+            Some(ValueSource::NextPush(field)) => {
                 let next = self.next_push.typed(*field, text, scenario, time_step_s)?;
                 let choice = PushChoice::field(*field, &next);
                 Ok(Some(Command::NextPush(choice)))

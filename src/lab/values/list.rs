@@ -110,11 +110,12 @@ pub struct ListedValue {
     pub text: String,
     /// Whether the scenario's file does not contain it: the value is the default.
     pub is_default: bool,
-    pub(in crate::lab) of: Of,
+    pub(in crate::lab) source: ValueSource,
 }
 
+/// Where a listed value is set.
 #[derive(Clone, Debug, PartialEq)]
-pub(in crate::lab) enum Of {
+pub(in crate::lab) enum ValueSource {
     Scenario(Box<Parameter>),
     NextPush(PushField),
 }
@@ -130,7 +131,7 @@ impl From<Parameter> for ListedValue {
             unit: parameter.unit(),
             text: parameter.shown(),
             is_default: parameter.is_default,
-            of: Of::Scenario(Box::new(parameter)),
+            source: ValueSource::Scenario(Box::new(parameter)),
         }
     }
 }
@@ -144,7 +145,7 @@ impl ListedValue {
             unit: field.label().1,
             text: push.shown(field),
             is_default: false,
-            of: Of::NextPush(field),
+            source: ValueSource::NextPush(field),
         })
     }
 
