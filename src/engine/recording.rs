@@ -49,7 +49,7 @@ impl Recording {
         self.levels.push(largest);
     }
 
-    /// For each curve 1 where it turns at the newest sample, before the one that has `values`; else 0.
+    /// Returns 1 for each curve that turns at the newest sample, before the one that has `values`; else 0.
     #[inline]
     fn turned(&mut self, values: [f64; 4]) -> [u32; 4] {
         let (before, last) = self.before.unwrap_or((values, [0.0; 4]));
@@ -84,7 +84,7 @@ impl Recording {
         remaining
     }
 
-    /// The sample from which on the run should be recorded again, if some stretch up to now is coarse.
+    /// Returns the sample from which on the run should be recorded again, if some stretch up to now is coarse.
     pub fn coarse_since(&self) -> Option<u64> {
         let samples = self.samples();
         (0..u64::BITS)
@@ -101,12 +101,12 @@ impl Recording {
             .map(|length| samples - length)
     }
 
-    /// The whole recording as one bin; `None` while nothing is recorded.
+    /// Returns the whole recording as one bin; `None` while nothing is recorded.
     pub fn whole(&self) -> Option<RecordingBin> {
         self.newest(self.levels.len()).reduce(RecordingBin::and)
     }
 
-    /// The bins smaller than those of `size` that are in no larger one yet, in order of time.
+    /// Returns the bins smaller than those of `size` that are in no larger one yet, in order of time.
     fn newest(&self, size: usize) -> impl Iterator<Item = RecordingBin> {
         let smaller = self.levels[..size].iter().rev();
         smaller.flat_map(Level::waiting).copied()
@@ -123,9 +123,9 @@ impl Recording {
         self.in_columns(since_s, until_s, None::<fn(f64) -> usize>)
     }
 
-    /// The same stretch for a picture in columns; `column` says in which one a time (s) is. Of the bins of one column
-    /// those at its edges are as [`between`](Self::between) has them, and those inside are given as larger ones: of the same
-    /// samples, but far fewer.
+    /// Returns the same stretch for a picture in columns; `column` says in which one a time (s) is. Of the bins of one
+    /// column those at its edges are as [`between`](Self::between) has them, and those inside are given as larger ones:
+    /// of the same samples, but far fewer.
     pub fn in_columns(
         &self,
         since_s: f64,
@@ -143,7 +143,7 @@ impl Recording {
         covering.chain(newest.filter(move |bin| bin.begin_s <= until_s && bin.end_s >= since_s))
     }
 
-    /// The size of the bins that cover a stretch of time (s), and their numbers.
+    /// Returns the size of the bins that cover a stretch of time (s), and their numbers.
     fn stretch(&self, since_s: f64, until_s: f64) -> (usize, Range<u64>) {
         let levels = self.levels.iter().enumerate();
         let mut suitable = levels.filter_map(|(size, level)| {
@@ -154,8 +154,8 @@ impl Recording {
         suitable.next().unwrap_or((0, 0..0))
     }
 
-    /// The bin `next` of `size`, or the largest one that begins there, is inside of the stretch of these `numbers` and has
-    /// its neighbours there in its own column; and how many bins of `size` that one is.
+    /// Returns the bin `next` of `size`, or the largest one that begins there, is inside of the stretch of these
+    /// `numbers` and has its neighbours there in its own column; and how many bins of `size` that one is.
     fn largest(
         &self,
         size: usize,
@@ -183,7 +183,7 @@ impl Recording {
         Some(largest)
     }
 
-    /// The smallest bins that are stored of each part of the run, in order of time.
+    /// Returns the smallest bins that are stored of each part of the run, in order of time.
     pub fn finest(&self) -> impl Iterator<Item = RecordingBin> {
         let mut covered = 0;
         let levels = self.levels.iter().enumerate().rev();
@@ -197,7 +197,7 @@ impl Recording {
         })
     }
 
-    /// The extremes of `curve` from `since_s` to `until_s` (s), in its unit; `None` where nothing is recorded.
+    /// Returns the extremes of `curve` from `since_s` to `until_s` (s), in its unit; `None` where nothing is recorded.
     pub fn extent_between(
         &self,
         since_s: f64,
@@ -257,7 +257,7 @@ impl Level {
         self.dropped += excess as u64;
     }
 
-    /// The bin of the next size that the newest bins make, where they just make one.
+    /// Returns the bin of the next size that the newest bins make, where they just make one.
     #[inline]
     pub fn completed(&self) -> Option<RecordingBin> {
         if self.count() & (self.in_next - 1) != 0 {
@@ -272,7 +272,7 @@ impl Level {
         self.bins.range(begin..)
     }
 
-    /// The newest bins, which are in no bin of the next size yet.
+    /// Returns the newest bins, which are in no bin of the next size yet.
     pub fn waiting(&self) -> impl Iterator<Item = &RecordingBin> {
         self.newest(self.count() & (self.in_next - 1))
     }
@@ -286,25 +286,26 @@ impl Level {
         self.samples * self.in_next
     }
 
-    /// Whether it can be cut back to `count` bins: those that will then be [waiting](Self::waiting) must not have been
-    /// dropped.
+    /// Returns true if it can be cut back to `count` bins: those that will then be [waiting](Self::waiting) must not
+    /// have been dropped.
     pub fn can_be_cut_to(&self, count: u64) -> bool {
         let waiting = count & (self.in_next - 1);
         waiting == 0 || count - waiting >= self.dropped
     }
 
-    /// Whether the bin of this number and all later ones are stored, as far as there are any.
+    /// Returns true if the bin of this number and all later ones are stored, as far as there are any.
     pub fn has_from(&self, number: u64) -> bool {
         self.dropped == 0 || (!self.bins.is_empty() && self.dropped <= number)
     }
 
-    /// Whether all samples from `time_s` (s) on are in stored bins, but for the newest, which may be in none yet.
+    /// Returns true if all samples from `time_s` (s) on are in stored bins, but for the newest, which may be in none
+    /// yet.
     pub fn reaches(&self, time_s: f64) -> bool {
         let front = self.bins.front();
         self.dropped == 0 || front.is_some_and(|bin| bin.begin_s <= time_s)
     }
 
-    /// The numbers of the stored bins that have a sample from `since_s` to `until_s` (s).
+    /// Returns the numbers of the stored bins that have a sample from `since_s` to `until_s` (s).
     pub fn between(&self, since_s: f64, until_s: f64) -> Range<u64> {
         let first = self.bins.partition_point(|bin| bin.end_s < since_s);
         let end = self.bins.partition_point(|bin| bin.begin_s <= until_s);

@@ -54,7 +54,7 @@ pub(super) enum RunChange {
 }
 
 impl RunChange {
-    /// Whether the run was opened under another name than the one before.
+    /// Returns true if the run was opened under another name than the one before.
     pub(super) fn is_of_other_name(self) -> bool {
         use RunChange::{Opens, Returns};
         matches!(
@@ -227,7 +227,7 @@ impl Player {
         }
     }
 
-    /// The step that `text` means, seen from the present step.
+    /// Returns the step that `typed` means, seen from the present step.
     pub(super) fn step_meant(&self, typed: &str) -> Result<u64, String> {
         let text = typed.trim();
         let (here, here_s) = (self.step_number(), self.run().now().time_s);
@@ -248,9 +248,8 @@ impl Player {
     }
 
     pub(super) fn run_until(&mut self, condition: &Expression) -> ActionResult {
-        let run = self.run();
         let sources = condition
-            .bind(|name| numbers::find(name, Some(run)))
+            .bind(|name| numbers::find(name, Some(&self.run)))
             .map_err(|fault| fault.to_string())?;
         let (expression, mut numbers) = (condition.clone(), RunNumbers::default());
         let is_played = self.play_until(Box::new(move |run| {
@@ -283,7 +282,7 @@ impl Player {
         )
     }
 
-    /// The speed `notches` places higher, or lower, in the list of speeds.
+    /// Returns the speed `notches` places higher, or lower, in the list of speeds.
     pub fn other_speed(&self, notches: i32) -> Result<Command, String> {
         let now = self.speed();
         match now.shifted(notches) {
@@ -311,7 +310,7 @@ impl Player {
         Simulation::step_at(self.run.scenario(), self.end_s)
     }
 
-    /// The scenario that starts from the present state, as TOML.
+    /// Returns the scenario that starts from the present state, as TOML.
     pub(super) fn present_as_text(&self) -> Result<String, String> {
         let run = self.run().simulation();
         let scenario = scenario_from(run.scenario(), run.state(), run.step_number())
@@ -319,7 +318,7 @@ impl Player {
         toml::to_string(&scenario.file).map_err(|error| error.to_string())
     }
 
-    /// Whether the numbers must be read again at `now`, if the traces show `window_s`.
+    /// Returns true if the numbers must be read again at `now`, if the traces show `window_s`.
     pub(super) fn is_due(&self, now: Duration, window_s: f64) -> bool {
         // Of so fast a run, numbers read a few times a second would not belong to the picture of each frame.
         let passes_s = READING_INTERVAL.as_secs_f64();
@@ -353,7 +352,7 @@ impl Player {
         self.at_cursor.as_ref().map(|(_, sample)| sample)
     }
 
-    /// The window of the strip of the fast motion.
+    /// Returns the window of the strip of the fast motion.
     pub fn detail(&self) -> &Detail {
         &self.strip.detail
     }
@@ -368,7 +367,8 @@ impl Player {
         in_force(simulation.scenario(), simulation.step_number()).0
     }
 
-    /// The number called `name`, as it was read last; `None` if there is no such number, or if it has no value now.
+    /// Returns the number called `name`, as it was read last; `None` if there is no such number, or if it has no value
+    /// now.
     pub fn number(&self, name: &str) -> Option<f64> {
         let readouts = &self.reading.readouts;
         match numbers::find(name, Some(self.run())).ok()? {
@@ -383,7 +383,7 @@ impl Player {
         .filter(|number| number.is_finite())
     }
 
-    /// The message while steps are taken.
+    /// Returns the message while steps are taken.
     pub(super) fn in_words(&self) -> Option<String> {
         let left = HumanCount(self.steps_to_go()?);
         Some(if self.is_replaying() {

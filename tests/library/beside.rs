@@ -11,6 +11,10 @@ fn time_s(desk: &Desk) -> f64 {
     desk.lab.player().run().now().time_s
 }
 
+fn is_believed(desk: &Desk) -> Option<bool> {
+    desk.lab.player().reading.readouts.health.is_believed()
+}
+
 /// The end of the run before, s.
 fn ghost_s(lab: &Lab) -> Option<f64> {
     lab.comparison().ghost().map(Ghost::end_s)
@@ -165,7 +169,7 @@ fn the_pinned_run_stays_until_it_is_unpinned() {
     // It is recorded while it is played on.
     stage.commands("go_to = '40 s'");
     assert!(stage.lab.comparison().pinned().is_none() && stage.lab.comparison().is_pinned());
-    let pinned_s = |stage: &Stage| stage.lab.comparison().pinned().map(Ghost::end_s);
+    let pinned_s = |of: &Stage| of.lab.comparison().pinned().map(Ghost::end_s);
     for index in 0..100 {
         let tilt = 20 + index % 40;
         stage.commands(&format!("set = {{ 'start.tilt_deg' = {tilt} }}"));
@@ -227,8 +231,8 @@ fn advice_is_taken_by_one_key() {
     assert!(stage.lab.player().motion().time_step_s < 0.1);
     assert_eq!(stage.lab.player().run().scenario().file.push.len(), 1);
     assert_eq!(ghost_s(&stage.lab), Some(40.0));
-    let line = health(&stage);
-    assert!(!line.contains("mends it"), "{line}");
+    let mended = health(&stage);
+    assert!(!mended.contains("mends it"), "{mended}");
     stage.press("a").shows("there is nothing to mend");
     stage.press("u").wait(0.1);
     assert_eq!(stage.lab.player().motion().time_step_s, 0.1);
@@ -240,7 +244,7 @@ fn undo_takes_the_advice_back_before_an_earlier_edit() {
     let mut desk = Desk::open("method-2");
     desk.commands("go_to = 100\nset = { 'motion.gravity_m_per_s2' = 9 }\ngo_to = '40 s'");
     desk.commands("take_advice = true");
-    let gravity = |desk: &Desk| desk.lab.player().motion().gravity;
+    let gravity = |of: &Desk| of.lab.player().motion().gravity;
     assert_eq!(gravity(&desk), 9.0);
     assert!(desk.lab.player().motion().time_step_s < 0.1);
     desk.press(&[Key::Char('u')]);
@@ -302,8 +306,8 @@ fn the_line_about_the_numbers_is_right_as_soon_as_an_edit_is_made() {
     let mut stage = Stage::open("method-2", &[], LARGE);
     stage.lab.take_advice();
     stage.commands("pause = true\ngo_to = '40 s'");
-    let is_doubted = |stage: &Stage| {
-        let health = &stage.lab.player().reading.readouts.health;
+    let is_doubted = |of: &Stage| {
+        let health = &of.lab.player().reading.readouts.health;
         health.is_believed() == Some(false)
     };
     let finer = "go_to = 'start'\nset = { 'motion.time_step_s' = 0.05 }";
@@ -332,12 +336,10 @@ fn advice_on_an_edited_time_step_is_for_the_whole_run() {
     desk.commands("set = { 'body.rim.height_m' = 1.0 }\ngo_to = '0.2 s'");
     // From step 0 on: the scenario's number of steps then makes a hundredth of its seconds.
     desk.commands("go_to = 0\nset = { 'motion.time_step_s' = 1e-5 }\ngo_to = '0.2 s'");
-    let health = &desk.lab.player().reading.readouts.health;
-    assert_eq!(health.is_believed(), Some(false));
+    assert_eq!(is_believed(&desk), Some(false));
     desk.commands("take_advice = true");
     assert_eq!(time_s(&desk), 0.2);
-    let health = &desk.lab.player().reading.readouts.health;
-    assert_ne!(health.is_believed(), Some(false));
+    assert_ne!(is_believed(&desk), Some(false));
 }
 
 /// Of a fast run the moment that is shown is that of the latest reading. The exact motion's mark stands where that was then:

@@ -134,8 +134,9 @@ proptest! {
             for curve in RecordedCurve::ALL {
                 prop_assert_eq!(whole.extent(curve), known.extent(curve), "{:?} at step {}", curve, reached);
             }
-            let (radius, known) = (path.radius, straight.path().radius);
-            prop_assert!((radius - known).abs() <= 0.02 * known + 1e-9, "{} for {}", radius, known);
+            let [radius, straight_radius] = [path, straight.path()].map(|path| path.radius);
+            let off = (radius - straight_radius).abs();
+            prop_assert!(off <= 0.02 * straight_radius + 1e-9, "{} for {}", radius, straight_radius);
         }
         for (step, there) in seen {
             prop_assert_eq!(replayed(desk.scenario(), step), there, "step {}", step);

@@ -65,11 +65,11 @@ fn numbers_of_theory_of_the_exact_motion_and_of_measuring() {
     ] {
         let (mut desk, end) = played(name, condition);
         assert_eq!(end, Ok(()), "{condition}");
-        let holds = |desk: &Desk| {
-            let readouts = &desk.lab.player().reading.readouts;
+        let holds = |now: &Desk| {
+            let readouts = &now.lab.player().reading.readouts;
             let expression =
                 gyrolab::engine::journal::expression::Expression::parse(condition).unwrap();
-            let motion = desk.lab.player().motion();
+            let motion = now.lab.player().motion();
             expression.value(|name| match name {
                 "motion.time_step_s" => Some(motion.time_step_s),
                 _ => readouts.number(name),

@@ -23,7 +23,7 @@ impl RecordedCurve {
 
     pub const OF_POINT: [Self; 3] = [Self::X, Self::Y, Self::Z];
 
-    /// The name of its numbers in a CSV and among the readouts.
+    /// Returns the name of its numbers in a CSV and among the readouts.
     pub fn column(self) -> &'static str {
         self.named().2
     }
@@ -32,7 +32,7 @@ impl RecordedCurve {
         self.named().0
     }
 
-    /// The unit of its extents, as it is written after numbers.
+    /// Returns the unit of its extents, as it is written after numbers.
     pub fn unit(self) -> &'static str {
         self.named().1
     }
@@ -96,8 +96,8 @@ impl RecordedSample {
         curve.of_stored(self.values()[curve as usize])
     }
 
-    /// The stored value of each curve. For the tilt it is the negative cosine: it grows with the tilt, and saves computing
-    /// an arc cosine at every step.
+    /// Returns the stored value of each curve. For the tilt it is the negative cosine: it grows with the tilt, and
+    /// saves computing an arc cosine at every step.
     pub(super) fn values(&self) -> [f64; 4] {
         let at = &self.position;
         [at.x, at.y, at.z, -self.axle_height]
@@ -119,7 +119,7 @@ impl Extent {
         }
     }
 
-    /// The extent of both. Not by [`f64::min`], which takes several instructions for what is no number.
+    /// Returns the extent of both. Not by [`f64::min`], which takes several instructions because of NaN.
     #[inline]
     pub fn and(self, other: Self) -> Self {
         let Self { min, max } = self;
@@ -148,7 +148,8 @@ impl RecordingBin {
         curve.in_its_unit(self.stored(curve))
     }
 
-    /// The extremes of the stored value of `curve`: of many bins only what is drawn in the end is worth an arc cosine.
+    /// Returns the extremes of the stored value of `curve`: of many bins only what is drawn in the end is worth an arc
+    /// cosine.
     pub fn stored(&self, curve: RecordedCurve) -> Extent {
         self.extents[curve as usize]
     }
@@ -157,12 +158,12 @@ impl RecordingBin {
         self.samples
     }
 
-    /// How often `curve` turns in it, up or down: twice in a swing.
+    /// Returns how often `curve` turns in it, up or down: twice in a swing.
     pub fn turns(&self, curve: RecordedCurve) -> u32 {
         self.turned[curve as usize]
     }
 
-    /// The traced point at its last sample, world frame, m.
+    /// Returns the traced point at its last sample, world frame, m.
     pub fn end(&self) -> Vector3<f64> {
         let [x, y, z, _] = self.last;
         Vector3::new(x, y, z)
@@ -192,8 +193,8 @@ impl RecordingBin {
     }
 }
 
-/// The tilt of an axle, degrees, from the negative cosine of the tilt. Near the vertical it is accurate to a millionth of a
-/// degree, which is enough for a picture but not for a printed number.
+/// Returns the tilt of an axle, degrees, from the negative cosine of the tilt. Near the vertical it is accurate to a
+/// millionth of a degree, which is enough for a picture but not for a printed number.
 fn tilt_deg(negative_cosine: f64) -> f64 {
     libm::acos((-negative_cosine).clamp(-1.0, 1.0)).to_degrees()
 }

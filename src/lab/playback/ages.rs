@@ -77,8 +77,8 @@ impl Ages {
         }
     }
 
-    /// The same for a picture on which a turn is `turn_dots` long: where the swings are so close that they cover each
-    /// other, fewer of them are recent.
+    /// Returns the same for a picture on which a turn is `turn_dots` long: where the swings are so close that they
+    /// cover each other, fewer of them are recent.
     pub fn on_picture(self, turn_dots: f64) -> Self {
         let Some(swing_s) = self.swing_s else {
             return self;
@@ -92,8 +92,8 @@ impl Ages {
         }
     }
 
-    /// The time at which the part of `age` begins when the run is at `now_s`, s. It moves on in steps and not in every
-    /// frame, because each change of the picture has to be sent to the terminal.
+    /// Returns the time at which the part of `age` begins when the run is at `now_s`, s. It moves on in steps and not
+    /// in every frame, because each change of the picture has to be sent to the terminal.
     pub fn since(&self, age: Age, now_s: f64) -> f64 {
         let length_s = match age {
             Age::Old => return f64::NEG_INFINITY,

@@ -26,8 +26,8 @@ impl<T: Send + Sync + 'static> BackgroundJob<T> {
         let asker = Arc::downgrade(&answer);
         let _ = thread::Builder::new().name(name.to_owned()).spawn(move || {
             let found = work(&|| asker.strong_count() > 0);
-            if let (Some(answer), Some(found)) = (asker.upgrade(), found) {
-                let _ = answer.set(found); // it is set only here, so this succeeds
+            if let (Some(waiting), Some(found)) = (asker.upgrade(), found) {
+                let _ = waiting.set(found); // it is set only here, so this succeeds
             }
         });
         Self {

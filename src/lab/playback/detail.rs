@@ -68,7 +68,7 @@ impl DetailRequest {
 }
 
 impl Detail {
-    /// The window for `run` with these `readouts`; `before` is the last one.
+    /// Returns the window for `run` with these `readouts`; `before` is the last one.
     pub fn new(
         run: &LiveRun,
         readouts: &Readouts,
@@ -117,8 +117,8 @@ impl Detail {
         }
     }
 
-    /// The window on `columns` of dots, `is_small` if a cell has two of them: where it has no room for all swings of
-    /// the window, a part of it that has `at_s` (s).
+    /// Returns the window on `columns` of dots, `is_small` if a cell has two of them: where it has no room for all
+    /// swings of the window, a part of it that has `at_s` (s).
     pub fn strip(&self, columns: usize, is_small: bool, at_s: f64) -> Strip {
         let least = if is_small {
             COLUMNS_OF_SMALL
@@ -145,8 +145,8 @@ impl Detail {
     }
 }
 
-/// The period of x, s, where x swings while the tilt hardly does, in a time short beside `long_s` (s); with `was_x` it has
-/// done so before, and the tilt must swing more often to be taken instead.
+/// Returns the period of x, s, where x swings while the tilt hardly does, in a time short beside `long_s` (s); with
+/// `was_x` it has done so before, and the tilt must swing more often to be taken instead.
 fn x_period_s(recording: &Recording, long_s: f64, was_x: bool) -> Option<f64> {
     let (time_s, [x, tilt]) = turns(recording, long_s)?;
     let swing_s = 2.0 * time_s / x;
@@ -154,14 +154,15 @@ fn x_period_s(recording: &Recording, long_s: f64, was_x: bool) -> Option<f64> {
     (x > 2.0 && x > more_often * tilt && MOST_SWINGS * swing_s < long_s).then_some(swing_s)
 }
 
-/// The period of the tilt, s, as it was recorded in the last `long_s` (s); `None` where it changes by rounding alone.
+/// Returns the period of the tilt, s, as it was recorded in the last `long_s` (s); `None` where it changes by rounding
+/// alone.
 fn tilt_period_s(recording: &Recording, long_s: f64) -> Option<f64> {
     let (time_s, [_, tilt]) = turns(recording, long_s)?;
     let extent = recording.whole()?.extent(RecordedCurve::Tilt);
     (tilt > 2.0 && extent.max - extent.min > LEAST_DRAWN_SWING_DEG).then_some(2.0 * time_s / tilt)
 }
 
-/// The recorded part of the last `long_s`, s, and how often x and the tilt turned in it.
+/// Returns the recorded part of the last `long_s`, s, and how often x and the tilt turned in it.
 fn turns(recording: &Recording, long_s: f64) -> Option<(f64, [f64; 2])> {
     let end_s = recording.whole()?.end_s;
     let since_s = (end_s - long_s).max(0.0);
@@ -185,8 +186,8 @@ fn length_s(swing_s: f64, before_s: Option<f64>) -> f64 {
         .unwrap_or_else(|| nice_numbers::at_or_below(MOST_SWINGS * swing_s))
 }
 
-/// The time between `begin_s - swing_s` and `begin_s` (s) at which `curve` is highest; before the first swing the
-/// beginning.
+/// Returns the time between `begin_s - swing_s` and `begin_s` (s) at which `curve` is highest; before the first swing
+/// the beginning.
 fn highest_s(recording: &Recording, curve: RecordedCurve, begin_s: f64, swing_s: f64) -> f64 {
     if begin_s <= swing_s || swing_s <= 0.0 {
         return begin_s;

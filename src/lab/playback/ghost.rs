@@ -19,7 +19,7 @@ pub struct Ghost {
 }
 
 impl Ghost {
-    /// The pictures of `run`, up to the furthest step that it has reached.
+    /// Returns the pictures of `run`, up to the furthest step that it has reached.
     pub fn capture(run: &LiveRun) -> Self {
         let (recording, path) = run.pictures();
         Self {

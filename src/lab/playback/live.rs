@@ -226,8 +226,8 @@ impl LiveRun {
         }
     }
 
-    /// A step that is integrated, by the scheme or beside the run, may take long, and nothing before it says so: a push may
-    /// set in.
+    /// Returns the number of steps between two looks at the clock. An integrated step may take long without any
+    /// warning: a push may set in.
     fn steps_per_look(&self) -> usize {
         if !has_closed_form(self.scenario()) {
             return 1;
@@ -235,7 +235,8 @@ impl LiveRun {
         (STEPS_PER_LOOK / self.scenario().body.mechanics.points().len()).max(1)
     }
 
-    /// What a step costs, in points of a body: its points, a constant share, and the integration of the exact motion.
+    /// Returns the cost of a step, in points of a body: its points, a constant share, and the integration of the exact
+    /// motion.
     pub fn cost_of_a_step(&self) -> u64 {
         let points = self.scenario().body.mechanics.points().len() as u64;
         let beside = self.monitor.beside.motions();
@@ -265,13 +266,13 @@ impl LiveRun {
         self.overlay.as_ref()
     }
 
-    /// Where the exact motion stands, where it is shown and has come as far as the run.
+    /// Returns the present sample of the exact motion, if it is shown and has reached the time of the run.
     pub fn exact_now(&self) -> Option<&RecordedSample> {
         let now = &self.overlay.as_ref()?.now;
         (now.time_s >= self.now().time_s).then_some(now)
     }
 
-    /// Whether the exact motion is shown and its time is earlier than the run's.
+    /// Returns true if the exact motion is shown and its time is earlier than the run's.
     pub fn overlay_is_behind(&self) -> bool {
         let now_s = self.now().time_s;
         let overlay = self.overlay.as_ref();
@@ -288,14 +289,15 @@ impl LiveRun {
         readouts.read_again(source, &self.simulation, &mut self.monitor);
     }
 
-    /// Whether the workings of every step to come are kept, as whoever shows them wants it while the run goes on.
+    /// Sets whether the workings of every further step are kept, for a pane that shows them while the run plays.
     pub fn keep_workings(&mut self, kept: bool) {
         self.keeps_workings = kept;
         self.simulation.keep_workings(kept);
     }
 
-    /// What the scheme computed in the step taken last; `None` at step 0. Where the workings were not kept, that step is
-    /// taken a second time, on a copy of the run that comes from the last checkpoint before it; `None` where that takes long.
+    /// Returns what the scheme computed in the step taken last; `None` at step 0. Where the workings were not kept,
+    /// that step is taken a second time, on a copy of the run that comes from the last checkpoint before it; `None`
+    /// where that takes long.
     pub fn workings(&mut self) -> Option<Arc<Workings>> {
         let now = self.simulation.now();
         let before = now.number().checked_sub(1)?;
@@ -318,7 +320,7 @@ impl LiveRun {
         Some(Arc::clone(workings))
     }
 
-    /// The last state in which the body was a rigid one, and its step, where the scheme has broken down since.
+    /// Returns the last state in which the body was a rigid one, and its step, where the scheme has broken down since.
     pub fn last_whole(&self) -> Option<&(u64, State)> {
         self.pictures.last_whole.as_ref()
     }
@@ -351,8 +353,8 @@ impl LiveRun {
     }
 }
 
-/// What the integrations of the next step of `simulation` cost, in points of a body: that of its scheme, if that is the exact
-/// one, and so many `others`.
+/// Returns the cost of the integrations of the next step of `simulation`, in points of a body: that of its scheme, if
+/// that is the exact one, and of `others` more.
 pub fn integration_cost(simulation: &Simulation, others: u32) -> u64 {
     let (motion, _) = in_force(simulation.scenario(), simulation.step_number());
     let is_exact = motion.scheme.order.is_none();

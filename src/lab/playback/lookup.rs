@@ -20,7 +20,7 @@ pub enum Missing {
     NoTurn,
 }
 
-/// The numbers at `step` of `run`: those that its CSV has in that row.
+/// Returns the numbers at `step` of `run`: those that its CSV has in that row.
 ///
 /// # Errors
 /// Where the run has not been at the step, or computing it again would take too long.
@@ -35,7 +35,7 @@ pub fn sample(run: &LiveRun, step: u64) -> Result<Sample, Missing> {
     Ok(steps.simulation.sample())
 }
 
-/// The step nearest to `from`, after or before it, at which the tilt of `run` turns up or down.
+/// Returns the step nearest to `from`, after or before it, at which the tilt of `run` turns up or down.
 ///
 /// # Errors
 /// Where there is none, or computing it would take too long.
@@ -68,7 +68,7 @@ pub fn turn(run: &LiveRun, from: u64, forward: bool) -> Result<u64, Missing> {
     Err(Missing::NoTurn)
 }
 
-/// The turns of the tilt of `run` from step `from` to step `to`: the time, s, and the tilt, degrees, of each.
+/// Returns the turns of the tilt of `run` from step `from` to step `to`: the time, s, and the tilt, degrees, of each.
 pub fn turns(run: &LiveRun, from: u64, to: u64) -> Result<Vec<(f64, f64)>, Missing> {
     let mut steps = LookupSteps::before(run, from.saturating_sub(1));
     let mut turns = Vec::new();

@@ -22,8 +22,8 @@ pub struct Dip {
 }
 
 impl Dip {
-    /// The first dip of the run of `scenario`, or the part of it up to step `last`. The steps are computed again for it.
-    /// `None` if the axle is upright at the start: it has no lower side.
+    /// Returns the first dip of the run of `scenario`, or the part of it up to step `last`. The steps are computed
+    /// again for it. `None` if the axle is upright at the start: it has no lower side.
     pub fn compute(scenario: &Arc<Scenario>, last: u64) -> Option<Self> {
         let mut run = Simulation::new(Arc::clone(scenario));
         let (tilt_deg, azimuth_deg) = (run.now().tilt_deg(), run.now().azimuth().degrees());

@@ -36,7 +36,7 @@ impl Marks {
     }
 }
 
-/// When `push` acts between two times, s.
+/// Returns when `push` acts between two times, s.
 fn acts(push: &Push, scenario: &Scenario, from_s: f64, to_s: f64) -> Option<(f64, f64)> {
     let (begin, end) = acts_s(push, scenario);
     let (begin, end) = (begin.max(from_s), end.min(to_s));

@@ -16,7 +16,7 @@ pub struct Polyline {
     pub is_mark: bool,
 }
 
-/// The lines of `part`. A part that is given by its moments is drawn as the thin ellipsoid that has them.
+/// Returns the lines of `part`. A part that is given by its moments is drawn as the thin ellipsoid that has them.
 pub fn lines(part: &PlacedSolid) -> Vec<Polyline> {
     let mut lines = own_lines(part);
     for line in &mut lines {
@@ -69,8 +69,8 @@ fn ellipsoid([x, y, z]: [f64; 3]) -> Vec<Polyline> {
     .to_vec()
 }
 
-/// A round solid between two circles, radius and height of each, with the radius of its hole and a mark on top; of a flat
-/// one the circle alone, and none of radius 0.
+/// Returns a round solid between two circles, radius and height of each, with the radius of its hole and a mark on top;
+/// of a flat one the circle alone, and none of radius 0.
 fn round(ends: [(f64, f64); 2], hole: Option<f64>) -> Vec<Polyline> {
     let [(lower, bottom), (upper, top)] = ends;
     let is_flat = bottom == top;

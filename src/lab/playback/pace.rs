@@ -71,7 +71,7 @@ impl Pace {
         self.set_running(self.is_running);
     }
 
-    /// Whether the machine is too slow for the speed that is set: it reaches less than 80 % of it.
+    /// Returns true if the machine is too slow for the speed that is set: it reaches less than 80 % of it.
     pub fn falls_behind(&self) -> bool {
         matches!(self.speed, Speed::Times(speed) if self.is_running && self.achieved < 0.8 * speed)
     }

@@ -111,7 +111,7 @@ impl PathFromAbove {
         }
     }
 
-    /// The largest distance of the path from the place (`x`, `y`), m, to a cell.
+    /// Returns the largest distance of the path from the place (`x`, `y`), m, to a cell.
     pub fn radius_about(&self, x: f64, y: f64) -> f64 {
         let distances = self
             .dots()

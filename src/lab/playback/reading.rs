@@ -34,7 +34,7 @@ impl Reading {
         }
     }
 
-    /// Measured precession, degrees a second; `None` until its uncertainty is small enough.
+    /// Returns the measured precession, degrees a second; `None` until its uncertainty is small enough.
     pub fn precession_deg_per_s(&self) -> Option<f64> {
         self.readouts
             .precession
@@ -55,13 +55,13 @@ fn pace_in_words(pace: &Pace) -> String {
     }
 }
 
-/// The speed that is reached; further digits than two change all the time.
+/// Returns the speed that is reached; further digits than two change all the time.
 fn achieved(pace: &Pace) -> String {
     let speed = rounded(pace.achieved, 2);
     short(if speed.is_finite() { speed } else { 0.0 })
 }
 
-/// The speed in few characters: 20, 0.002, 5e5.
+/// Returns the speed in few characters: 20, 0.002, 5e5.
 fn short(speed: f64) -> String {
     match speed {
         n if n >= 1e5 => exponent(n, 0),

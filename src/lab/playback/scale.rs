@@ -20,7 +20,7 @@ pub struct StripScale {
 }
 
 impl StripScale {
-    /// From `-reach` to `reach`, rounded up.
+    /// Creates the scale from `-reach` to `reach`, rounded up.
     pub fn about_zero(reach: f64) -> Self {
         let reach = nice_above(reach.max(1e-9));
         Self {
@@ -29,7 +29,7 @@ impl StripScale {
         }
     }
 
-    /// Round numbers around `extent`, at least `least` apart; they change seldom while the extent grows.
+    /// Returns round numbers around `extent`, at least `least` apart; they change seldom while the extent grows.
     pub fn around(extent: Extent, least: f64) -> Self {
         let unit = nice_numbers::at_or_below((extent.max - extent.min).max(least) / 4.0);
         let (low, high) = ((extent.min / unit).floor(), (extent.max / unit).ceil());
@@ -48,7 +48,7 @@ impl StripScale {
         }
     }
 
-    /// The place of `value`: 0 at the high end, 1 at the low one.
+    /// Returns the place of `value`: 0 at the high end, 1 at the low one.
     pub fn from_top(&self, value: f64) -> f64 {
         (self.high - value) / (self.high - self.low)
     }
@@ -71,9 +71,9 @@ impl StripScale {
             .unwrap_or(most)
     }
 
-    /// Both ends in at most `width` columns: close together where there is no room for spaces, else as the middle and the
-    /// distance of the ends from it, a middle of 0 left out if need be, and then with fewer digits, as long as no end is
-    /// seen to be elsewhere. `None` where that has no room either.
+    /// Returns both ends in at most `width` columns: close together where there is no room for spaces, else as the
+    /// middle and the distance of the ends from it, a middle of 0 left out if need be, and then with fewer digits, as
+    /// long as no end is seen to be elsewhere. `None` where that has no room either.
     pub fn in_words_within(&self, width: usize) -> Option<String> {
         let digits = self.decimals();
         (0..=digits)
@@ -112,7 +112,8 @@ pub fn decimals(apart: f64) -> usize {
         .clamp(0.0, 9.0) as usize
 }
 
-/// The multiples of a number 1, 2 or 5 times a power of ten from `low` to `high`: as many as there can be, at most `most`.
+/// Returns the multiples of a number 1, 2 or 5 times a power of ten from `low` to `high`: as many as there can be, at
+/// most `most`.
 pub fn ticks(low: f64, high: f64, most: usize) -> Vec<f64> {
     let range = high - low;
     if !(range > 0.0 && range.is_finite()) || most == 0 {
@@ -133,7 +134,7 @@ pub fn ticks(low: f64, high: f64, most: usize) -> Vec<f64> {
     Vec::new()
 }
 
-/// The smallest of 1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten that is not below `value` (> 0).
+/// Returns the smallest of 1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten that is not below `value` (> 0).
 fn nice_above(value: f64) -> f64 {
     const TICK_STEPS: [f64; 11] = [1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0];
     let unit = libm::exp10(libm::log10(value).floor());
@@ -174,9 +175,9 @@ mod tests {
             (0.6, 0.95, 9, ""),
         ] {
             let scale = StripScale { low, high };
-            let within = |width| scale.in_words_within(width).unwrap_or_default();
+            let within = |room| scale.in_words_within(room).unwrap_or_default();
             assert_eq!(within(width), words, "{scale:?} within {width}");
-            assert!((0..40).all(|width| within(width).chars().count() <= width));
+            assert!((0..40).all(|room| within(room).chars().count() <= room));
         }
     }
 

@@ -41,8 +41,8 @@ impl Strip {
         }
     }
 
-    /// The window of `window_s` on `columns` for a run that stands at `now_s` (both s): the first one, or one later by
-    /// half its length as often as that is needed.
+    /// Returns the window of `window_s` on `columns` for a run that is at `now_s` (both s): the first one, or one
+    /// later by half its length as often as that is needed.
     pub fn following(now_s: f64, window_s: f64, columns: usize) -> Self {
         let first = Self::new(0.0, window_s, columns);
         // A run of exactly one window ends at its right edge.
@@ -57,7 +57,7 @@ impl Strip {
         self.begin_s + self.window_s
     }
 
-    /// The column of `time_s` (s); `None` where it is not shown.
+    /// Returns the column of `time_s` (s); `None` where it is not shown.
     pub fn column(&self, time_s: f64) -> Option<usize> {
         let is_shown = time_s >= self.begin_s && time_s <= self.end_s() && self.columns > 0;
         is_shown.then(|| self.place(time_s).min(self.columns - 1))
@@ -67,7 +67,7 @@ impl Strip {
         self.begin_s + (column as f64 + 0.5) / self.columns.max(1) as f64 * self.window_s
     }
 
-    /// The columns in which some of the time from `begin_s` to `end_s` (s) is shown.
+    /// Returns the columns in which some of the time from `begin_s` to `end_s` (s) is shown.
     pub fn shown(&self, begin_s: f64, end_s: f64) -> Range<usize> {
         let (begin_s, end_s) = (begin_s.max(self.begin_s), end_s.min(self.end_s()));
         if begin_s >= end_s {
@@ -85,12 +85,12 @@ impl Strip {
         (time_s - self.begin_s) / self.window_s * self.columns as f64
     }
 
-    /// The column of a time (s) that is not before the left edge; it may lie beyond the right one.
+    /// Returns the column of a time (s) that is not before the left edge; it may lie beyond the right one.
     fn place(&self, time_s: f64) -> usize {
         (self.columns_before(time_s).max(0.0) as usize).min(usize::MAX / 2)
     }
 
-    /// Where the bins of `recording` are on the columns: for all its curves at once.
+    /// Places the bins of `recording` on the columns, for all its curves at once.
     pub fn bins(&self, recording: &Recording) -> PlacedBins {
         let column = |time_s: f64| self.place(time_s.max(self.begin_s));
         let bins = recording.in_columns(self.begin_s, self.end_s(), Some(column));
@@ -185,13 +185,13 @@ impl StripPen<'_> {
         self.before = Some((bin.end_s, last, stored));
     }
 
-    /// Whether there is a cut at `from_s` or later and before `to_s`.
+    /// Returns true if there is a cut at `from_s` or later and before `to_s`.
     fn is_cut(&self, from_s: f64, to_s: f64) -> bool {
         let next = self.cuts.partition_point(|&cut| cut < from_s);
         self.cuts.get(next).is_some_and(|&cut| cut < to_s)
     }
 
-    /// The columns that have something, up to `reach` columns from the column `index`.
+    /// Returns the columns that have something, up to `reach` columns from the column `index`.
     fn about(&self, index: usize, reach: usize) -> impl Iterator<Item = (usize, &DrawnColumn)> {
         self.columns
             .iter()
@@ -201,8 +201,8 @@ impl StripPen<'_> {
             .filter(|(_, drawn)| drawn.extent.is_some())
     }
 
-    /// How often the curve turns in a column about the column `index`; where slow motion carries it along, how often the
-    /// tilt does, which swings with every nutation.
+    /// Returns how often the curve turns in a column about the column `index`; where slow motion carries it along, how
+    /// often the tilt does, which swings with every nutation.
     fn turns(&self, index: usize) -> f64 {
         let (mut columns, mut turns, mut turns_of_tilt, mut tilt) = (0.0, 0.0, 0.0, None);
         for (_, drawn) in self.about(index, NEIGHBOURS) {
@@ -221,7 +221,7 @@ impl StripPen<'_> {
         }
     }
 
-    /// The curve in each column; `None` where nothing was drawn.
+    /// Returns the curve in each column; `None` where nothing was drawn.
     pub fn finish(mut self) -> Vec<Option<StripColumn>> {
         for drawn in &mut self.columns {
             if let Some(stored) = drawn.stored {
@@ -277,17 +277,17 @@ impl StripPen<'_> {
     }
 }
 
-/// The column `index`, or the one `away` columns inside of the nearer of the curve's `ends`: near an end there are turns on
-/// one side only.
+/// Returns the column `index`, or the one `away` columns inside of the nearer of the curve's `ends`: near an end there
+/// are turns on one side only.
 fn inside(index: usize, away: usize, (first, last): (usize, usize)) -> usize {
     index
         .max((first + away).min(last))
         .min(last.saturating_sub(away).max(first))
 }
 
-/// Whether a curve with these `turns` in a column about the column `index` is too fast to be drawn swing by swing; `swings`
-/// are its extremes over a swing about each column. Where slow motion carries it further in two swings than it swings,
-/// before and after, it is drawn as it is.
+/// Returns true if a curve with these `turns` in a column about the column `index` is too fast to be drawn swing by
+/// swing; `swings` are its extremes over a swing about each column. Where slow motion carries it further in two swings
+/// than it swings, before and after, it is drawn as it is.
 fn is_fast(index: usize, turns: f64, swings: &[Option<Extent>], ends: (usize, usize)) -> bool {
     if turns <= MOST_COLUMN_TURNS {
         return false;
@@ -296,13 +296,15 @@ fn is_fast(index: usize, turns: f64, swings: &[Option<Extent>], ends: (usize, us
     let here = inside(index, 2 * away, ends);
     let before = here.saturating_sub(away).max(ends.0);
     let after = (here + away).min(ends.1);
-    let [before, here, after] = [before, here, after]
+    let middles = [before, here, after]
         .map(|index| swings[index].map_or(0.0, |swing| 0.5 * (swing.min + swing.max)));
-    let carried = (before - here).abs().min((after - here).abs());
+    let carried = (middles[0] - middles[1])
+        .abs()
+        .min((middles[2] - middles[1]).abs());
     swings[index].is_some_and(|swing| carried < MOST_CARRIED * (swing.max - swing.min))
 }
 
-/// The mean lowest and the mean highest value of `extents` up to `reach` from `index`.
+/// Returns the mean lowest and the mean highest value of `extents` up to `reach` from `index`.
 fn mean(extents: &[Option<Extent>], index: usize, reach: usize) -> Option<Extent> {
     let about = extents
         .iter()

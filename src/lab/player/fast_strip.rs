@@ -32,7 +32,7 @@ impl FastStrip {
         }
     }
 
-    /// Another run was opened: the window says nothing about it.
+    /// Notes that another run was opened: the window says nothing about it.
     pub(super) fn forget(&mut self) {
         self.is_of_run = false;
     }

@@ -202,12 +202,12 @@ impl Overlay {
         self.now = sample;
     }
 
-    /// Whether it can go on from a run that stands at `time_s` (s): it has not come further, nor ended.
+    /// Returns true if it can go on from a run that is at `time_s` (s): it has not come further, nor ended.
     pub fn can_continue_at(&self, time_s: f64) -> bool {
         !self.has_ended && self.now.time_s <= time_s
     }
 
-    /// Whether it has not come as far as `time_s` (s), and goes on.
+    /// Returns true if it has not come as far as `time_s` (s), and goes on.
     pub fn is_before(&self, time_s: f64) -> bool {
         !self.has_ended && self.now.time_s < time_s
     }
