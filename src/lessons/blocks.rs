@@ -33,8 +33,8 @@ const MOST_CHOICES: usize = 9;
 const LONGEST_LESSON: i64 = 600;
 const MOST_BLOCK_PROBLEMS: usize = 20;
 
-/// Markdown, not empty.
-const MARKDOWN: ValueKind = By(|value| match value.as_str() {
+/// Text of one or several lines, not empty: Markdown, an expression.
+const TEXT: ValueKind = By(|value| match value.as_str() {
     Some("") => Err("must not be empty".to_owned()),
     _ => Paragraph.check(value),
 });
@@ -47,7 +47,7 @@ const HEAD: Schema = Schema(&[&[
 #[rustfmt::skip]
 const PREDICT: Schema = Schema(&[&[
     must("name", Line, "compare calls the prediction by it"),
-    must("ask", MARKDOWN, "the question"),
+    must("ask", TEXT, "the question"),
     may("choices", By(are_choices), "the answers to choose from"),
     may("unit", By(is_unit), "the unit of a number"),
     may("right", Number(Any), "the number that comes out, or of the choice"),
@@ -56,18 +56,18 @@ const PREDICT: Schema = Schema(&[&[
 
 const COMPARE: Schema = Schema(&[&[
     must(PREDICTION, Line, "the name of a predict block"),
-    may(WITH, Line, "a number of the run"),
+    may(WITH, TEXT, "a number of the run"),
     must(
         "text",
-        MARKDOWN,
+        TEXT,
         "what is said, with {with:.2} and {prediction}",
     ),
 ]]);
 
 const CHECK: Schema = Schema(&[&[
-    must("that", Line, "the condition, such as \"t_s >= 60\""),
+    must("that", TEXT, "the condition, such as \"t_s >= 60\""),
     may("goal", By(is_goal), "what is to be reached"),
-    may("hint", MARKDOWN, "help for one who has not got there"),
+    may("hint", TEXT, "help for one who has not got there"),
 ]]);
 
 fn are_choices(value: &Value) -> Result<(), String> {

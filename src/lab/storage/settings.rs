@@ -80,7 +80,13 @@ fn sifted(table: &Table) -> (Table, Problems) {
         let setting = Table::from_iter([(name.to_owned(), value.clone())]);
         match SETTINGS_SCHEMA.check(&setting).or(setting) {
             Ok(setting) => good.extend(setting),
-            Err(found) => problems.add_all(found),
+            // At the key as the file spells it.
+            Err(found) => found.list.into_iter().for_each(|problem| {
+                problems.add(|| Problem {
+                    key: key.clone(),
+                    ..problem
+                });
+            }),
         }
     }
     (good, problems)
