@@ -135,7 +135,7 @@ fn edits_at_the_end_and_beyond_do_nothing() {
 
 #[test]
 fn an_edit_at_step_0_is_a_scenario_of_its_own() {
-    for (set, written) in [
+    for (set, motion) in [
         (
             "'motion.time_step_s' = 0.002",
             FINE.replace("0.001", "0.002"),
@@ -147,11 +147,11 @@ fn an_edit_at_step_0_is_a_scenario_of_its_own() {
         ),
     ] {
         let edited = samples(simulation(FINE, &[(0, set)]));
-        let written = samples(simulation(&written, &[]));
+        let written = samples(simulation(&motion, &[]));
         assert_eq!(edited.len(), written.len());
-        for (edited, written) in edited.iter().zip(&written).skip(1) {
-            assert!(same(edited, written), "{set}: step {}", edited.step);
-            assert_eq!(edited.segment, 1);
+        for (sample, expected) in edited.iter().zip(&written).skip(1) {
+            assert!(same(sample, expected), "{set}: step {}", sample.step);
+            assert_eq!(sample.segment, 1);
         }
     }
 }
@@ -215,22 +215,22 @@ fn pushes_counted_in_steps_hold_their_seconds_after_an_edit_of_the_time_step() {
             "scheme = 'report'\ntime_step_s = 0.1\nsteps = 500\n[[push]]\npoint = 'top'\nforce_N = [0, -2, 0]\nfirst_step = {first}\nsteps = {steps}\n"
         )
     };
-    let edits = &[(40, "'motion.time_step_s' = 0.05")][..];
-    let twice = [edits[0], (52, "'motion.time_step_s' = 0.2")];
+    let once = &[(40, "'motion.time_step_s' = 0.05")][..];
+    let twice = [once[0], (52, "'motion.time_step_s' = 0.2")];
     for (first, steps, edits, pushed) in [
         // 200 steps of 0.1 s are 20 s: 4 s of them before the edit, 16 s or 320 steps of 0.05 s after it.
         (1, 200, &[][..], 1..=200),
-        (1, 200, edits, 1..=360),
+        (1, 200, once, 1..=360),
         // From 5 s to 7 s, both after the edit.
-        (51, 20, edits, 61..=100),
+        (51, 20, once, 61..=100),
         // Over before the edit.
-        (11, 20, edits, 11..=30),
+        (11, 20, once, 11..=30),
         // A second edit counts in the seconds of the scenario's own time step too: 12 steps more to 4.6 s, the rest at 0.2 s.
         (1, 200, &twice, 1..=129),
     ] {
         let seen = pushed_steps(&push(first, steps), edits);
-        let seen = seen.iter().map(|(step, _)| *step);
-        assert!(seen.eq(pushed), "{first} {steps} {edits:?}");
+        let numbers = seen.iter().map(|(step, _)| *step);
+        assert!(numbers.eq(pushed), "{first} {steps} {edits:?}");
     }
 }
 
@@ -238,14 +238,14 @@ fn pushes_counted_in_steps_hold_their_seconds_after_an_edit_of_the_time_step() {
 fn an_accumulating_push_grows_by_the_clock_after_an_edit_of_the_time_step() {
     let push = "scheme = 'report'\ntime_step_s = 0.1\nsteps = 20\n[[push]]\npoint = 'top'\nforce_N = [0, -2, 0]\nfirst_step = 2\nsteps = 8\naccumulates = true\n";
     // From step 4 on every 0.1 s is two steps.
-    let edits = [(4, "'motion.time_step_s' = 0.05")];
-    for (edits, forces) in [
+    let edit = [(4, "'motion.time_step_s' = 0.05")];
+    for (edits, expected) in [
         (&[][..], "1234567888888888888"),
-        (&edits, "1234455667788888888"),
+        (&edit, "1234455667788888888"),
     ] {
         let seen = pushed_steps(push, edits);
-        let seen = seen.iter().map(|(_, force)| force.round().to_string());
-        assert_eq!(seen.collect::<String>(), forces);
+        let forces = seen.iter().map(|(_, force)| force.round().to_string());
+        assert_eq!(forces.collect::<String>(), expected);
     }
 }
 
@@ -262,9 +262,9 @@ fn a_push_in_steps_is_the_push_in_its_seconds() {
     ] {
         let steps = run("first_step = 21\nsteps = 40", edits);
         let seconds = run("from_s = 0.02\nfor_s = 0.04", edits);
-        for (steps, seconds) in steps.iter().zip(&seconds) {
-            let off = (steps.momentum - seconds.momentum).norm();
-            assert!(off < 1e-12, "step {}", steps.step);
+        for (counted, timed) in steps.iter().zip(&seconds) {
+            let off = (counted.momentum - timed.momentum).norm();
+            assert!(off < 1e-12, "step {}", counted.step);
         }
     }
 }
@@ -336,10 +336,7 @@ fn the_azimuth_counts_every_turn_however_few_rows_there_are() {
 fn an_edit_that_leads_nowhere_is_not_made() {
     let mut simulation = simulation(FINE, &[(50, "'motion.gravity_m_per_s2' = 1e307")]);
     simulation.step_to(50).unwrap();
-    let all = |simulation: &Simulation| {
-        let drift = simulation.now().energy_drift();
-        (simulation.sample(), drift, *simulation.motion())
-    };
+    let all = |run: &Simulation| (run.sample(), run.now().energy_drift(), *run.motion());
     let before = all(&simulation);
     for _ in 0..3 {
         assert_eq!(simulation.step().unwrap_err().step, 51);

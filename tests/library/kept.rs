@@ -57,6 +57,10 @@ fn what_is_kept_grows_with_the_number_of_acts() {
 
 #[test]
 fn what_is_shown_and_hidden_comes_back() {
+    fn picture(desk: &mut Desk) -> String {
+        desk.wait(100);
+        screen::text(&desk.lab, true, (120, 40))
+    }
     let mut desk = Desk::open("loops");
     desk.commands("step = 300\nshow = ['traces', '3d']\nhide = ['health', 'predicted']");
     desk.commands("look_at = 'the dip'\ncamera = { yaw_deg = 75, pitch_deg = -10 }");
@@ -67,18 +71,14 @@ fn what_is_shown_and_hidden_comes_back() {
         back.press(&[Key::Esc]);
         desk.commands(&format!("fill = '{fill}'"));
         back.commands(&format!("fill = '{fill}'"));
-        let picture = |desk: &mut Desk| {
-            desk.wait(100);
-            screen::text(&desk.lab, true, (120, 40))
-        };
         assert_eq!(picture(&mut back), picture(&mut desk));
         assert_eq!(back.lab.view().focus, desk.lab.view().focus);
     }
     // What the file hides, and the lab has shown again.
     let hiding = preset("loops", &["view.hide=['traces']"]);
-    let mut desk = Desk::with("loops", hiding);
-    desk.commands("hide = []");
-    let back = resumed(&desk.lab.content(&Default::default()));
+    let mut hides = Desk::with("loops", hiding);
+    hides.commands("hide = []");
+    let back = resumed(&hides.lab.content(&Default::default()));
     assert_eq!(back.lab.view().look.hide, []);
 }
 

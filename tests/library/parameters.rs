@@ -111,9 +111,10 @@ fn every_value_of_a_file_is_listed_in_groups() {
         "scenario, body, point top, point side, start, motion, push 0, push 1, friction, view";
     assert_eq!(groups.join(", "), all);
     for (push, window) in [("0", "first_step steps accumulates"), ("1", "from_s for_s")] {
-        let all = format!("point force_N.0 force_N.1 force_N.2 {window}");
-        let all = all.split(' ').map(|key| format!("push.{push}.{key}"));
-        assert!(keys(&scenario, &format!("push {push}")).into_iter().eq(all));
+        let names = format!("point force_N.0 force_N.1 force_N.2 {window}");
+        let of_push = names.split(' ').map(|key| format!("push.{push}.{key}"));
+        let found = keys(&scenario, &format!("push {push}"));
+        assert!(found.into_iter().eq(of_push));
     }
     let first = named(&scenario, "push.0.first_step");
     assert_eq!((first.value, first.is_default), (Value::Integer(1), true));

@@ -105,9 +105,9 @@ fn what_it_says_and_what_it_leaves_out() {
     assert_eq!(file.title, "x, from t = 2.1 s");
     assert_eq!((&file.about, file.motion.steps), (&None, 400));
     assert!(file.expected.is_empty());
-    let view = file.view.as_ref().unwrap();
+    let kept = file.view.as_ref().unwrap();
     assert_eq!(
-        *view,
+        *kept,
         Table::from_iter([("speed".to_owned(), 5.0.into())]).into()
     );
     // Steps 20 to 79 last until t = 3.95 s; the last push is over.

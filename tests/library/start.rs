@@ -160,8 +160,8 @@ fn set_takes_the_way_it_names() {
     ];
     let back = preset("method-2", &ways).file.start;
     assert_eq!((back.spin_rpm, back.steady), (None, None));
-    let ways = ["start.spin_rpm=300", "start.spin_rad_per_s=7"];
-    let last = preset("method-2", &ways);
+    let two_spins = ["start.spin_rpm=300", "start.spin_rad_per_s=7"];
+    let last = preset("method-2", &two_spins);
     let start = &last.file.start;
     assert_eq!((start.spin_rpm, start.spin_rad_per_s), (None, Some(7.0)));
     assert_eq!(parse(&last.to_toml()).start, last.start);
@@ -221,19 +221,20 @@ fn with(scenario: &Scenario, key: &str, value: impl Into<Value>) -> Scenario {
 fn a_change_tells_the_momentum_the_way_it_needs() {
     let told = ring("tilt_deg = 40\nmomentum_Js = [0, 9, 64]\nmomentum_frame = 'body'");
     let spun = with(&told, "start.spin_rpm", 100.0);
-    let start = &spun.file.start;
-    assert_eq!((start.momentum_Js, start.momentum_frame), (None, None));
-    assert_eq!(start.spin_rpm, Some(100.0));
+    let in_rpm = &spun.file.start;
+    assert_eq!((in_rpm.momentum_Js, in_rpm.momentum_frame), (None, None));
+    assert_eq!(in_rpm.spin_rpm, Some(100.0));
     let other = with(&spun, "start.spin_rad_per_s", 5.0);
-    let start = &other.file.start;
-    assert_eq!((start.spin_rpm, start.spin_rad_per_s), (None, Some(5.0)));
+    let in_rad = &other.file.start;
+    assert_eq!((in_rad.spin_rpm, in_rad.spin_rad_per_s), (None, Some(5.0)));
     // One number of L: the others stay as they are.
     let back = with(&other, "start.momentum_Js.0", 3.0);
     let momentum = other.start.momentum;
     let known = Vector3::new(3.0, momentum.y, momentum.z);
     assert_eq!(back.start.momentum, known);
-    let start = &back.file.start;
-    assert_eq!((start.spin_rad_per_s, start.momentum_frame), (None, None));
+    let told_by_momentum = &back.file.start;
+    assert_eq!(told_by_momentum.spin_rad_per_s, None);
+    assert_eq!(told_by_momentum.momentum_frame, None);
     // The frame alone: the same L, told in it.
     let turned = with(&other, "start.momentum_frame", "body");
     assert!((turned.start.momentum - momentum).amax() < 1e-13);
@@ -244,8 +245,8 @@ fn a_change_tells_the_momentum_the_way_it_needs() {
     assert!((steady.file.start.spin_rad_per_s.unwrap() - 20.0).abs() < 1e-13);
     assert!((omega(&steady).dot(&steady.start.axle()) - 20.0).abs() < 1e-13);
     assert!(tilt_swing_deg(steady.clone()) < 1e-9);
-    let back = with(&steady, "start.momentum_Js.1", 1.0).file.start;
-    assert_eq!((back.steady, back.spin_rad_per_s), (None, None));
+    let unsteady = with(&steady, "start.momentum_Js.1", 1.0).file.start;
+    assert_eq!((unsteady.steady, unsteady.spin_rad_per_s), (None, None));
 }
 
 #[test]
@@ -359,16 +360,18 @@ fn a_rotor_has_the_spin_and_the_rest_has_none() {
     let told = parse(&gyroscope(
         "tilt_deg = 30\nmomentum_Js = [0, 0, 1]\nmomentum_frame = 'body'\nrotor = 'wheel'",
     ));
-    let listed = parameters(&table_of(&told.file), &told);
-    let rate = listed
+    let rates = parameters(&table_of(&told.file), &told);
+    let rate = rates
         .iter()
-        .find(|row| row.key == "start.spin_rad_per_s")
+        .find(|rate| rate.key == "start.spin_rad_per_s")
         .unwrap();
     assert!((rate.value.as_float().unwrap() - 1.0 / WHEEL).abs() < 1e-9);
     // And by an angular velocity: along the axle it is the rotor's, across it that of all that tilts.
-    let told = parse(&gyroscope("omega_rad_per_s = [2, 0, 100]\nrotor = 'wheel'"));
-    let across = told.body.mechanics.inertia()[(0, 0)];
-    assert!((told.start.momentum - Vector3::new(2.0 * across, 0.0, 100.0 * WHEEL)).amax() < 1e-14);
+    let turning = parse(&gyroscope("omega_rad_per_s = [2, 0, 100]\nrotor = 'wheel'"));
+    let across = turning.body.mechanics.inertia()[(0, 0)];
+    assert!(
+        (turning.start.momentum - Vector3::new(2.0 * across, 0.0, 100.0 * WHEEL)).amax() < 1e-14
+    );
 }
 
 #[test]
@@ -480,8 +483,8 @@ fn euler_rates_are_the_rates_of_turn_tilt_and_roll() {
         // In the body frame it is I (p, q, r): I1 = 6.6, I3 = 3.2 kg m².
         let momentum = scenario.start.orientation.tr_mul(&scenario.start.momentum);
         let in_body = scenario.start.orientation.tr_mul(&known);
-        let known = Vector3::new(6.6 * in_body.x, 6.6 * in_body.y, 3.2 * in_body.z);
-        assert!((momentum - known).amax() < 1e-7, "{momentum}");
+        let expected = Vector3::new(6.6 * in_body.x, 6.6 * in_body.y, 3.2 * in_body.z);
+        assert!((momentum - expected).amax() < 1e-7, "{momentum}");
         assert_eq!(parse(&scenario.to_toml()).start, scenario.start);
     }
 }
@@ -544,12 +547,12 @@ fn euler_rates_are_a_start_of_their_own() {
 
 #[test]
 fn set_takes_euler_rates_for_a_start_and_never_loses_a_spin() {
-    let ways = [
+    let rates = [
         "start.precession_rad_per_s=0.5",
         "start.psi_dot_rad_per_s=18",
     ];
-    for ways in [ways, [ways[1], ways[0]]] {
-        let file = preset("cusps", &ways).file.start;
+    for set in [rates, [rates[1], rates[0]]] {
+        let file = preset("cusps", &set).file.start;
         assert_eq!((file.momentum_Js, file.momentum_frame), (None, None));
         assert_eq!(file.precession_rad_per_s, Some(0.5));
         assert_eq!(file.psi_dot_rad_per_s, Some(18.0));
@@ -560,7 +563,7 @@ fn set_takes_euler_rates_for_a_start_and_never_loses_a_spin() {
         document.scenario().unwrap_err().to_string(),
         "give psi_dot_rad_per_s in the place of momentum_Js",
     );
-    let ways = [ways[0], ways[1], "start.spin_rpm=300"];
+    let ways = [rates[0], rates[1], "start.spin_rpm=300"];
     let file = preset("cusps", &ways).file.start;
     assert_eq!(
         (file.precession_rad_per_s, file.psi_dot_rad_per_s),
@@ -600,13 +603,13 @@ fn the_editor_lists_euler_rates_and_converts_them() {
         let turned = told.start.orientation.tr_mul(&omega);
         (vertical.x * turned.x + vertical.y * turned.y) / (1.0 - vertical.z * vertical.z)
     };
-    let file = &rates.file.start;
-    assert!((file.precession_rad_per_s.unwrap() - by_hand).abs() < 1e-12);
-    assert_eq!(file.nutation_rad_per_s, Some(0.0));
+    let in_rates = &rates.file.start;
+    assert!((in_rates.precession_rad_per_s.unwrap() - by_hand).abs() < 1e-12);
+    assert_eq!(in_rates.nutation_rad_per_s, Some(0.0));
     let same = with(
         &told,
         "start.psi_dot_rad_per_s",
-        file.psi_dot_rad_per_s.unwrap(),
+        in_rates.psi_dot_rad_per_s.unwrap(),
     );
     assert!((same.start.momentum - told.start.momentum).amax() < 1e-12);
     let back = with(&rates, "start.momentum_Js.0", 3.0).file.start;

@@ -12,8 +12,10 @@ use toml::{Table, Value};
 
 #[test]
 fn a_length_taken_back_is_in_seconds_what_it_was() {
+    fn end(desk: &Desk) -> u64 {
+        desk.lab.player().end_step()
+    }
     let mut desk = Desk::open("method-2");
-    let end = |desk: &Desk| desk.lab.player().end_step();
     desk.commands("go_to = 1000\nset = { 'motion.time_step_s' = 0.05 }");
     let before = end(&desk);
     desk.commands("set = { 'motion.steps' = 4000 }");
@@ -85,8 +87,8 @@ fn a_push_is_over_by_its_seconds() {
     let said = desk.commands("set = { 'push.0.force_N.0' = 1 }").unwrap();
     assert!(said.contains("from the next step on"), "{said}");
     desk.commands("go_to = 400");
-    let said = desk.commands("set = { 'push.0.force_N.0' = 2 }").unwrap();
-    assert!(said.contains("is over"), "{said}");
+    let over = desk.commands("set = { 'push.0.force_N.0' = 2 }").unwrap();
+    assert!(over.contains("is over"), "{over}");
 }
 
 fn one(key: &str, value: Value) -> Table {
@@ -167,9 +169,11 @@ fn a_time_with_a_sign_counts_from_here() {
 
 #[test]
 fn nudges_that_belong_together_are_one_undo_and_later_ones_another() {
+    fn gravity(desk: &Desk) -> f64 {
+        desk.lab.player().motion().gravity
+    }
     let mut desk = Desk::open("method-2");
     desk.commands("go_to = 100");
-    let gravity = |desk: &Desk| desk.lab.player().motion().gravity;
     let nudge = "nudge = 'motion.gravity_m_per_s2'\n";
     desk.commands(&nudge.repeat(3));
     assert_eq!(gravity(&desk), 10.1);
