@@ -17,6 +17,7 @@ use crate::tui::terminal::MOST_SCREEN_CELLS;
 use crate::tui::theme::ColourChoice;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::error::ErrorKind;
+use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, ValueEnum};
 use std::io;
 use std::num::NonZeroU64;
@@ -314,6 +315,9 @@ impl FromArgMatches for LayoutArgs {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
         let value = |row: &SchemaRow| {
             let name = layout_option_name(row);
+            if matches.value_source(name) != Some(ValueSource::CommandLine) {
+                return None; // the header of a CSV may have another default
+            }
             Some(match row.kind {
                 ValueKind::Flag => matches.get_flag(name).into(),
                 ValueKind::Lines => {
@@ -384,13 +388,18 @@ pub(super) fn time(text: &str) -> Result<f64, String> {
 }
 
 impl LayoutArgs {
-    /// The layout; the process ends where there is none such, as it does where clap refuses.
-    pub(super) fn layout(&self) -> CsvLayout {
-        self.0.clone().check().unwrap_or_else(|error| {
-            let option = error.key.trim_end_matches("_s");
-            let message = format!("--{option}: {}", error.rule);
-            refuse("run", ErrorKind::ValueValidation, &message)
-        })
+    /// The layout in the header of a CSV, `of_header`, with these options over it. The process ends where there is none such,
+    /// as it does where clap refuses.
+    pub(super) fn layout(&self, of_header: LayoutFile) -> CsvLayout {
+        self.0
+            .clone()
+            .or(of_header)
+            .check()
+            .unwrap_or_else(|error| {
+                let option = error.key.trim_end_matches("_s");
+                let message = format!("--{option}: {}", error.rule);
+                refuse("run", ErrorKind::ValueValidation, &message)
+            })
     }
 }
 

@@ -1,25 +1,21 @@
 //! `gyrolab run`: a run from its start to its end, without a terminal.
 
-use super::args::{LayoutArgs, LengthArgs, ScenarioArgs, scenario_of};
-use super::progress::{self, Interrupted, Interruption};
+use super::args::{LayoutArgs, LengthArgs, ScenarioArgs, changed, open};
+use super::progress::{self, Interrupted};
 use super::{ended_by, one_on_stdout, print_result, tell_of_rows};
-use crate::engine::analysis::health::advise;
-use crate::engine::analysis::{Monitor, Readouts};
-use crate::engine::export::stream::{self, Ended};
-use crate::engine::export::{CsvWriter, RunSummary};
-use crate::engine::run::{Clock, Simulation, Step};
-use crate::engine::scenario::Scenario;
+use crate::engine::export::layout::{LayoutFile, above_run_file};
+use crate::engine::export::stream::Ended;
+use crate::engine::export::{CsvLayout, CsvWriter, PlayedRun, RunSummary};
+use crate::engine::run::Clock;
+use crate::engine::scenario::{Document, Problems};
 use crate::engine::text::io_errors::advised;
 use crate::engine::text::number::shortest;
 use crate::engine::text::printable::PrintablePath;
 use anyhow::{Context, anyhow, bail};
 use clap::Args;
-use std::cell::RefCell;
-use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
-use std::time::Duration;
 
 #[derive(Debug, Args)]
 pub(super) struct RunArgs {
@@ -51,29 +47,42 @@ pub(super) struct RunArgs {
 
 pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let to_stdout = one_on_stdout("run", args.output.as_deref(), args.json);
-    let layout = args.layout.layout();
-    let scenario = Arc::new(scenario_of(&args.scenario, &args.length)?);
-    if layout.begins_after(&scenario) {
+    let document = open(&args.scenario.scenario)?;
+    let mut of_header = layout_in_header(&document)?;
+    if args.scenario.changes.is_some() || args.length.is_some() {
+        of_header.note = None; // it is about another run
+    }
+    let layout = args.layout.layout(of_header);
+    let scenario = Arc::new(changed(document, &args.scenario.changes, &args.length)?);
+    if args.output.is_some() && layout.begins_after(&scenario) {
         let end = shortest(Clock::end_s(&scenario));
         bail!("no row is left by --from: the run ends at {end} s");
     }
     let output_path = args.output.as_deref().unwrap_or(Path::new("the output"));
     let (output, interruption) = progress::open(args.output.as_deref(), args.force)?;
-    let csv = output
+    let cannot_write = || cannot_write(output_path);
+    let mut csv = output
         .map(|destination| CsvWriter::with_layout(destination, &scenario, layout))
         .transpose()
-        .with_context(|| cannot_write(output_path))?;
-    let mut played =
-        played(&scenario, csv, |_| {}, &interruption).with_context(|| cannot_write(output_path))?;
+        .with_context(cannot_write)?;
+    let mut played = PlayedRun::play(&scenario, csv.as_mut(), |_| {}, interruption.meter())
+        .map_err(|error| advised(&error))
+        .with_context(cannot_write)?;
+    let rows = csv.as_ref().map(CsvWriter::count);
+    let written = csv
+        .map(CsvWriter::finish)
+        .transpose()
+        .map_err(|error| advised(&error))
+        .with_context(cannot_write)?;
     if played.ended == Ended::Stopped {
         bail!(Interrupted);
     }
-    if played.rows == Some(0) && played.ended == Ended::Done {
+    if rows == Some(0) && played.ended == Ended::Done {
         bail!("no row lies between --from and --to: they are closer than the rows");
     }
-    if let Some(rows) = played.output.take() {
+    if let Some(file) = written {
         interruption.may_keep()?;
-        rows.keep()?;
+        file.keep()?;
     }
     interruption.may_act_at_once()?;
     let readouts = progress::with_clock(CHECKING, || played.readouts());
@@ -81,7 +90,7 @@ pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
         .with_time_steps_of(&scenario)
         .in_full(args.all);
     print_result(&summary, args.output.as_deref(), args.json)?;
-    if let Some(rows) = played.rows.filter(|_| !to_stdout) {
+    if let Some(rows) = rows.filter(|_| !to_stdout) {
         tell_of_rows(rows, output_path);
     }
     let name = args.scenario.scenario.clone();
@@ -89,7 +98,21 @@ pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     Ok(ended_by(broke.map(|error| anyhow!(error).context(name))))
 }
 
-/// What goes on while the readouts at the end of a run are computed.
+/// Returns the layout that stands in the header of the CSV of a run, so that it is written as it was. Any other document has
+/// none: above the run file in the CSV of a fit stands the fit.
+fn layout_in_header(document: &Document) -> Result<LayoutFile, Problems> {
+    let header = document.header_of_csv().unwrap_or_default();
+    let above: toml::Table = above_run_file(header).parse().unwrap_or_default();
+    if above.contains_key("fit") {
+        return Ok(LayoutFile::default());
+    }
+    match CsvLayout::read(header) {
+        Ok(layout) => Ok(layout.file().clone()),
+        Err(problem) => Err(Problems::one(document.origin(), problem)),
+    }
+}
+
+/// The progress message while the readouts at the end of a run are computed.
 pub(super) const CHECKING: &str = "comparing the run with the exact motion";
 
 fn cannot_write(path: &Path) -> String {
@@ -98,76 +121,4 @@ fn cannot_write(path: &Path) -> String {
     } else {
         format!("cannot write {}", PrintablePath(path))
     }
-}
-
-/// A run that was played to its end.
-pub(super) struct FinishedRun<W> {
-    pub(super) ended: Ended,
-    /// Time spent on stepping alone.
-    pub(super) wall: Duration,
-    /// How many rows were written, where there was an output.
-    pub(super) rows: Option<u64>,
-    /// The output, all rows written to it.
-    pub(super) output: Option<W>,
-    simulation: Simulation,
-    monitor: Monitor,
-}
-
-impl<W> FinishedRun<W> {
-    /// What is read off it at its end. Where the run is not to be believed, what would mend it is sought, which takes a
-    /// while.
-    pub(super) fn readouts(&mut self) -> Readouts {
-        let health = self.monitor.health(self.simulation.now());
-        let is_doubtful = health.is_believed() == Some(false);
-        let advice = is_doubtful.then(|| advise(self.simulation.scenario()));
-        Readouts::new(
-            &self.simulation,
-            &mut self.monitor,
-            &health,
-            advice.as_ref(),
-        )
-    }
-}
-
-/// Plays the run of `scenario` to its end and writes its rows to `csv`; `also` is shown the start and every step.
-pub(super) fn played<W: Write>(
-    scenario: &Arc<Scenario>,
-    mut csv: Option<CsvWriter<W>>,
-    mut also: impl FnMut(&Step),
-    interruption: &Interruption,
-) -> io::Result<FinishedRun<W>> {
-    let mut simulation = Simulation::new(Arc::clone(scenario));
-    let monitor = RefCell::new(Monitor::new(simulation.now()));
-    also(simulation.now());
-    // Each step is followed at once; the exact motion is computed after the block, outside the time of stepping.
-    let each = |step: &Step| {
-        monitor.borrow_mut().record_ahead(step);
-        also(step);
-    };
-    let meter = interruption.meter();
-    let ended = stream::play(
-        &mut simulation,
-        scenario.steps,
-        csv.as_mut(),
-        each,
-        |step, steps| {
-            monitor.borrow_mut().catch_up(&mut || meter(step, steps))?;
-            meter(step, steps)
-        },
-    );
-    drop(meter);
-    let (ended, wall) = ended.map_err(|error| advised(&error))?;
-    let rows = csv.as_ref().map(CsvWriter::count);
-    let output = csv
-        .map(CsvWriter::finish)
-        .transpose()
-        .map_err(|error| advised(&error))?;
-    Ok(FinishedRun {
-        ended,
-        wall,
-        rows,
-        output,
-        simulation,
-        monitor: monitor.into_inner(),
-    })
 }

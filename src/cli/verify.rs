@@ -13,8 +13,8 @@ use crate::report::figure::redraw;
 use crate::report::writeup::{CSV, MEASURED_DATA, READOUTS_FILE, RUN_FILE};
 use crate::studies::own_code::{self, Verdict};
 use crate::studies::verify::verify as verified;
-use crate::studies::verify::{Against, Unverified, first_difference, other_version};
-use anyhow::{Context, bail};
+use crate::studies::verify::{FileComparison, Unverified, first_difference, other_version};
+use anyhow::bail;
 use clap::Args;
 use std::ffi::OsString;
 use std::fmt::Display;
@@ -114,18 +114,9 @@ fn folder(folder: &Path, interruption: &Interruption) -> anyhow::Result<bool> {
         .and_then(Value::as_str)
         .unwrap_or(OWN_VERSION);
     let data = measured_in(folder);
-    let against = csv
-        .is_file()
-        .then(|| Against::open(&csv))
-        .transpose()
-        .with_context(|| PrintablePath(&csv).to_string())?;
-    let again = writeup::again(scenario, data.as_deref(), against, &csv, interruption);
-    let (again, compared) = again?;
-    let notes: Vec<_> = other_version(version)
-        .into_iter()
-        .chain([again.verdict()])
-        .collect();
-    let mut is_good = match compared.map(Against::end).transpose()? {
+    let (again, compared) = writeup::again(scenario, data.as_deref(), &csv, interruption)?;
+    let notes = Vec::from_iter(other_version(version).into_iter().chain([again.verdict()]));
+    let mut is_good = match compared.map(FileComparison::end).transpose()? {
         Some((rows, difference)) => say_of_rows(&csv, rows, difference.as_ref(), &notes)?,
         None => say(&csv, "", Some(&MISSING), &notes)?,
     };

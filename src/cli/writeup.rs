@@ -3,18 +3,18 @@
 use super::args::scenario_of;
 use super::args::{LengthArgs, MapArgs, ScenarioArgs};
 use super::progress::{self, Interrupted, Interruption};
-use super::run::{CHECKING, played};
+use super::run::CHECKING;
 use super::{ended_by, tell, tell_notes};
 use crate::engine::data::{self, MeasuredData, doubts};
 use crate::engine::export::stream::Ended;
-use crate::engine::export::{CsvWriter, OutputFolder};
+use crate::engine::export::{CsvWriter, OutputFolder, PlayedRun};
 use crate::engine::journal::changed::Original;
 use crate::engine::scenario::{Document, Scenario};
 use crate::engine::text::io_errors::advised;
 use crate::engine::text::printable::{PrintablePath, printable};
 use crate::report::writeup::figures::{figures, recorder};
 use crate::report::writeup::{CSV, MeasuredComparison, Writeup};
-use crate::studies::verify::Against;
+use crate::studies::verify::FileComparison;
 use anyhow::{Context, anyhow, ensure};
 use clap::Args;
 use std::fs::{self, File};
@@ -94,43 +94,49 @@ pub(super) fn writeup(args: &WriteupArgs) -> anyhow::Result<ExitCode> {
     Ok(ended_by(broken.map(|error| anyhow!(error).context(name))))
 }
 
-/// The write-up of the run of `scenario`, and of the measured data of that name, once more, with its rows held `against` those
-/// of the file `csv`.
+/// The write-up of the run of `scenario`, and of the measured data of that name, once more. Its rows are compared with those
+/// of the file `csv`, where that is there.
 pub(super) fn again(
     scenario: Arc<Scenario>,
     data: Option<&str>,
-    against: Option<Against>,
     csv: &Path,
     interruption: &Interruption,
-) -> anyhow::Result<(Writeup, Option<Against>)> {
+) -> anyhow::Result<(Writeup, Option<FileComparison>)> {
     let measured_data = data
         .map(|name| measured(name, &MapArgs::default()))
         .transpose()?;
+    let beside = measured_data.map(MeasuredComparison::new);
     let cannot_read = || format!("{}: cannot be read", PrintablePath(csv));
-    let csv_against = against
-        .map(|against| CsvWriter::new(against, &scenario))
+    let rows = csv
+        .is_file()
+        .then(|| CsvWriter::new(FileComparison::open(csv)?, &scenario))
         .transpose()
         .with_context(cannot_read)?;
-    made(
-        scenario,
-        measured_data.map(MeasuredComparison::new),
-        csv_against,
-        cannot_read,
-        interruption,
-    )
+    made(scenario, beside, rows, cannot_read, interruption)
 }
 
 /// The write-up of the run of `scenario`, which is played, and its rows written to `csv`.
 fn made<W: Write>(
     scenario: Arc<Scenario>,
     mut beside: Option<MeasuredComparison>,
-    csv: Option<CsvWriter<W>>,
-    cannot: impl FnOnce() -> String,
+    mut csv: Option<CsvWriter<W>>,
+    cannot: impl Fn() -> String,
     interruption: &Interruption,
 ) -> anyhow::Result<(Writeup, Option<W>)> {
     let mut recording = recorder(&scenario, beside.as_ref());
-    let mut run =
-        played(&scenario, csv, |step| recording.follow(step), interruption).with_context(cannot)?;
+    let mut run = PlayedRun::play(
+        &scenario,
+        csv.as_mut(),
+        |step| recording.follow(step),
+        interruption.meter(),
+    )
+    .map_err(|error| advised(&error))
+    .with_context(&cannot)?;
+    let output = csv
+        .map(CsvWriter::finish)
+        .transpose()
+        .map_err(|error| advised(&error))
+        .with_context(&cannot)?;
     ensure!(run.ended != Ended::Stopped, Interrupted);
     let broken = run.ended.not_finite();
     let readouts = progress::with_clock(CHECKING, || run.readouts());
@@ -141,18 +147,21 @@ fn made<W: Write>(
         });
         ensure!(held.map_err(anyhow::Error::msg)?, Interrupted);
     }
-    let (recorded, meter) = (recording.end(broken), interruption.meter());
-    let drawings = figures(&scenario, &readouts, recorded, beside.as_ref(), meter)
-        .map_err(anyhow::Error::msg)?
-        .ok_or(Interrupted)?;
+    let drawings = figures(
+        &scenario,
+        &readouts,
+        recording.end(broken),
+        beside.as_ref(),
+        interruption.meter(),
+    );
     let writeup = Writeup {
         scenario,
         readouts,
         broken,
         beside,
-        drawings,
+        drawings: drawings.map_err(anyhow::Error::msg)?.ok_or(Interrupted)?,
     };
-    Ok((writeup, run.output))
+    Ok((writeup, output))
 }
 
 /// `scenario`; where the command line has changed its motion, its words say so, as in the lab.

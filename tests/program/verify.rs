@@ -56,14 +56,26 @@ fn exports_of_every_kind_are_verified() {
     let excel = ground.read("excel.csv");
     assert!(excel.starts_with("\u{feff}# # excel = true\n# gyrolab = "));
     assert!(excel.contains("\n40;4,0;"));
-    // Each of them runs again.
-    for name in ["part.csv", "points.csv", "excel.csv"] {
+    // Run again, each of them gives the same file; options change what they are about.
+    for name in [
+        "whole.csv",
+        "part.csv",
+        "spin.csv",
+        "points.csv",
+        "excel.csv",
+    ] {
         done(ground.run(&format!("run {name} -o again.csv --force")));
-        done(ground.run("verify again.csv"));
+        assert_eq!(ground.read("again.csv"), ground.read(name), "{name}");
     }
-    let whole = ground.read("whole.csv");
-    done(ground.run("run part.csv -o again.csv --force"));
-    assert_eq!(ground.read("again.csv"), whole);
+    done(ground.run("run part.csv --every 10 --from 0 --columns t_s,z_m -o again.csv --force"));
+    done(ground.run("run whole.csv --every 10 --to 3.5 --columns t_s,z_m -o other.csv"));
+    let rows = |name: &str| ground.read(name).split_once("\nt_s,").unwrap().1.to_owned();
+    assert_eq!(rows("again.csv"), rows("other.csv"));
+    // The columns of a row for each step are not those of a row for each point.
+    done(ground.run("run part.csv --points -o again.csv --force"));
+    done(ground.run("verify again.csv"));
+    done(ground.shell("cat part.csv | $G run - -o again.csv --force"));
+    assert_eq!(ground.read("again.csv"), ground.read("part.csv"));
 }
 
 #[test]

@@ -69,6 +69,22 @@ fn is_false(flag: &bool) -> bool {
 }
 
 impl LayoutFile {
+    /// Its values, and those of `other` where it has none. The columns of a row for each step are none of a row for each
+    /// point.
+    pub fn or(self, other: Self) -> Self {
+        let points = self.points || other.points;
+        let columns = other.columns.filter(|_| points == other.points);
+        Self {
+            every: self.every.or(other.every),
+            from_s: self.from_s.or(other.from_s),
+            to_s: self.to_s.or(other.to_s),
+            columns: self.columns.or(columns),
+            points,
+            excel: self.excel || other.excel,
+            note: self.note.or(other.note),
+        }
+    }
+
     /// The layout, checked.
     pub fn check(mut self) -> Result<CsvLayout, Problem> {
         // No run is longer, and TOML has no larger number.

@@ -2,7 +2,7 @@
 
 use super::checks;
 use super::dotted::{find, is_in, overlap, set_key};
-use super::head::{is_file, read_text, text_of_stream};
+use super::head::{ScenarioText, is_file, read_text, text_of_stream};
 use super::limits;
 use super::problem::{PRESETS_FOLDER, Problem, Problems, at_line, nearest};
 use super::schema::UNKNOWN_KEY;
@@ -19,6 +19,7 @@ use toml::de::{DeTable, DeValue};
 pub struct Document {
     origin: String,
     text: String,
+    is_header_of_csv: bool,
     table: toml::Table,
     set: Vec<SetArgument>,
 }
@@ -54,13 +55,28 @@ impl Document {
     pub fn read(path: &Path) -> Result<Self, Problems> {
         let origin = path.display().to_string();
         let text = read_text(path).map_err(|problem| Problems::one(&*origin, problem))?;
-        Self::parse_header(&origin, &text)
+        Self::parse_found(&origin, text)
     }
 
     /// Reads the same of a stream that is not a figure.
     pub fn read_from(origin: &str, reader: impl Read) -> Result<Self, Problems> {
         let text = text_of_stream(reader).map_err(|problem| Problems::one(origin, problem))?;
-        Self::parse_header(origin, &text)
+        Self::parse_found(origin, text)
+    }
+
+    fn parse_found(origin: &str, text: ScenarioText) -> Result<Self, Problems> {
+        match text {
+            ScenarioText::Whole(text) => Self::parse_header(origin, &text),
+            ScenarioText::Header(text) => Ok(Self {
+                is_header_of_csv: true,
+                ..Self::parse_header(origin, &text)?
+            }),
+        }
+    }
+
+    /// The header of a CSV in which it was found, whose lines have lost their `# `; `None` of any other document.
+    pub fn header_of_csv(&self) -> Option<&str> {
+        self.is_header_of_csv.then_some(&self.text)
     }
 
     pub fn origin(&self) -> &str {
@@ -116,6 +132,7 @@ impl Document {
         Self {
             origin: origin.to_owned(),
             text: String::new(),
+            is_header_of_csv: false,
             table,
             set: Vec::new(),
         }

@@ -109,19 +109,27 @@ pub fn read_whole(path: &Path, most: u64, too_long: &str) -> Result<String, Prob
     utf8(bytes_of(file, most, too_long)?, "")
 }
 
+/// The text of a scenario or a run file, as it was found.
+pub(super) enum ScenarioText {
+    /// In a file of its own, or in a figure.
+    Whole(String),
+    /// In the header of a CSV.
+    Header(String),
+}
+
 /// The text of a scenario, the run file in the header of a CSV, of which no more is read, or the one in a figure.
-pub(super) fn read_text(path: &Path) -> Result<String, Problem> {
+pub(super) fn read_text(path: &Path) -> Result<ScenarioText, Problem> {
     if path.is_dir() {
         return Err(Problem::at("", "is a folder: name a file in it"));
     }
     let mut reader = BufReader::new(File::open(path).map_err(|error| cannot_read(&error))?);
     let figure = FigureFile::read(&mut reader).map_err(|rule| Problem::at("", rule))?;
     if let Some(figure) = figure {
-        return run_of_figure(&figure);
+        return run_of_figure(&figure).map(ScenarioText::Whole);
     }
     let head = Head::read(&mut reader).map_err(|error| cannot_read(&error))?;
     if head.is_of_csv() {
-        return head.run_file();
+        return head.run_file().map(ScenarioText::Header);
     }
     if path.extension().is_some_and(|extension| extension == "csv") {
         let names = String::from_utf8_lossy(EVERY_COLUMN);
@@ -160,21 +168,22 @@ pub fn is_file(name: &str) -> bool {
 }
 
 /// The text of a scenario, or the run file in the header of a CSV, that `stream` holds.
-pub(super) fn text_of_stream(stream: impl Read) -> Result<String, Problem> {
+pub(super) fn text_of_stream(stream: impl Read) -> Result<ScenarioText, Problem> {
     let mut reader = BufReader::new(stream);
     let head = Head::read(&mut reader).map_err(|error| cannot_read(&error))?;
     if head.is_of_csv() {
-        return head.run_file();
+        return head.run_file().map(ScenarioText::Header);
     }
     text_of_file(head.bytes.as_slice().chain(reader))
 }
 
-fn text_of_file(file: impl Read) -> Result<String, Problem> {
+fn text_of_file(file: impl Read) -> Result<ScenarioText, Problem> {
     let text = utf8(
         bytes_of(file, LONGEST_SCENARIO_FILE, limits::SCENARIO_TOO_LONG)?,
         "",
     )?;
-    limits::check_toml_size(&text, 1).map(|()| text)
+    limits::check_toml_size(&text, 1)?;
+    Ok(ScenarioText::Whole(text))
 }
 
 /// The bytes of `file` to its end, of which no more than `most` and one are read.

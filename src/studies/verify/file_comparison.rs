@@ -2,12 +2,10 @@
 
 use crate::engine::scenario::head::Head;
 use crate::engine::text::printable::brief;
-use std::cell::OnceCell;
 use std::fmt;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Cursor, Read, Write};
 use std::path::Path;
-use std::rc::Rc;
 
 /// The most bytes of a line that are read beyond its computed length.
 const MOST_LINE_EXCESS: u64 = 4096;
@@ -29,8 +27,8 @@ impl fmt::Display for FileDifference {
     }
 }
 
-/// Takes what is computed, and compares it with a file line by line up to the first difference.
-pub struct Against {
+/// Compares what is written to it with a file, line by line up to the first difference.
+pub struct FileComparison {
     file: Box<dyn BufRead>,
     pub delimiter: u8,
     /// How many of the first columns say which row it is.
@@ -44,10 +42,10 @@ pub struct Against {
     rows: u64,
     /// The first line that ends in CR LF.
     rewritten: Option<u64>,
-    difference: Rc<OnceCell<FileDifference>>,
+    difference: Option<FileDifference>,
 }
 
-impl Against {
+impl FileComparison {
     /// The CSV of a run with all its rows and columns.
     pub fn open(path: &Path) -> io::Result<Self> {
         let mut file = BufReader::new(File::open(path)?);
@@ -71,18 +69,18 @@ impl Against {
             names: None,
             rows: 0,
             rewritten: None,
-            difference: Rc::default(),
+            difference: None,
         }
     }
 
-    /// The first difference, which is there as soon as it is found.
-    pub fn difference(&self) -> Rc<OnceCell<FileDifference>> {
-        Rc::clone(&self.difference)
+    /// Whether a difference has been found.
+    pub fn differs(&self) -> bool {
+        self.difference.is_some()
     }
 
     /// How many rows are the same, and what differs first.
     pub fn end(mut self) -> io::Result<(u64, Option<FileDifference>)> {
-        if self.difference.get().is_none() {
+        if !self.differs() {
             let more = self.next(MOST_LINE_EXCESS)?;
             if !more.is_empty() {
                 let (line, text) = (self.line, shown(&more));
@@ -98,14 +96,13 @@ impl Against {
                  another program has rewritten the file"
             ));
         }
-        Ok((self.rows, self.difference.get().cloned()))
+        Ok((self.rows, self.difference))
     }
 
     /// This line of the file differs. Only the first difference counts.
-    fn differ(&self, text: String) {
+    fn differ(&mut self, text: String) {
         let line = self.line;
-        self.difference
-            .get_or_init(|| FileDifference { line, text });
+        self.difference.get_or_insert(FileDifference { line, text });
     }
 
     /// The next line of the file with its end, of which no more than `most` bytes are read; empty behind the last.
@@ -205,10 +202,10 @@ impl Against {
     }
 }
 
-impl Write for Against {
+impl Write for FileComparison {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         for part in bytes.split_inclusive(|&byte| byte == b'\n') {
-            if self.difference.get().is_some() {
+            if self.differs() {
                 break;
             }
             self.computed.extend_from_slice(part);
@@ -217,6 +214,23 @@ impl Write for Against {
             }
         }
         Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// Compares as well, and fails from the first difference on, so that what is written need not be computed further.
+pub(super) struct UntilDifference<'a>(pub &'a mut FileComparison);
+
+impl Write for UntilDifference<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.0.write(bytes)?;
+        if self.0.differs() {
+            return Err(io::Error::other("the file differs"));
+        }
+        Ok(written)
     }
 
     fn flush(&mut self) -> io::Result<()> {
