@@ -14,7 +14,7 @@ use crate::physics::scheme;
 use crate::plot::{PT_PER_MM, PageFormat};
 use crate::report::figure::kind::FigureKind;
 use crate::report::figure::of_runs::FigureRun;
-use crate::report::figure::{FigureOptions, FigureSource, WIDTHS_MM};
+use crate::report::figure::{FigureSource, FigureSpec, WIDTHS_MM};
 use crate::studies::table::TableSource;
 use anyhow::{bail, ensure};
 use clap::Args;
@@ -162,7 +162,7 @@ fn width(text: &str) -> Result<f64, String> {
 pub(super) fn figure(args: &FigureArgs) -> anyhow::Result<ExitCode> {
     let mut format = args.labels.format(&args.output)?;
     let source = read_source(args)?;
-    if format == PageFormat::Svg && source.asked.text {
+    if format == PageFormat::Svg && source.spec.text {
         format = PageFormat::SvgText;
     }
     let (output, interruption) = progress::open_for(&args.output, args.force)?;
@@ -220,14 +220,14 @@ fn read_source(args: &FigureArgs) -> anyhow::Result<FigureSource> {
             tell_notes(&doubts(&data, &run.scenario));
         }
         source.measured = Some(Arc::new(data));
-        (source.asked.measured_until_s, source.asked.kind) = (None, None);
+        (source.spec.measured_until_s, source.spec.kind) = (None, None);
     }
-    let asked = &mut source.asked;
-    if asked.labels.names.len() != source.runs.len() {
-        asked.labels.names.clear(); // those of a figure are of other runs
+    let spec = &mut source.spec;
+    if spec.labels.names.len() != source.runs.len() {
+        spec.labels.names.clear(); // those of a figure are of other runs
     }
-    ask(args, asked);
-    for run in source.runs.iter().filter(|_| asked.exact) {
+    ask(args, spec);
+    for run in source.runs.iter().filter(|_| spec.exact) {
         if let Some(why) = cost::why_exact_unavailable(&run.scenario) {
             bail!(
                 "{}: {why}: leave --exact out, or give a shorter --duration",
@@ -269,7 +269,7 @@ fn add(source: &mut FigureSource, name: &str, args: &FigureArgs) -> anyhow::Resu
     }
     source.measured = source.measured.take().or(one.measured);
     source.table = source.table.take().or(one.table);
-    source.asked = one.asked;
+    source.spec = one.spec;
     Ok(())
 }
 
@@ -293,15 +293,15 @@ fn add_runs(
     Ok(())
 }
 
-/// Writes what the command line asks for over what is `asked`.
-fn ask(args: &FigureArgs, asked: &mut FigureOptions) {
-    asked.kind = args.kind.clone().or(asked.kind.take());
-    asked.from_s = args.from.unwrap_or(asked.from_s);
-    asked.to_s = args.to.or(asked.to_s);
-    asked.exact |= args.exact;
-    asked.text |= args.labels.text;
-    asked.width_pt = args.width.map(|mm| mm * PT_PER_MM).or(asked.width_pt);
-    let (given, labels) = (&args.labels, &mut asked.labels);
+/// Writes what the command line asks for over `spec`.
+fn ask(args: &FigureArgs, spec: &mut FigureSpec) {
+    spec.kind = args.kind.clone().or(spec.kind.take());
+    spec.from_s = args.from.unwrap_or(spec.from_s);
+    spec.to_s = args.to.or(spec.to_s);
+    spec.exact |= args.exact;
+    spec.text |= args.labels.text;
+    spec.width_pt = args.width.map(|mm| mm * PT_PER_MM).or(spec.width_pt);
+    let (given, labels) = (&args.labels, &mut spec.labels);
     labels.title = given.title.clone().or(labels.title.take());
     labels.x = given.x_label.clone().or(labels.x.take());
     for (texts, list) in [

@@ -16,10 +16,10 @@ use crate::engine::journal::next_push::Toward;
 use crate::engine::scenario::file::Choice;
 use crate::engine::scenario::keys::KEYS;
 use crate::engine::scenario::kind::ValueKind;
-use crate::engine::scenario::screen::TRACES;
 use crate::engine::scenario::{Problem, Problems};
 use crate::lab::playback::pace::Speed;
 use crate::lab::view::{Pane, ViewSettings};
+use crate::report::figure::FigureSpec;
 use form::ValueSchema::{self, Is, View};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -64,7 +64,7 @@ pub enum Command {
     /// Does this many undone acts again.
     Redo(u32),
     Export(Export),
-    Figure(FigureCommand),
+    Figure(Box<FigureCommand>),
     Save(Save),
     Speed(Speed),
     /// Time at the left edge of the traces, s; `None`: they follow the run.
@@ -202,21 +202,14 @@ pub struct Export {
 pub struct FigureCommand {
     /// The file; its name's end says in which form.
     pub path: String,
-    /// What it shows: traces, above, 3d, or columns.
-    #[serde(default = "traces")]
-    pub kind: String,
-    /// Whether the exact motion is drawn beside it.
-    #[serde(default)]
-    pub exact: bool,
+    /// Of which a command sets the kind, and whether the exact motion is drawn.
+    #[serde(flatten)]
+    pub spec: FigureSpec,
     /// Up to this step instead of the present one.
     pub to_step: Option<u64>,
     /// Whether an existing file is replaced.
     #[serde(default)]
     pub force: bool,
-}
-
-fn traces() -> String {
-    TRACES.to_owned()
 }
 
 /// Writes the run up to a step as a run file, or the present state as a scenario.

@@ -17,6 +17,7 @@ use crate::engine::scenario::Scenario;
 use crate::engine::scenario::keys::Effect;
 use crate::engine::text::printable::PrintablePath;
 use crate::lab::storage::exporting::{self, Estimate};
+use crate::report::figure::FigureSpec;
 use indicatif::{DecimalBytes, HumanCount};
 use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};
@@ -254,13 +255,16 @@ impl Dialog {
                 to_step: Some(scenario.steps),
                 force,
             }),
-            DialogKind::Figure(to_step) => Command::Figure(FigureCommand {
+            DialogKind::Figure(to_step) => Command::Figure(Box::new(FigureCommand {
                 path,
-                kind: self.form.text(1).trim().to_owned(),
-                exact: player.run().overlay().is_some(),
+                spec: FigureSpec {
+                    kind: Some(self.form.text(1).trim().to_owned()),
+                    exact: player.run().overlay().is_some(),
+                    ..FigureSpec::default()
+                },
                 to_step: Some(*to_step),
                 force,
-            }),
+            })),
             DialogKind::SaveRun(to_step) => Command::Save(Save {
                 path,
                 from_here: false,

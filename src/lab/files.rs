@@ -8,12 +8,15 @@ use crate::engine::data::{self, MeasuredData};
 use crate::engine::export::Destination;
 use crate::engine::export::destination::DestinationError;
 use crate::engine::scenario::limits::{LONGEST_SCENARIO_FILE, SCENARIO_TOO_LONG, check_toml_size};
+use crate::engine::scenario::screen::TRACES;
 use crate::engine::scenario::{Document, Problem, Problems, Scenario, presets};
 use crate::engine::text::printable::{PrintablePath, is_steering};
 use crate::lab::storage::confined::Confined;
-use crate::lab::storage::exporting::{self, Exporting, FigureInput, Written};
+use crate::lab::storage::exporting::{self, Exporting, Written};
 use crate::plot::PageFormat;
 use crate::report::figure::kind::FigureKind;
+use crate::report::figure::of_runs::FigureRun;
+use crate::report::figure::{FigureSource, FigureSpec};
 use indicatif::{DecimalBytes, HumanCount};
 use std::borrow::Cow;
 use std::io::Write;
@@ -138,14 +141,19 @@ impl Files {
         let scenario = run_up_to(figure.to_step, "draw", runs, player)?;
         let path = self.path_of(&figure.path);
         self.may_export_to(&path)?;
-        let kind = &figure.kind;
-        let drawn = FigureInput {
-            kind: FigureKind::named(kind).map_err(|refusal| format!("kind {kind} {refusal}"))?,
-            exact: figure.exact,
+        let kind = figure.spec.kind.as_deref().unwrap_or(TRACES);
+        let kind = FigureKind::named(kind).map_err(|refusal| format!("kind {kind} {refusal}"))?;
+        let source = FigureSource {
+            spec: FigureSpec {
+                kind: Some(kind.name()),
+                ..figure.spec.clone()
+            },
+            runs: vec![FigureRun::titled(scenario)],
             measured,
-            format: PageFormat::of(&path).map_err(|refusal| refusal.to_string())?,
+            table: None,
         };
-        let begun = Exporting::begin_figure(scenario, &path, drawn, figure.force);
+        let format = PageFormat::of(&path).map_err(|refusal| refusal.to_string())?;
+        let begun = Exporting::begin_figure(source, &path, format, figure.force);
         self.begin(begun, "the figure is drawn in the background")
     }
 

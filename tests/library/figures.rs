@@ -11,8 +11,8 @@ use gyrolab::plot::{PageFormat, PageScene, Paint, Point, SceneItem, write};
 use gyrolab::report::figure::course::{RunSampler, SampleRequest, SampledRun};
 use gyrolab::report::figure::kind::FigureKind;
 use gyrolab::report::figure::labels::FigureLabels;
-use gyrolab::report::figure::of_runs::{self, DrawnFigure, FigureRequest, FigureRun, KnownNumbers};
-use gyrolab::report::figure::of_table;
+use gyrolab::report::figure::of_runs::{self, DrawnFigure, FigureRun, KnownNumbers};
+use gyrolab::report::figure::{FigureSource, FigureSpec, of_table};
 use gyrolab::studies::table::TableSource;
 use nalgebra::Vector3;
 use proptest::prelude::*;
@@ -37,23 +37,26 @@ fn run(preset: &str, set: &[&str]) -> FigureRun {
     }
 }
 
-fn request(kind: &str) -> FigureRequest {
-    FigureRequest {
-        kind: FigureKind::named(kind).unwrap(),
-        from_s: 0.0,
-        to_s: None,
-        exact: false,
-        measured: None,
-        width_pt: COLUMN_PT,
-        labels: FigureLabels::default(),
+fn spec(kind: &str) -> FigureSpec {
+    FigureSpec {
+        kind: Some(kind.to_owned()),
+        ..FigureSpec::default()
     }
 }
 
 /// A figure of this kind with the exact motion.
-fn with_exact(kind: &str) -> FigureRequest {
-    FigureRequest {
+fn with_exact(kind: &str) -> FigureSpec {
+    FigureSpec {
         exact: true,
-        ..request(kind)
+        ..spec(kind)
+    }
+}
+
+fn source(runs: &[FigureRun], spec: &FigureSpec) -> FigureSource {
+    FigureSource {
+        spec: spec.clone(),
+        runs: runs.to_vec(),
+        ..FigureSource::default()
     }
 }
 
@@ -61,12 +64,12 @@ fn go_on(_: u64, _: u64) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-fn drawn(runs: &[FigureRun], request: &FigureRequest) -> DrawnFigure {
-    of_runs::figure(runs, request, go_on).unwrap().unwrap()
+fn drawn(runs: &[FigureRun], spec: &FigureSpec) -> DrawnFigure {
+    source(runs, spec).draw(go_on).unwrap().unwrap()
 }
 
-fn refusal(runs: &[FigureRun], request: &FigureRequest) -> String {
-    of_runs::figure(runs, request, go_on).unwrap_err()
+fn refusal(runs: &[FigureRun], spec: &FigureSpec) -> String {
+    source(runs, spec).draw(go_on).unwrap_err()
 }
 
 /// All that is said of a figure.
@@ -200,12 +203,12 @@ fn every_preset_has_a_tidy_figure_of_every_kind() {
             "energy_J,Lx_Js,azimuth_deg,step,segment",
         ] {
             for (width_mm, exact) in [(178.0, true), (40.0, false)] {
-                let request = FigureRequest {
+                let asked = FigureSpec {
                     exact,
-                    width_pt: width_mm * 72.0 / 25.4,
-                    ..request(kind)
+                    width_pt: Some(width_mm * 72.0 / 25.4),
+                    ..spec(kind)
                 };
-                let figure = drawn(&runs, &request);
+                let figure = drawn(&runs, &asked);
                 is_tidy(&figure.scene)
                     .unwrap_or_else(|why| panic!("{name} {kind} {width_mm}: {why}"));
                 assert!(
@@ -221,7 +224,7 @@ fn every_preset_has_a_tidy_figure_of_every_kind() {
 #[test]
 fn traces_show_x_y_and_z_with_units_and_every_extreme() {
     let runs = [run("wobble-push", &[])];
-    let figure = drawn(&runs, &request("traces"));
+    let figure = drawn(&runs, &spec("traces"));
     let axes = ["x (m)", "y (m)", "z (m)", "t (s)"];
     says(&figure.scene, &axes);
     says(&figure.scene, &["0", "200", "−1.0", "0.8"]);
@@ -250,7 +253,7 @@ fn traces_show_x_y_and_z_with_units_and_every_extreme() {
 #[test]
 fn a_path_from_above_is_true_to_scale() {
     let runs = [run("cusps", &[])];
-    let figure = drawn(&runs, &request("above"));
+    let figure = drawn(&runs, &spec("above"));
     says(&figure.scene, &["x (m)", "y (m)"]);
     let panels = panels(&figure.scene);
     assert_eq!(panels.len(), 1);
@@ -268,7 +271,7 @@ fn a_path_from_above_is_true_to_scale() {
 
 #[test]
 fn a_path_in_space_has_three_axes_and_a_shadow() {
-    let figure = drawn(&[run("cusps", &[])], &request("3d"));
+    let figure = drawn(&[run("cusps", &[])], &spec("3d"));
     says(&figure.scene, &["x (m)", "y (m)", "z (m)"]);
     let greys: BTreeSet<u8> = figure
         .scene
@@ -380,7 +383,7 @@ fn a_run_of_the_exact_motion_is_not_drawn_twice() {
 #[test]
 fn z_says_in_space_how_far_it_is_stretched() {
     let stretched = |preset: &str| {
-        let figure = drawn(&[run(preset, &[])], &request("3d"));
+        let figure = drawn(&[run(preset, &[])], &spec("3d"));
         is_tidy(&figure.scene).unwrap();
         let mut words = words(&figure.scene).into_iter();
         let stretched = words.find(|words| words.starts_with("z stretched"));
@@ -392,7 +395,7 @@ fn z_says_in_space_how_far_it_is_stretched() {
 
 #[test]
 fn runs_beside_each_other_are_named_by_what_differs() {
-    let figure = |runs: &[FigureRun]| drawn(runs, &request("z_m")).scene;
+    let figure = |runs: &[FigureRun]| drawn(runs, &spec("z_m")).scene;
     let cusps = |set: &str| run("cusps", &[set, "motion.steps=300"]);
     let schemes = ["report", "rk4"].map(|name| cusps(&format!("motion.scheme={name}")));
     let schemes = figure(&schemes);
@@ -413,10 +416,10 @@ fn runs_beside_each_other_are_named_by_what_differs() {
 #[test]
 fn a_stretch_of_time_is_cut_out_and_one_beyond_the_run_is_refused() {
     let runs = [run("wobble-push", &[])];
-    let part = |from_s: f64, to_s: Option<f64>| FigureRequest {
+    let part = |from_s: f64, to_s: Option<f64>| FigureSpec {
         from_s,
         to_s,
-        ..request("z_m")
+        ..spec("z_m")
     };
     let figure = drawn(&runs, &part(50.0, Some(60.0)));
     says(&figure.scene, &["50", "60"]);
@@ -438,7 +441,7 @@ fn a_stretch_of_time_is_cut_out_and_one_beyond_the_run_is_refused() {
 fn a_run_of_one_step_has_a_figure() {
     let runs = [run("method-2", &["motion.steps=1"])];
     for kind in ["traces", "above", "3d"] {
-        let figure = drawn(&runs, &request(kind));
+        let figure = drawn(&runs, &spec(kind));
         is_tidy(&figure.scene).unwrap();
         write(&figure.scene, PageFormat::Svg, None).unwrap();
     }
@@ -446,7 +449,7 @@ fn a_run_of_one_step_has_a_figure() {
 
 #[test]
 fn a_constant_curve_has_an_axis_with_room() {
-    let figure = drawn(&[run("torque-free", &[])], &request("Lz_Js"));
+    let figure = drawn(&[run("torque-free", &[])], &spec("Lz_Js"));
     is_tidy(&figure.scene).unwrap();
     assert!(words(&figure.scene).len() > 6);
 }
@@ -456,7 +459,7 @@ fn a_constant_curve_has_an_axis_with_room() {
 fn rounding_is_drawn_as_a_flat_line() {
     let runs = [run("heidelberg", &["motion.steps=2000"])];
     for kind in ["z_m", "traces", "3d"] {
-        let figure = drawn(&runs, &request(kind));
+        let figure = drawn(&runs, &spec(kind));
         assert_eq!(figure.told().next(), None, "{kind}");
         says(&figure.scene, &["z (m)"]);
         let [.., last] = panels(&figure.scene)[..] else {
@@ -469,7 +472,7 @@ fn rounding_is_drawn_as_a_flat_line() {
         }
     }
     let upright = [run("heidelberg", &["start.tilt_deg=0", "motion.steps=200"])];
-    let figure = drawn(&upright, &request("above"));
+    let figure = drawn(&upright, &spec("above"));
     says(&figure.scene, &["x (m)", "y (m)"]);
 }
 
@@ -481,7 +484,7 @@ fn a_black_figure_proposes_a_stretch_that_is_not() {
         ("fast-top", "3d"),
     ] {
         let runs = [run(name, &[])];
-        let figure = drawn(&runs, &request(kind));
+        let figure = drawn(&runs, &spec(kind));
         let told = |figure: &DrawnFigure| -> Vec<String> {
             let mut told = told(figure);
             told.retain(|told| !told.contains("drawn as points"));
@@ -493,9 +496,9 @@ fn a_black_figure_proposes_a_stretch_that_is_not() {
         has(&warning, "told apart");
         let (_, proposed) = warning.split_once("--to ").unwrap();
         let to_s: f64 = proposed.split(' ').next().unwrap().parse().unwrap();
-        let part = FigureRequest {
+        let part = FigureSpec {
             to_s: Some(to_s),
-            ..request(kind)
+            ..spec(kind)
         };
         assert!(told(&drawn(&runs, &part)).is_empty(), "{name} {kind}");
     }
@@ -505,7 +508,7 @@ fn a_black_figure_proposes_a_stretch_that_is_not() {
         ("cusps", "above"),
         ("cusps", "3d"),
     ] {
-        let figure = drawn(&[run(name, &[])], &request(kind));
+        let figure = drawn(&[run(name, &[])], &spec(kind));
         assert_eq!(figure.dense, None, "{name} {kind}");
     }
 }
@@ -548,7 +551,7 @@ fn curves_that_are_not_told_apart_are_bands_beside_a_magnified_stretch() {
 #[test]
 fn the_exact_motion_between_its_steps_is_drawn_too() {
     let set = ["motion.scheme=exact", "motion.steps=2300"];
-    let figure = drawn(&[run("method-2", &set)], &request("tilt_deg"));
+    let figure = drawn(&[run("method-2", &set)], &spec("tilt_deg"));
     // Its nutation of 0.0201 s is no swing of 3.85 s.
     let told = told(&figure).join("; ");
     has(told, "about 11");
@@ -569,9 +572,9 @@ fn words_and_axes_are_those_that_were_asked_for() {
         is_log: [true, true],
         y_range: Some((0.5, 2.0)),
     };
-    let asked = |kind: &str, labels: &FigureLabels| FigureRequest {
+    let asked = |kind: &str, labels: &FigureLabels| FigureSpec {
         labels: labels.clone(),
-        ..request(kind)
+        ..spec(kind)
     };
     let figure = drawn(&runs, &asked("z_m", &own));
     is_tidy(&figure.scene).unwrap();
@@ -613,7 +616,7 @@ fn words_and_axes_are_those_that_were_asked_for() {
 #[test]
 fn a_run_that_is_not_to_be_believed_is_told() {
     let runs = [run("wobble-push", &[]), run("cusps", &[])];
-    for asked in [request("traces"), request("above"), with_exact("tilt_deg")] {
+    for asked in [spec("traces"), spec("above"), with_exact("tilt_deg")] {
         let told = told(&drawn(&runs, &asked));
         let [only] = &told[..] else {
             panic!("{told:?}")
@@ -628,7 +631,7 @@ fn a_run_that_is_not_to_be_believed_is_told() {
 fn lines_between_too_few_steps_of_a_nutation_are_told() {
     let told = |time_step: &str, kind: &str| {
         let set = [time_step, "motion.steps=500", "motion.scheme=exact"];
-        told(&drawn(&[run("fast-top", &set)], &request(kind)))
+        told(&drawn(&[run("fast-top", &set)], &spec(kind)))
     };
     let begin = "fast-top has 4.16 time steps in a nutation of 0.0831 s: ";
     let few = |time_step: &str, kind: &str| {
@@ -647,7 +650,7 @@ fn more_curves_than_kinds_of_line_are_told() {
     let names = "cusps loops waves steady-slow steady-fast falling sleeping";
     let runs = names.split(' ').map(|name| run(name, &["motion.steps=20"]));
     let runs: Vec<FigureRun> = runs.collect();
-    let told = |count: usize| told(&drawn(&runs[..count], &request("tilt_deg")));
+    let told = |count: usize| told(&drawn(&runs[..count], &spec("tilt_deg")));
     assert!(told(6).is_empty());
     let [only] = &told(7)[..] else {
         panic!("{:?}", told(7))
@@ -660,7 +663,7 @@ fn an_error_in_the_last_digits_is_drawn_flat() {
     // A steady precession keeps its tilt; the scheme changes it in the tenth digit.
     let runs = [run("steady-slow", &[])];
     for kind in ["tilt_deg", "3d", "traces"] {
-        let figure = drawn(&runs, &request(kind));
+        let figure = drawn(&runs, &spec(kind));
         let words = words(&figure.scene);
         assert!(!words.iter().any(|word| word.contains("10⁻")), "{words:?}");
     }
@@ -668,7 +671,7 @@ fn an_error_in_the_last_digits_is_drawn_flat() {
 
 #[test]
 fn the_exact_motion_is_a_smooth_curve_beside_few_steps() {
-    let asked = FigureRequest {
+    let asked = FigureSpec {
         from_s: 0.5,
         to_s: Some(0.52),
         ..with_exact("z_m")
@@ -684,23 +687,24 @@ fn the_exact_motion_is_a_smooth_curve_beside_few_steps() {
 #[test]
 fn figures_that_are_drawn_together_are_those_drawn_alone() {
     let runs = [run("wobble-push", &[]), run("method-2", &[])];
-    let part = FigureRequest {
+    let part = FigureSpec {
         to_s: Some(20.0),
-        ..request("tilt_deg")
+        ..spec("tilt_deg")
     };
-    let [energy, above, traces] = ["energy_J", "above", "traces"].map(request);
-    let requests = [energy, part, above, traces];
+    let [energy, above, traces] = ["energy_J", "above", "traces"].map(spec);
+    let specs = [energy, part, above, traces];
+    let sources = specs.each_ref().map(|spec| source(&runs, spec));
     let mut ends = 0;
-    let together = of_runs::figures(&runs, &requests, &KnownNumbers::default(), |step, last| {
+    let together = of_runs::figures(&sources, &KnownNumbers::default(), |step, last| {
         ends += u32::from(step == last);
         ControlFlow::Continue(())
     });
     let together = together.unwrap().unwrap();
     // Each run once for the whole of it, and once for its beginning.
     assert!(ends <= 4, "{ends}");
-    assert_eq!(together.len(), requests.len());
-    for (figure, request) in together.iter().zip(&requests) {
-        let alone = drawn(&runs, request);
+    assert_eq!(together.len(), sources.len());
+    for (figure, spec) in together.iter().zip(&specs) {
+        let alone = drawn(&runs, spec);
         assert_eq!(figure.scene, alone.scene);
         assert_eq!(figure.warnings, alone.warnings);
     }
@@ -709,14 +713,14 @@ fn figures_that_are_drawn_together_are_those_drawn_alone() {
 #[test]
 fn a_run_that_breaks_is_drawn_up_to_there() {
     let push = "push.0={point=\"top\", force_N=[1e300,0,0], first_step=25, steps=1}";
-    let figure = drawn(&[run("method-2", &[push])], &request("traces"));
+    let figure = drawn(&[run("method-2", &[push])], &spec("traces"));
     let broke = figure.broke.unwrap();
     assert!(broke.contains("no longer finite at step 25"), "{broke}");
     says(&figure.scene, &["x (m)", "2.0"]);
     // Where it breaks before the stretch that is asked for, there is no picture.
-    let late = FigureRequest {
+    let late = FigureSpec {
         from_s: 10.0,
-        ..request("traces")
+        ..spec("traces")
     };
     let refusal = refusal(&[run("method-2", &[push])], &late);
     assert!(refusal.contains("step 25"), "{refusal}");
@@ -766,40 +770,36 @@ fn what_was_recorded_of_a_run_is_not_played_again() {
             ("3d", Some(end_s)),
             ("x_m", Some(end_s)),
         ] {
-            let request = FigureRequest {
-                to_s,
-                ..request(kind)
-            };
-            let requests = std::slice::from_ref(&request);
-            let mut asked = 0;
-            let figures = of_runs::figures(&runs, requests, &known, |_, _| {
-                asked += 1;
+            let asked = FigureSpec { to_s, ..spec(kind) };
+            let sources = [source(&runs, &asked)];
+            let mut calls = 0;
+            let figures = of_runs::figures(&sources, &known, |_, _| {
+                calls += 1;
                 ControlFlow::Continue(())
             });
-            let alone = drawn(&runs, &request);
+            let alone = drawn(&runs, &asked);
             assert_eq!(figures.unwrap().unwrap()[0].scene, alone.scene, "{kind}");
-            assert_eq!(asked, 0, "{name}: {kind} was played");
+            assert_eq!(calls, 0, "{name}: {kind} was played");
         }
         // What was not recorded is played.
-        let begins_later = FigureRequest {
+        let begins_later = FigureSpec {
             from_s: 1.0,
-            ..request("z_m")
+            ..spec("z_m")
         };
-        let ends_earlier = FigureRequest {
+        let ends_earlier = FigureSpec {
             to_s: Some(2.0),
-            ..request("z_m")
+            ..spec("z_m")
         };
-        for request in [request("energy_J"), begins_later, ends_earlier] {
-            let requests = std::slice::from_ref(&request);
-            let figures = of_runs::figures(&runs, requests, &known, go_on);
-            let alone = drawn(&runs, &request);
+        for asked in [spec("energy_J"), begins_later, ends_earlier] {
+            let sources = [source(&runs, &asked)];
+            let figures = of_runs::figures(&sources, &known, go_on);
+            let alone = drawn(&runs, &asked);
             assert_eq!(figures.unwrap().unwrap()[0].scene, alone.scene, "{name}");
         }
         // Of two runs nobody knows which of them it was.
         let two = [run("method-2", &["motion.steps=250"]), runs[0].clone()];
-        let request = request("z_m");
-        let together = of_runs::figures(&two, std::slice::from_ref(&request), &known, go_on);
-        let alone = drawn(&two, &request);
+        let together = of_runs::figures(&[source(&two, &spec("z_m"))], &known, go_on);
+        let alone = drawn(&two, &spec("z_m"));
         assert_eq!(together.unwrap().unwrap()[0].scene, alone.scene, "{name}");
     }
 }
@@ -807,7 +807,7 @@ fn what_was_recorded_of_a_run_is_not_played_again() {
 #[test]
 fn a_watcher_can_stop_it() {
     let long = [run("method-2", &["motion.steps=20000"])];
-    let figure = of_runs::figure(&long, &request("traces"), |_, _| ControlFlow::Break(()));
+    let figure = source(&long, &spec("traces")).draw(|_, _| ControlFlow::Break(()));
     assert!(figure.is_ok_and(|figure| figure.is_none()));
 }
 

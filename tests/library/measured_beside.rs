@@ -6,15 +6,14 @@ use crate::support::scenarios::{preset, resumed};
 use crate::support::stage::{LARGE, SMALL, Stage};
 use crate::support::words::{has, has_all};
 use gyrolab::engine::data::compared::Sum;
-use gyrolab::engine::data::{self, ColumnOptions, MeasuredData, RunQuantity};
+use gyrolab::engine::data::{self, ColumnOptions, RunQuantity};
 use gyrolab::engine::run::Simulation;
 use gyrolab::engine::scenario::Scenario;
 use gyrolab::lab::Lab;
 use gyrolab::lab::storage::confined::Confined;
 use gyrolab::plot::{Paint, Point, SceneItem};
-use gyrolab::report::figure::kind::FigureKind;
-use gyrolab::report::figure::labels::FigureLabels;
-use gyrolab::report::figure::of_runs::{self, DrawnFigure, FigureRequest, FigureRun, KnownNumbers};
+use gyrolab::report::figure::of_runs::{self, DrawnFigure, FigureRun, KnownNumbers};
+use gyrolab::report::figure::{FigureSource, FigureSpec};
 use ratatui::layout::Rect;
 use std::fmt::Write;
 use std::fs;
@@ -220,25 +219,21 @@ fn figure(kind: Option<&str>, text: &str) -> DrawnFigure {
 }
 
 fn figure_with(kind: Option<&str>, text: &str, known: &KnownNumbers) -> DrawnFigure {
-    let measured: MeasuredData = data::read("bench.csv", text).unwrap();
-    let kind = match kind {
-        Some(kind) => FigureKind::named(kind).unwrap(),
-        None => FigureKind::measured(measured.series().unwrap()),
+    let source = FigureSource {
+        spec: FigureSpec {
+            kind: kind.map(str::to_owned),
+            width_pt: Some(250.0),
+            ..FigureSpec::default()
+        },
+        runs: vec![FigureRun {
+            scenario: Arc::new(preset("method-2", &["motion.steps=200"])),
+            named: "method-2".to_owned(),
+        }],
+        measured: Some(Arc::new(data::read("bench.csv", text).unwrap())),
+        table: None,
     };
-    let request = FigureRequest {
-        kind,
-        from_s: 0.0,
-        to_s: None,
-        exact: false,
-        measured: Some(Arc::new(measured)),
-        width_pt: 250.0,
-        labels: FigureLabels::default(),
-    };
-    let run = FigureRun {
-        scenario: Arc::new(preset("method-2", &["motion.steps=200"])),
-        named: "method-2".to_owned(),
-    };
-    let figures = of_runs::figures(&[run], &[request], known, |_, _| ControlFlow::Continue(()));
+    let go_on = |_, _| ControlFlow::Continue(());
+    let figures = of_runs::figures(&[source], known, go_on);
     figures.unwrap().unwrap().remove(0)
 }
 

@@ -2,7 +2,6 @@
 //! from this machine.
 
 use super::at_exit::{self, Registered, Release};
-use crate::engine::data::MeasuredData;
 use crate::engine::export::destination::{Destination, DestinationError};
 use crate::engine::export::stream::{self, Ended};
 use crate::engine::export::{COLUMNS, CsvLayout, CsvWriter};
@@ -11,9 +10,8 @@ use crate::engine::scenario::Scenario;
 use crate::engine::text::printable::printable;
 use crate::lab::playback::live::integration_cost;
 use crate::plot::PageFormat;
-use crate::report::figure::kind::FigureKind;
-use crate::report::figure::of_runs::{EXACT_BESIDE, FigureRun};
-use crate::report::figure::{FigureOptions, FigureSource};
+use crate::report::figure::FigureSource;
+use crate::report::figure::of_runs::EXACT_BESIDE;
 use std::ffi::OsStr;
 use std::io;
 use std::num::NonZeroU64;
@@ -41,16 +39,6 @@ pub struct Written {
     pub warnings: Vec<String>,
     /// Where the run's numbers stopped being finite, if they did. The file has the rows before that.
     pub not_finite: Option<NotFinite>,
-}
-
-/// What a figure shows of a run.
-#[derive(Clone, Debug)]
-pub struct FigureInput {
-    pub kind: FigureKind,
-    /// Whether the exact motion stands beside the run.
-    pub exact: bool,
-    pub measured: Option<Arc<MeasuredData>>,
-    pub format: PageFormat,
 }
 
 #[derive(Default)]
@@ -84,20 +72,21 @@ impl Exporting {
         begin().map_err(|error| DestinationError::refused(path, error))
     }
 
-    /// Starts drawing a figure of the run of `scenario`, a column of a page wide, to the file `path`. It writes the same bytes
-    /// as `gyrolab figure -o`. The file appears once it is complete.
+    /// Starts drawing the figure of `source` to the file `path` in this `format`. It writes the same bytes as
+    /// `gyrolab figure -o`. The file appears once it is complete.
     pub fn begin_figure(
-        scenario: Arc<Scenario>,
+        source: FigureSource,
         path: &Path,
-        drawn: FigureInput,
+        format: PageFormat,
         replace: bool,
     ) -> Result<Self, DestinationError> {
         let output = Destination::open_file(path, replace)?;
         let begin = || {
             let full = std::path::absolute(path)?;
-            let (steps, written) = (scenario.steps, full.clone());
-            Self::spawn(full, steps, move |shared| {
-                draw(scenario, output, written, drawn, shared)
+            let steps = source.runs.iter().map(|run| run.scenario.steps).max();
+            let written = full.clone();
+            Self::spawn(full, steps.unwrap_or_default(), move |shared| {
+                draw(&source, output, written, format, shared)
             })
         };
         begin().map_err(|error| DestinationError::refused(path, error))
@@ -228,33 +217,20 @@ fn write(
     })
 }
 
-/// Draws the run of `scenario` on `output`, which becomes the file `path`.
+/// Draws the figure of `source` on `output`, which becomes the file `path`.
 fn draw(
-    scenario: Arc<Scenario>,
+    source: &FigureSource,
     output: Destination,
     path: PathBuf,
-    drawn: FigureInput,
+    format: PageFormat,
     shared: &Shared,
 ) -> Result<Written, String> {
-    let source = FigureSource {
-        asked: FigureOptions {
-            kind: Some(drawn.kind.name()),
-            exact: drawn.exact,
-            ..FigureOptions::default()
-        },
-        runs: vec![FigureRun {
-            named: scenario.file.title.clone(),
-            scenario,
-        }],
-        measured: drawn.measured,
-        table: None,
-    };
     let figure = source
         .draw(|step, _| shared.reach(step))?
         .filter(|_| shared.reach(shared.steps).is_continue())
         .ok_or("the figure was stopped, and nothing was written")?;
     let bytes = source
-        .write(&figure.scene, drawn.format)
+        .write(&figure.scene, format)
         .map_err(|error| error.to_string())?;
     output
         .write_and_keep(&bytes)

@@ -5,8 +5,8 @@
 //! a line with more points, though over a very long stretch of time they are too few as well.
 
 use super::course::SampledRun;
+use super::job::SampledRunNumbers;
 use super::path::TracedPath;
-use super::request::SampledRunNumbers;
 use crate::plot::chart::SeriesStyle;
 
 /// What the legend says of points that are not joined.

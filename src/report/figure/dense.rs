@@ -2,11 +2,13 @@
 //! which they are.
 
 use super::course::{Bin, SampledRun};
+use super::job::{Dense, SampledRunNumbers};
 use super::path::TracedPath;
-use super::request::{Dense, FigureRequest, SampledRunNumbers};
+use super::spec::FigureSpec;
 use crate::engine::export::CsvColumn;
 use crate::engine::recording::Extent;
 use crate::engine::text::nice_numbers;
+use crate::plot::PT_PER_MM;
 use crate::plot::chart::Chart;
 use crate::plot::chart::curve;
 use crate::plot::chart::layout::{ChartLayout, PlacedPanel};
@@ -86,7 +88,7 @@ pub(super) fn over_time(
     chart: &Chart,
     columns: &[&'static CsvColumn],
     drawn: &[SampledRunNumbers],
-    request: &FigureRequest,
+    spec: &FigureSpec,
 ) -> Option<Dense> {
     if chart.x.is_log {
         return None; // swings are ever denser along it
@@ -99,7 +101,7 @@ pub(super) fn over_time(
             let columns = Columns::new(&drawn.course.parts(column), placed);
             let is_dense = columns.are_dense(series.style.width_pt, placed);
             let swing_s = drawn.course.swing_s.unwrap_or(f64::INFINITY);
-            let swings = (drawn.course.end_s - request.from_s) / swing_s;
+            let swings = (drawn.course.end_s - spec.from_s) / swing_s;
             is_dense.then(|| columns.turns().max((2.0 * swings) as u64))
         })
     });
@@ -107,13 +109,13 @@ pub(super) fn over_time(
     let turns = all.max()?;
     let (_, end_s) = layout.panels.first()?.x.range;
     // The axis may begin before the run, so that a measured point at 0 has room.
-    let window_s = 2.0 * MAGNIFIED_SWINGS * (end_s - request.from_s) / turns as f64;
+    let window_s = 2.0 * MAGNIFIED_SWINGS * (end_s - spec.from_s) / turns as f64;
     let what = format!(
         "on {} mm about {} swings are not told apart: they are drawn as a band from the least to the greatest, with a stretch of it magnified",
-        width_mm(request),
+        width_mm(spec),
         turns / 2
     );
-    Some(proposal(window_s, request, what))
+    Some(proposal(window_s, spec, what))
 }
 
 /// Makes those curves of `chart` bands that are too dense in its places; in a panel with one of them the others too that
@@ -156,7 +158,7 @@ const LOOSE: f64 = 0.3;
 /// is dense, of the exact motion.
 pub(super) fn of_paths(
     drawn: &[SampledRunNumbers],
-    request: &FigureRequest,
+    spec: &FigureSpec,
     path: fn(&SampledRun) -> &TracedPath,
     place: impl Fn(&[f64; 3]) -> Point,
 ) -> Option<Dense> {
@@ -173,12 +175,12 @@ pub(super) fn of_paths(
         }
         let length_pt: f64 = lines.iter().map(|line| curve::length(line)).sum();
         let share = (LOOSE * area_pt2 / (path.times * length_pt * LINE_PT)).min(0.5);
-        let window_s = share * (drawn.course.end_s - request.from_s);
+        let window_s = share * (drawn.course.end_s - spec.from_s);
         let what = format!(
             "on {} mm its turns cover the paper, so that nothing of them is told apart",
-            width_mm(request)
+            width_mm(spec)
         );
-        Some(proposal(window_s, request, what))
+        Some(proposal(window_s, spec, what))
     };
     let earliest = |is_exact: bool| {
         let drawn = drawn.iter().filter(|drawn| drawn.is_exact == is_exact);
@@ -188,14 +190,14 @@ pub(super) fn of_paths(
     earliest(false).or_else(|| earliest(true))
 }
 
-fn width_mm(request: &FigureRequest) -> f64 {
-    (request.width_pt / crate::plot::PT_PER_MM).round()
+fn width_mm(spec: &FigureSpec) -> f64 {
+    (spec.page_width_pt() / PT_PER_MM).round()
 }
 
-fn proposal(window_s: f64, request: &FigureRequest, what: String) -> Dense {
+fn proposal(window_s: f64, spec: &FigureSpec, what: String) -> Dense {
     Dense {
         what,
-        from_s: request.from_s,
-        to_s: request.from_s + nice_numbers::at_or_below(window_s),
+        from_s: spec.from_s,
+        to_s: spec.from_s + nice_numbers::at_or_below(window_s),
     }
 }

@@ -1,8 +1,9 @@
 //! What was measured, drawn with runs: points with error bars over time and from above, and their residuals.
 
+use super::job::{DrawnFigure, FigureJob, FigureRun};
 use super::names::names;
 use super::quantity;
-use super::request::{DrawnFigure, FigureJob, FigureRequest, FigureRun};
+use super::spec::FigureSpec;
 use crate::engine::data::{
     self, MeasuredCurve, MeasuredData, MeasuredPoint, Residual, at_times, places,
     residuals as held_against,
@@ -33,8 +34,7 @@ pub(super) fn over_time(
     chart: &mut Chart,
     columns: &[&'static CsvColumn],
 ) -> Result<Option<String>, String> {
-    let request = job.request;
-    let Some(measured) = &request.measured else {
+    let Some(measured) = job.measured else {
         return Ok(None);
     };
     let series = series(measured)?;
@@ -52,7 +52,7 @@ pub(super) fn over_time(
             .flat_map(|(_, it)| it.points.iter().map(|at| at[0]))
     };
     if let Some(range) = &mut chart.x.range {
-        if request.to_s.is_none() {
+        if job.spec.to_s.is_none() {
             range.1 = times().fold(range.1, f64::max);
         }
         make_room(range, times);
@@ -60,7 +60,7 @@ pub(super) fn over_time(
     let count = times().count();
     for (index, it) in added {
         chart.panels[index].series.push(ChartSeries {
-            name: name(measured, count, request),
+            name: name(measured, count, job.spec),
             style: SeriesStyle::measured(it.points.len()),
             ..it
         });
@@ -93,7 +93,7 @@ fn make_room<Times: Iterator<Item = f64>>(range: &mut (f64, f64), times: impl Fn
 /// # Errors
 /// Where the data are no series.
 pub(super) fn above(job: &FigureJob<'_>) -> Result<(Option<ChartSeries>, Option<String>), String> {
-    let (Some(measured), Some(run)) = (&job.request.measured, job.runs.first()) else {
+    let (Some(measured), Some(run)) = (job.measured, job.runs.first()) else {
         return Ok((None, None));
     };
     let scenario = &run.scenario;
@@ -114,7 +114,7 @@ pub(super) fn above(job: &FigureJob<'_>) -> Result<(Option<ChartSeries>, Option<
         sigmas.map(|sigma| sigma.unwrap_or(f64::NAN)).collect()
     };
     let places = ChartSeries {
-        name: name(measured, shown.len(), job.request),
+        name: name(measured, shown.len(), job.spec),
         points: shown.iter().map(|place| [place.at.x, place.at.y]).collect(),
         errors: [errors(0), errors(1)],
         style: SeriesStyle::measured(shown.len()),
@@ -125,7 +125,7 @@ pub(super) fn above(job: &FigureJob<'_>) -> Result<(Option<ChartSeries>, Option<
 
 /// What is said where the runs end before the last point of a figure.
 pub(super) fn beyond_runs(job: &FigureJob<'_>) -> Option<String> {
-    let measured = job.request.measured.as_ref()?;
+    let measured = job.measured?;
     let series = measured.series().ok()?;
     let end_s = job.end_s();
     let last_s = shortest(
@@ -142,8 +142,8 @@ pub(super) fn beyond_runs(job: &FigureJob<'_>) -> Option<String> {
 }
 
 /// What is said where measured points are asked for in space.
-pub(super) fn in_space(request: &FigureRequest) -> Option<String> {
-    let measured = request.measured.as_ref()?;
+pub(super) fn in_space(job: &FigureJob<'_>) -> Option<String> {
+    let measured = job.measured?;
     Some(format!(
         "the points of {} are not drawn in space: --kind above or columns show them",
         measured.origin
@@ -158,15 +158,15 @@ pub(super) fn residuals(
     job: &FigureJob<'_>,
     mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Result<Option<DrawnFigure>, String> {
-    let &FigureJob { runs, request, .. } = job;
-    let Some(measured) = &request.measured else {
+    let &FigureJob { runs, spec, .. } = job;
+    let Some(measured) = job.measured else {
         return Err("residuals are of measured data: --measured FILE".to_owned());
     };
     let series = series(measured)?;
     let last_s = series.times_s.last().copied().unwrap_or(0.0);
-    let end_s = request.to_s.unwrap_or(job.end_s().max(last_s));
-    let margin_s = RESIDUAL_MARGIN * (end_s - request.from_s);
-    let range = (request.from_s - margin_s, end_s + margin_s);
+    let end_s = spec.to_s.unwrap_or(job.end_s().max(last_s));
+    let margin_s = RESIDUAL_MARGIN * (end_s - spec.from_s);
+    let range = (spec.from_s - margin_s, end_s + margin_s);
     let curves = || series.curves.iter();
     let mut panels: Vec<Panel> = curves().map(|curve| empty(curve, range)).collect();
     let shown = curves().map(|curve| drawn(job, series, &curve.points));
@@ -176,7 +176,7 @@ pub(super) fn residuals(
             return Ok(None);
         };
         let (name, style) = match runs {
-            [_] => (name(measured, count, request), SeriesStyle::measured(0)),
+            [_] => (name(measured, count, spec), SeriesStyle::measured(0)),
             _ => (run_name, SeriesStyle::points(index)),
         };
         for ((panel, curve), model) in panels.iter_mut().zip(&series.curves).zip(&model) {
@@ -189,9 +189,9 @@ pub(super) fn residuals(
         }
     }
     let mut chart = job.chart(quantity::axis("t_s").within(range), panels);
-    request.labels.apply(&mut chart)?;
+    spec.labels.apply(&mut chart)?;
     let mut scene = chart.scene();
-    request.labels.write_title(&mut scene);
+    spec.labels.write_title(&mut scene);
     Ok(Some(DrawnFigure::of(scene)))
 }
 
@@ -242,7 +242,7 @@ fn series(measured: &MeasuredData) -> Result<&data::TimeSeries, String> {
 }
 
 /// The name of the data in the legend, as markup, with the `count` of the points that the figure has of them.
-fn name(measured: &MeasuredData, count: usize, request: &FigureRequest) -> String {
+fn name(measured: &MeasuredData, count: usize, spec: &FigureSpec) -> String {
     let file = Path::new(&measured.origin).file_stem();
     let file = file.map_or(measured.origin.as_str().into(), |file| {
         file.to_string_lossy()
@@ -252,7 +252,7 @@ fn name(measured: &MeasuredData, count: usize, request: &FigureRequest) -> Strin
         count => format!("{count} points"),
     };
     let name = format!("measured: {file} ({count})");
-    letters::shortened(&name, LABEL_PT, longest_name(request.width_pt))
+    letters::shortened(&name, LABEL_PT, longest_name(spec.page_width_pt()))
 }
 
 /// `points` in the stretch of time that is drawn, with their errors: NaN where none is stated.

@@ -4,8 +4,9 @@
 //!   [`course`] takes the numbers from stepping through the runs, in bounded memory (`path` those of a path),
 //!   `measured` draws what was measured with them, `dense` finds the curves and paths whose turns are not told apart,
 //!   `chords` those whose paths have too few points, [`labels`] gives words and axes that were asked for, `size` tells what of a curve is rounding.
-//!   `request` says what is asked for, and what a figure is once it is drawn.
+//!   `job` is a figure that is being drawn, and what it is once it is drawn.
 //! - [`of_table`]: figures of a comparison, of a sweep or of a fit, read by [`table`](crate::studies::table).
+//! - `spec`: what a figure shows.
 //! - `source`: the runs or the table that a figure shows, what of them its file carries, and the way back.
 //! - `redraw`: a figure, drawn again from its file.
 //! - [`quantity`]: columns and readouts as they stand at an axis.
@@ -13,6 +14,7 @@
 mod chords;
 pub mod course;
 mod dense;
+mod job;
 pub mod kind;
 pub mod labels;
 mod measured;
@@ -22,10 +24,11 @@ pub mod of_table;
 mod path;
 pub mod quantity;
 mod redraw;
-mod request;
 mod size;
 mod source;
 mod space;
+mod spec;
 
 pub use redraw::redraw;
-pub use source::{FigureOptions, FigureSource, WIDTHS_MM};
+pub use source::FigureSource;
+pub use spec::{FigureSpec, WIDTHS_MM};

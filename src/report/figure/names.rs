@@ -1,7 +1,7 @@
 //! What runs are called beside each other: by what differs.
 
 use super::chords::EVERY_STEP;
-use super::request::{FigureJob, FigureRun};
+use super::job::{FigureJob, FigureRun};
 use crate::engine::text::number::significant;
 use crate::plot::chart::legend::longest_name;
 use crate::plot::ink::{self, LABEL_PT};
@@ -9,10 +9,10 @@ use crate::plot::letters;
 
 /// A name for each of the runs, as markup with room in the legend; empty where there is nothing to tell apart.
 pub(super) fn names(job: &FigureJob<'_>) -> Vec<String> {
-    let &FigureJob { runs, request, .. } = job;
-    let room_pt = longest_name(request.width_pt) - ink::width(EVERY_STEP, LABEL_PT);
+    let &FigureJob { runs, spec, .. } = job;
+    let room_pt = longest_name(spec.page_width_pt()) - ink::width(EVERY_STEP, LABEL_PT);
     let shortened = |text: &str| letters::shortened(text, LABEL_PT, room_pt);
-    let given = &request.labels.names;
+    let given = &spec.labels.names;
     if !given.is_empty() {
         return given.iter().map(|name| shortened(name)).collect();
     }
@@ -20,7 +20,7 @@ pub(super) fn names(job: &FigureJob<'_>) -> Vec<String> {
     let scheme = |run: &FigureRun| scheme_in_words(run.scenario.motion.scheme.name).to_owned();
     let parts: [&dyn Fn(&FigureRun) -> String; 3] = [&title, &scheme, &step];
     let mut differs = parts.map(|of| runs.iter().any(|run| of(run) != of(&runs[0])));
-    if let ([run], true) = (runs, request.is_beside()) {
+    if let ([run], true) = (runs, job.is_beside()) {
         differs = [false, true, run.scenario.motion.scheme.order.is_some()];
     }
     let name = |run: &FigureRun| -> String {

@@ -5,12 +5,14 @@ pub(super) mod charts;
 use super::chords;
 use super::course::{self, SampleRequest, SampledRun};
 use super::dense;
+use super::job::{Dense, FigureJob, SampledRunNumbers};
+pub use super::job::{DrawnFigure, FigureRun, KnownNumbers};
 use super::kind::FigureKind;
 use super::measured;
 use super::names::{EXACT_CURVE_NAME, names};
-use super::request::{Dense, FigureJob, SampledRunNumbers};
-pub use super::request::{DrawnFigure, FigureRequest, FigureRun, KnownNumbers};
+use super::source::FigureSource;
 use super::space;
+use super::spec::FigureSpec;
 use crate::engine::analysis::Predictability;
 use crate::engine::analysis::health::LEAST_SWING_DEG;
 use crate::engine::export::CsvColumn;
@@ -31,60 +33,51 @@ struct SampledRuns {
     broke: Option<String>,
 }
 
-/// The figure of `runs`, one at least. `watch` is told the step reached and the last one, and says whether to go on; `None`
-/// where it said no.
+/// Draws the figures of `sources`, all of the same runs, one at least: for those of one stretch of time these are played
+/// once, and not at all where there is a single run of which enough is `known`. `watch` is told the step reached and the last
+/// one, and says whether to go on; `None` where it said no.
 ///
 /// # Errors
 /// When the stretch of time lies beyond the ends of the runs.
-pub fn figure(
-    runs: &[FigureRun],
-    request: &FigureRequest,
-    watch: impl FnMut(u64, u64) -> ControlFlow<()>,
-) -> Result<Option<DrawnFigure>, String> {
-    let requests = std::slice::from_ref(request);
-    let figures = figures(runs, requests, &KnownNumbers::default(), watch)?;
-    Ok(figures.and_then(|mut figures| figures.pop()))
-}
-
-/// As [`figure`], one for each of `requests`: for those of one stretch of time the runs are played once, and not at all where
-/// there is a single one of which enough is `known`.
-///
-/// # Errors
-/// As [`figure`].
 pub fn figures(
-    runs: &[FigureRun],
-    requests: &[FigureRequest],
+    sources: &[FigureSource],
     known: &KnownNumbers,
     mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Result<Option<Vec<DrawnFigure>>, String> {
     let nothing = KnownNumbers::default();
-    let known = if runs.len() == 1 { known } else { &nothing };
+    let kinds: Vec<FigureKind> = sources
+        .iter()
+        .map(FigureSource::kind)
+        .collect::<Result<_, _>>()?;
+    let jobs: Vec<FigureJob<'_>> = sources
+        .iter()
+        .zip(&kinds)
+        .map(|(source, kind)| {
+            let is_single = source.runs.len() == 1;
+            FigureJob::new(source, kind, if is_single { known } else { &nothing })
+        })
+        .collect();
     let mut figures = Vec::new();
-    let mut all_played: Vec<(&FigureRequest, SampledRuns)> = Vec::new();
-    for request in requests {
-        let job = FigureJob {
-            runs,
-            request,
-            known,
-        };
-        check_range(&job)?;
-        if let FigureKind::Residuals = &request.kind {
-            match measured::residuals(&job, &mut watch)? {
+    let mut all_played: Vec<(&FigureJob<'_>, SampledRuns)> = Vec::new();
+    for job in &jobs {
+        check_range(job)?;
+        if let FigureKind::Residuals = job.kind {
+            match measured::residuals(job, &mut watch)? {
                 Some(figure) => figures.push(figure),
                 None => return Ok(None),
             }
             continue;
         }
-        if !all_played.iter().any(|(it, _)| it.is_alike(request)) {
-            let alike = requests.iter().filter(|it| it.is_alike(request));
-            let wanted = wanted(request, alike.map(|it| &it.kind));
-            match play(&job, &wanted, &mut watch)? {
-                Some(played) => all_played.push((request, played)),
+        if !all_played.iter().any(|(it, _)| it.is_alike(job)) {
+            let alike = jobs.iter().filter(|it| it.is_alike(job));
+            let wanted = wanted(job, alike.map(|it| it.kind));
+            match play(job, &wanted, &mut watch)? {
+                Some(played) => all_played.push((job, played)),
                 None => return Ok(None),
             }
         }
-        for (_, played) in all_played.iter().filter(|(it, _)| it.is_alike(request)) {
-            let Some(figure) = draw(&job, played, &mut watch)? else {
+        for (_, played) in all_played.iter().filter(|(it, _)| it.is_alike(job)) {
+            let Some(figure) = draw(job, played, &mut watch)? else {
                 return Ok(None);
             };
             figures.push(figure);
@@ -98,7 +91,7 @@ fn play(
     wanted: &SampleRequest,
     mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Result<Option<SampledRuns>, String> {
-    let &FigureJob { runs, request, .. } = job;
+    let &FigureJob { runs, spec, .. } = job;
     let Some(mut drawn) = play_runs(job, wanted, &mut watch) else {
         return Ok(None);
     };
@@ -110,18 +103,13 @@ fn play(
         }
         let is_shown =
             !wanted.columns.is_empty() && (!is_exact(&run.scenario) || wanted.counts_steps());
-        warnings.extend(
-            not_believed(run, course, request.exact)
-                .or_else(|| few_a_swing(run).filter(|_| is_shown)),
-        );
+        let few = || few_a_swing(run).filter(|_| is_shown);
+        warnings.extend(not_believed(run, course, spec.exact).or_else(few));
         warnings.extend(limited(run, course));
     }
-    if request.exact {
-        warnings.extend(
-            runs.iter()
-                .any(|run| is_exact(&run.scenario))
-                .then(|| IS_EXACT.to_owned()),
-        );
+    if spec.exact {
+        let is_exact = |run: &FigureRun| is_exact(&run.scenario);
+        warnings.extend(runs.iter().any(is_exact).then(|| IS_EXACT.to_owned()));
         let Some(truths) = play_truths(job, wanted, watch) else {
             return Ok(None);
         };
@@ -175,7 +163,7 @@ fn play_truths(
     wanted: &SampleRequest,
     mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Option<Vec<SampledRunNumbers>> {
-    let room_pt = longest_name(job.request.width_pt);
+    let room_pt = longest_name(job.spec.page_width_pt());
     let truths = (job.runs.len()..).zip(truths(job.runs, room_pt));
     let drawn = truths.map(|(place, (run, name))| {
         Some(SampledRunNumbers {
@@ -188,7 +176,7 @@ fn play_truths(
     drawn.collect()
 }
 
-/// The figure that the request asks for; `None` where `watch` said no.
+/// Draws the figure; `None` where `watch` said no.
 ///
 /// # Errors
 /// When what was measured cannot be drawn so.
@@ -199,14 +187,14 @@ fn draw(
 ) -> Result<Option<DrawnFigure>, String> {
     let drawn = &played.drawn;
     let mut warnings = played.warnings.clone();
-    let labels = &job.request.labels;
+    let labels = &job.spec.labels;
     let dense;
-    let mut scene = match &job.request.kind {
+    let mut scene = match job.kind {
         FigureKind::OverTime(columns) => {
             let (mut chart, told) = over_time(job, columns, drawn)?;
             warnings.extend(told);
             warnings.extend(measured::beyond_runs(job));
-            dense = dense::over_time(&chart, columns, drawn, job.request);
+            dense = dense::over_time(&chart, columns, drawn, job.spec);
             if let Some(dense) = &dense {
                 let Some(magnified) = magnified(job, columns, dense, watch)? else {
                     return Ok(None);
@@ -221,7 +209,7 @@ fn draw(
             warnings.extend(none);
             let mut chart = charts::above(job, drawn, measured);
             labels.apply(&mut chart)?;
-            dense = charts::path_warning(&chart, drawn, job.request);
+            dense = charts::path_warning(&chart, drawn, job.spec);
             warnings.extend(chords::warning(drawn, |course| &course.above));
             chart.scene()
         }
@@ -230,7 +218,7 @@ fn draw(
             let scene;
             (scene, dense) = space::scene(job, drawn);
             warnings.extend(chords::warning(drawn, |course| &course.path));
-            warnings.extend(measured::in_space(job.request));
+            warnings.extend(measured::in_space(job));
             scene
         }
     };
@@ -251,7 +239,7 @@ fn over_time(
 ) -> Result<(Chart, Vec<String>), String> {
     let mut chart = charts::over_time(job, columns, drawn);
     let none = measured::over_time(job, &mut chart, columns)?;
-    let hidden = job.request.labels.apply(&mut chart)?;
+    let hidden = job.spec.labels.apply(&mut chart)?;
     Ok((chart, none.into_iter().chain(hidden).collect()))
 }
 
@@ -262,15 +250,15 @@ fn magnified(
     dense: &Dense,
     watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Result<Option<Chart>, String> {
-    let request = FigureRequest {
+    let spec = FigureSpec {
         to_s: Some(dense.to_s),
-        ..job.request.clone()
+        ..job.spec.clone()
     };
     let part = FigureJob {
-        request: &request,
+        spec: &spec,
         ..*job
     };
-    let wanted = wanted(&request, [&request.kind].into_iter());
+    let wanted = wanted(&part, [job.kind].into_iter());
     let Some(played) = play(&part, &wanted, watch)? else {
         return Ok(None);
     };
@@ -278,15 +266,12 @@ fn magnified(
     Ok(Some(chart))
 }
 
-fn wanted<'a>(
-    request: &FigureRequest,
-    kinds: impl Iterator<Item = &'a FigureKind>,
-) -> SampleRequest {
+fn wanted<'a>(job: &FigureJob<'_>, kinds: impl Iterator<Item = &'a FigureKind>) -> SampleRequest {
     let mut wanted = SampleRequest {
         columns: Vec::new(),
         path: false,
-        from_s: request.from_s,
-        to_s: request.to_s,
+        from_s: job.spec.from_s,
+        to_s: job.spec.to_s,
     };
     for kind in kinds {
         wanted.columns.extend(kind.columns());
@@ -296,9 +281,9 @@ fn wanted<'a>(
 }
 
 fn check_range(job: &FigureJob<'_>) -> Result<(), String> {
-    let (from_s, end_s) = (job.request.from_s, job.end_s());
+    let (from_s, end_s) = (job.spec.from_s, job.end_s());
     let from = shortest(from_s);
-    if let Some(to_s) = job.request.to_s.filter(|to_s| *to_s <= from_s) {
+    if let Some(to_s) = job.spec.to_s.filter(|to_s| *to_s <= from_s) {
         let to = shortest(to_s);
         return Err(format!("--from {from} is not before --to {to}"));
     }

@@ -57,7 +57,7 @@ pub fn redraw(
 
 fn format(figure: &FigureFile, source: &FigureSource) -> PageFormat {
     match figure.form {
-        FileFormat::Svg if source.asked.text => PageFormat::SvgText,
+        FileFormat::Svg if source.spec.text => PageFormat::SvgText,
         FileFormat::Svg => PageFormat::Svg,
         FileFormat::Pdf => PageFormat::Pdf,
         FileFormat::Png => PageFormat::Png,

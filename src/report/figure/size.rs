@@ -1,7 +1,7 @@
 //! How large the quantities of a run are by their nature: a difference far below that is rounding.
 
+use super::job::FigureRun;
 use super::quantity;
-use super::request::FigureRun;
 use crate::engine::scenario::Scenario;
 use crate::engine::scenario::start;
 use crate::physics::observables;

@@ -7,8 +7,8 @@ mod path;
 
 use super::chords;
 use super::dense;
+use super::job::{Dense, FigureJob, FigureRun, SampledRunNumbers};
 use super::quantity;
-use super::request::{Dense, FigureJob, FigureRun, SampledRunNumbers};
 use super::size;
 use crate::engine::text::number::significant;
 use crate::plot::camera::{Camera, CameraView};
@@ -50,7 +50,7 @@ pub(super) fn scene(
     job: &FigureJob<'_>,
     drawn: &[SampledRunNumbers],
 ) -> (PageScene, Option<Dense>) {
-    let width_pt = job.request.width_pt;
+    let width_pt = job.spec.page_width_pt();
     let space = Space::fitted(job.runs, drawn, width_pt);
     let looks = drawn.iter();
     let looks = looks.map(|drawn| chords::as_drawn(drawn, &drawn.course.path));
@@ -73,12 +73,8 @@ pub(super) fn scene(
     items.width_pt = width_pt;
     items.height_pt = above + bottom - top + PAGE_EDGE;
     legend.draw_above(width_pt, PAGE_EDGE, &mut items);
-    let dense = dense::of_paths(
-        drawn,
-        job.request,
-        |course| &course.path,
-        |at| space.place(&space.boxed(at)),
-    );
+    let place = |at: &[f64; 3]| space.place(&space.boxed(at));
+    let dense = dense::of_paths(drawn, job.spec, |course| &course.path, place);
     (items, dense)
 }
 

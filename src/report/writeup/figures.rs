@@ -8,11 +8,10 @@ use crate::engine::scenario::Scenario;
 use crate::engine::scenario::screen::{ABOVE, THREE_D, TRACES};
 use crate::engine::text::number::{rounded, significant};
 use crate::plot::{COLUMN_PT, PageScene};
-use crate::report::figure::FigureSource;
 use crate::report::figure::course::{RunSampler, SampleRequest, SampledRun};
 use crate::report::figure::kind::FigureKind;
-use crate::report::figure::labels::FigureLabels;
-use crate::report::figure::of_runs::{self, DrawnFigure, FigureRequest, FigureRun, KnownNumbers};
+use crate::report::figure::of_runs::{self, DrawnFigure, FigureRun, KnownNumbers};
+use crate::report::figure::{FigureSource, FigureSpec};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -40,10 +39,10 @@ const SMOOTH_SWING_STEPS: f64 = 40.0;
 /// Figures of measured data end where the data do, and this factor later.
 const BEYOND_DATA: f64 = 1.05;
 
-struct Planned {
+struct PlannedFigure {
     name: &'static str,
     caption: String,
-    request: FigureRequest,
+    source: FigureSource,
 }
 
 /// What is to be shown the start and every step of the run of `scenario`, so that its figures need not play it once more.
@@ -76,48 +75,65 @@ pub fn figures(
     beside: Option<&MeasuredComparison>,
     watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Result<Option<Vec<WriteupFigure>>, String> {
-    let runs = [FigureRun {
-        scenario: Arc::clone(scenario),
-        named: scenario.file.title.clone(),
-    }];
     let is_exact = of_runs::is_exact(scenario);
     let exact = is_affordable(scenario) && !is_exact;
     let also = also(scenario, readouts, is_exact, exact);
-    let whole = FigureRequest {
-        kind: FigureKind::traces(),
-        from_s: 0.0,
-        to_s: None,
-        // A run of the exact motion is drawn once, with the circles that bound it.
-        exact: exact || is_exact,
-        measured: None,
-        width_pt: COLUMN_PT,
-        labels: FigureLabels::default(),
+    let whole = FigureSource {
+        spec: FigureSpec {
+            // A run of the exact motion is drawn once, with the circles that bound it.
+            exact: exact || is_exact,
+            width_pt: Some(COLUMN_PT),
+            ..FigureSpec::default()
+        },
+        runs: vec![FigureRun::titled(Arc::clone(scenario))],
+        ..FigureSource::default()
     };
     let mut planned = beside.map_or(Vec::new(), |beside| of_data(beside, &whole, &also));
     planned.extend(of_run(scenario, readouts, beside, &whole, &also)?);
-    let requests = planned.iter().map(|planned| planned.request.clone());
-    let requests: Vec<_> = requests.collect();
+    let sources: Vec<_> = planned.iter().map(|it| it.source.clone()).collect();
     let known = KnownNumbers {
         recorded: Some(recorded),
         said: beside.map(|beside| beside.said.clone()),
     };
-    let drawn = of_runs::figures(&runs, &requests, &known, watch)?;
-    let drawing = |(planned, figure): (Planned, DrawnFigure)| {
-        WriteupFigure {
-        name: planned.name,
-        remark: figure.dense.map(|dense| {
-            let exact = if exact { " --exact" } else { "" };
-            let (kind, part) = (planned.request.kind.name(), dense.options());
-            format!(
-                "In this figure, {dense}: `gyrolab figure {RUN_FILE} --kind {kind}{exact} {part} -o part.pdf`."
-            )
-        }),
-        caption: planned.caption,
-        scene: figure.scene,
-        source: FigureSource::new(&runs, &planned.request),
-    }
+    let Some(drawn) = of_runs::figures(&sources, &known, watch)? else {
+        return Ok(None);
     };
-    Ok(drawn.map(|drawn| planned.into_iter().zip(drawn).map(drawing).collect()))
+    let figures = planned.into_iter().zip(drawn);
+    Ok(Some(
+        figures
+            .map(|(planned, drawn)| planned.drawn(drawn, exact))
+            .collect(),
+    ))
+}
+
+impl PlannedFigure {
+    /// The figure of `whole` of this `kind`.
+    fn new(name: &'static str, kind: &FigureKind, caption: String, whole: &FigureSource) -> Self {
+        let mut source = whole.clone();
+        source.spec.kind = Some(kind.name());
+        Self {
+            name,
+            caption,
+            source,
+        }
+    }
+
+    fn drawn(self, figure: DrawnFigure, exact: bool) -> WriteupFigure {
+        WriteupFigure {
+            name: self.name,
+            remark: figure.dense.map(|dense| {
+                let exact = if exact { " --exact" } else { "" };
+                let kind = self.source.spec.kind.as_deref().unwrap_or_default();
+                let part = dense.options();
+                format!(
+                    "In this figure, {dense}: `gyrolab figure {RUN_FILE} --kind {kind}{exact} {part} -o part.pdf`."
+                )
+            }),
+            caption: self.caption,
+            scene: figure.scene,
+            source: self.source,
+        }
+    }
 }
 
 /// What captions say of the exact motion and of the lines that join the steps.
@@ -137,7 +153,7 @@ fn also(scenario: &Scenario, readouts: &Readouts, is_exact: bool, exact: bool) -
 }
 
 /// The figures of what was measured, and of measured less run.
-fn of_data(beside: &MeasuredComparison, whole: &FigureRequest, also: &str) -> Vec<Planned> {
+fn of_data(beside: &MeasuredComparison, whole: &FigureSource, also: &str) -> Vec<PlannedFigure> {
     let measured = beside.reached();
     let Some(series) = measured
         .series()
@@ -147,22 +163,16 @@ fn of_data(beside: &MeasuredComparison, whole: &FigureRequest, also: &str) -> Ve
         return Vec::new();
     };
     let last_s = series.times_s.last().copied().unwrap_or_default();
-    let of_data = |name, kind, caption| Planned {
-        name,
-        caption,
-        request: FigureRequest {
-            kind,
-            to_s: Some(beside.end_s.min(BEYOND_DATA * last_s)),
-            measured: Some(Arc::clone(&measured)),
-            ..whole.clone()
-        },
-    };
+    let mut whole = whole.clone();
+    whole.spec.to_s = Some(beside.end_s.min(BEYOND_DATA * last_s));
+    whole.draw_with(Some(Arc::clone(&measured)));
     let name = beside.name();
     let over_time = format!("What was measured, `{name}`, and the run{also}");
     let less = format!("What was measured, `{name}`, less what the run says");
+    let kind = FigureKind::measured(series);
     vec![
-        of_data(MEASURED_FIGURE, FigureKind::measured(series), over_time),
-        of_data(RESIDUALS_FIGURE, FigureKind::Residuals, less),
+        PlannedFigure::new(MEASURED_FIGURE, &kind, over_time, &whole),
+        PlannedFigure::new(RESIDUALS_FIGURE, &FigureKind::Residuals, less, &whole),
     ]
 }
 
@@ -170,16 +180,11 @@ fn of_run(
     scenario: &Scenario,
     readouts: &Readouts,
     beside: Option<&MeasuredComparison>,
-    whole: &FigureRequest,
+    whole: &FigureSource,
     also: &str,
-) -> Result<Vec<Planned>, String> {
-    let plan = |name, kind, caption: &str| Planned {
-        name,
-        caption: format!("{caption}{also}"),
-        request: FigureRequest {
-            kind,
-            ..whole.clone()
-        },
+) -> Result<Vec<PlannedFigure>, String> {
+    let plan = |name, kind, caption: &str| {
+        PlannedFigure::new(name, &kind, format!("{caption}{also}"), whole)
     };
     let over_time = "x, y and z of the traced point over time";
     let mut planned = vec![plan(TRACES, FigureKind::traces(), over_time)];
@@ -192,16 +197,14 @@ fn of_run(
             format!("Tilt in the first {to} s")
         };
         let mut swings = plan(SWINGS_FIGURE, FigureKind::named("tilt_deg")?, &tilt);
-        (swings.request.from_s, swings.request.to_s) = (from_s, Some(to_s));
+        (swings.source.spec.from_s, swings.source.spec.to_s) = (from_s, Some(to_s));
         planned.push(swings);
     }
-    let mut above = plan(
-        ABOVE,
-        FigureKind::Above,
-        "Path of the traced point from above",
-    );
-    let beside = beside.filter(|beside| !beside.compared.places.is_empty());
-    above.request.measured = beside.map(MeasuredComparison::reached);
+    let from_above = "Path of the traced point from above";
+    let mut above = plan(ABOVE, FigureKind::Above, from_above);
+    let has_places = |beside: &&MeasuredComparison| !beside.compared.places.is_empty();
+    let measured = beside.filter(has_places).map(MeasuredComparison::reached);
+    above.source.draw_with(measured);
     planned.push(above);
     let in_space = "Path of the traced point in space";
     planned.push(plan(THREE_D, FigureKind::ThreeD, in_space));

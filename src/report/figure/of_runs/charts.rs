@@ -4,9 +4,8 @@ use crate::engine::export::CsvColumn;
 use crate::engine::run::Truth;
 use crate::plot::chart::layout::ChartLayout;
 use crate::plot::chart::{Chart, ChartSeries, Panel, SeriesStyle};
-use crate::report::figure::request::{
-    Dense, FigureJob, FigureRequest, FigureRun, SampledRunNumbers,
-};
+use crate::report::figure::job::{Dense, FigureJob, FigureRun, SampledRunNumbers};
+use crate::report::figure::spec::FigureSpec;
 use crate::report::figure::{chords, dense, quantity, size};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -17,7 +16,7 @@ pub(super) fn over_time(
     columns: &[&'static CsvColumn],
     drawn: &[SampledRunNumbers],
 ) -> Chart {
-    let from_s = job.request.from_s;
+    let from_s = job.spec.from_s;
     let ends = drawn.iter().map(|drawn| drawn.course.end_s);
     let end_s = ends.fold(0.0, f64::max);
     let mut x = quantity::axis("t_s");
@@ -55,8 +54,8 @@ pub(super) fn above(
         .chain(measured)
         .collect();
     let [x, y] = both_ranges(&series, job.runs);
-    if let (true, [run]) = (job.request.exact, job.runs) {
-        series.extend(limits(run, job.request.width_pt / (x.1 - x.0)));
+    if let (true, [run]) = (job.spec.exact, job.runs) {
+        series.extend(limits(run, job.spec.page_width_pt() / (x.1 - x.0)));
     }
     let panel = Panel::new(quantity::axis("y_m").within(y), series);
     Chart {
@@ -68,16 +67,12 @@ pub(super) fn above(
 pub(super) fn path_warning(
     chart: &Chart,
     drawn: &[SampledRunNumbers],
-    request: &FigureRequest,
+    spec: &FigureSpec,
 ) -> Option<Dense> {
     let layout = ChartLayout::new(chart, 0.0);
     let placed = layout.panels.first()?;
-    dense::of_paths(
-        drawn,
-        request,
-        |course| &course.above,
-        |at| placed.place(&[at[0], at[1]]),
-    )
+    let place = |at: &[f64; 3]| placed.place(&[at[0], at[1]]);
+    dense::of_paths(drawn, spec, |course| &course.above, place)
 }
 
 /// The circles between which the exact motion of the traced point stays, from above; none where it is one circle, pushes or

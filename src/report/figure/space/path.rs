@@ -7,7 +7,7 @@ use crate::plot::chart::curve;
 use crate::plot::extent;
 use crate::plot::ink::{grey, paler};
 use crate::plot::scene::{PageScene, Point, StrokeStyle};
-use crate::report::figure::request::SampledRunNumbers;
+use crate::report::figure::job::SampledRunNumbers;
 use nalgebra::Vector3;
 
 const DEPTHS: usize = 6;

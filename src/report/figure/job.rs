@@ -1,8 +1,9 @@
-//! What a figure of runs is to show, what it is drawn from, and what it then is.
+//! A figure of runs at work: the runs with their numbers, and what it is once it is drawn.
 
 use super::course::SampledRun;
 use super::kind::FigureKind;
-use super::labels::FigureLabels;
+use super::source::FigureSource;
+use super::spec::FigureSpec;
 use crate::engine::data::MeasuredData;
 use crate::engine::run::Clock;
 use crate::engine::scenario::Scenario;
@@ -13,22 +14,17 @@ use std::fmt;
 use std::sync::Arc;
 
 #[derive(Clone, Debug)]
-pub struct FigureRequest {
-    pub kind: FigureKind,
-    pub from_s: f64,
-    /// Until when, s; `None`: to the end of the longest run.
-    pub to_s: Option<f64>,
-    pub exact: bool,
-    /// What was measured on a run, to be drawn with them.
-    pub measured: Option<Arc<MeasuredData>>,
-    pub width_pt: f64,
-    pub labels: FigureLabels,
-}
-
-#[derive(Clone, Debug)]
 pub struct FigureRun {
     pub scenario: Arc<Scenario>,
     pub named: String,
+}
+
+impl FigureRun {
+    /// The run under the title of its scenario.
+    pub fn titled(scenario: Arc<Scenario>) -> Self {
+        let named = scenario.file.title.clone();
+        Self { scenario, named }
+    }
 }
 
 /// What is known of a single run before its figures are drawn: so much of it need not be computed once more.
@@ -47,15 +43,45 @@ pub(super) struct SampledRunNumbers {
     pub is_exact: bool,
 }
 
-/// Runs, what a figure of them is to show, and what is known of them.
+/// A figure of runs that is being drawn: its source, of which the kind is known, and what is known of its runs.
 #[derive(Clone, Copy)]
 pub(super) struct FigureJob<'a> {
     pub runs: &'a [FigureRun],
-    pub request: &'a FigureRequest,
+    pub spec: &'a FigureSpec,
+    pub kind: &'a FigureKind,
+    /// What was measured on a run, to be drawn with them.
+    pub measured: Option<&'a MeasuredData>,
     pub known: &'a KnownNumbers,
 }
 
-impl FigureJob<'_> {
+impl<'a> FigureJob<'a> {
+    pub fn new(source: &'a FigureSource, kind: &'a FigureKind, known: &'a KnownNumbers) -> Self {
+        Self {
+            runs: &source.runs,
+            spec: &source.spec,
+            kind,
+            measured: source.measured.as_deref(),
+            known,
+        }
+    }
+
+    /// Whether both are drawn from the same numbers of the runs under the same names.
+    pub fn is_alike(&self, other: &Self) -> bool {
+        let is_of_data = |it: &Self| matches!(it.kind, FigureKind::Residuals);
+        let [a, b] = [self.spec, other.spec];
+        (a.from_s, a.to_s) == (b.from_s, b.to_s)
+            && a.width_pt == b.width_pt
+            && a.exact == b.exact
+            && self.is_beside() == other.is_beside()
+            && is_of_data(self) == is_of_data(other)
+            && a.labels == b.labels
+    }
+
+    /// Whether something is drawn beside the runs, so that a single run needs a name.
+    pub fn is_beside(&self) -> bool {
+        self.spec.exact || self.measured.is_some()
+    }
+
     /// The end of the longest run, s.
     pub fn end_s(&self) -> f64 {
         let ends = self.runs.iter().map(|run| Clock::end_s(&run.scenario));
@@ -64,8 +90,8 @@ impl FigureJob<'_> {
 
     /// Whether `time_s` is in the stretch that is drawn.
     pub fn has(&self, time_s: f64) -> bool {
-        let to_s = self.request.to_s;
-        time_s >= self.request.from_s && to_s.is_none_or(|to_s| time_s <= to_s)
+        let to_s = self.spec.to_s;
+        time_s >= self.spec.from_s && to_s.is_none_or(|to_s| time_s <= to_s)
     }
 
     /// The titles of the runs, each once.
@@ -83,35 +109,11 @@ impl FigureJob<'_> {
     pub fn chart(&self, x: ChartAxis, panels: Vec<Panel>) -> Chart {
         Chart {
             title: self.title(),
-            width_pt: self.request.width_pt,
+            width_pt: self.spec.page_width_pt(),
             x,
             panels,
             ..Chart::default()
         }
-    }
-}
-
-impl FigureRequest {
-    /// Whether both are drawn from the same numbers of the runs under the same names.
-    pub(super) fn is_alike(&self, other: &Self) -> bool {
-        let of_runs = |it: &Self| {
-            let is_of_data = matches!(it.kind, FigureKind::Residuals);
-            let stretch = (it.from_s, it.to_s);
-            (
-                stretch,
-                it.width_pt,
-                it.exact,
-                it.is_beside(),
-                is_of_data,
-                it.labels.clone(),
-            )
-        };
-        of_runs(self) == of_runs(other)
-    }
-
-    /// Whether something is drawn beside the runs, so that a single run needs a name.
-    pub(super) fn is_beside(&self) -> bool {
-        self.exact || self.measured.is_some()
     }
 }
 
