@@ -213,7 +213,7 @@ fn instance(path: &str, typed: &str) -> String {
     let part = |part| {
         let number = typed_parts
             .next()
-            .filter(|part| part.parse::<usize>().is_ok());
+            .filter(|typed_part| typed_part.parse::<usize>().is_ok());
         if part == "*" {
             number.unwrap_or("0")
         } else {

@@ -1,5 +1,7 @@
 //! `gyrolab fit`: keys of a scenario, so that its runs come nearest to measured data.
 
+mod throws;
+
 use super::args::{MapArgs, STDIN, STDIN_WORDS, SetArgs, change, open, positive, time};
 use super::progress::{self, Interrupted, Interruption, Meter};
 use super::{one_on_stdout, print, print_result, refuse, tell, tell_notes, tell_of_rows};
@@ -8,19 +10,18 @@ use crate::engine::export::Destination;
 use crate::engine::scenario::{Document, Problem, Problems, csv};
 use crate::engine::text::number::{shortest, significant};
 use crate::engine::text::printable::{PrintablePath, brief, printable};
-use crate::studies::fit::flights::{self, Flight, Found};
+use crate::studies::fit::flights::{self, Found};
 use crate::studies::fit::report::{self, FitCommand, FitReport};
 use crate::studies::fit::{Fit, Free, Model, NoFit, fit as fitted};
 use crate::studies::verify::Unverified;
 use anyhow::{Context, anyhow, bail};
 use clap::error::ErrorKind;
 use clap::{Args, FromArgMatches};
-use serde::{Serialize, Serializer};
 use serde_json::json;
-use std::fmt;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use throws::{Throw, Thrown};
 use toml::Value;
 
 #[derive(Clone, Debug, Args)]
@@ -218,13 +219,6 @@ struct Task {
     own_scheme: Option<&'static str>,
 }
 
-/// A free flight of the recording.
-struct Throw {
-    number: usize,
-    of: usize,
-    flight: Flight,
-}
-
 impl Task {
     fn read(args: &FitArgs) -> Result<Self, Problems> {
         let mut measured = chosen(measured(args)?, args.rows.as_ref())?;
@@ -328,75 +322,6 @@ impl Task {
     /// Returns the scenario's own scheme, where the model has another.
     fn other_scheme(&self, model: &Model) -> Option<&'static str> {
         self.own_scheme.filter(|own| *own != model.scheme)
-    }
-}
-
-impl Throw {
-    /// Returns the command line that fits this flight alone.
-    fn args(&self, args: &FitArgs) -> FitArgs {
-        FitArgs {
-            from: Some(self.flight.from_s),
-            to: Some(self.flight.to_s),
-            flight: None,
-            ..args.clone()
-        }
-    }
-
-    fn json(&self) -> serde_json::Value {
-        let Flight {
-            from_s,
-            to_s,
-            rows,
-            rate,
-        } = self.flight;
-        json!({
-            "number": self.number, "of": self.of, "from_s": from_s, "to_s": to_s, "rows": rows,
-            "mean_rate_rad_per_s": rate,
-        })
-    }
-}
-
-impl fmt::Display for Throw {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [from_s, to_s] = [self.flight.from_s, self.flight.to_s].map(|it| significant(it, 6));
-        let rate = significant(self.flight.rate, 3);
-        write!(
-            f,
-            "flight {} of {}: {from_s} s to {to_s} s, {} rows, {rate} rad/s on the mean",
-            self.number, self.of, self.flight.rows
-        )
-    }
-}
-
-/// The report of a fit, and which flight of the recording it is of.
-struct Thrown<'a> {
-    report: FitReport<'a>,
-    throw: Option<&'a Throw>,
-}
-
-impl Thrown<'_> {
-    fn json(&self) -> serde_json::Result<serde_json::Value> {
-        let mut json = serde_json::to_value(self.report)?;
-        if let Some(throw) = self.throw {
-            json["flight"] = throw.json();
-        }
-        Ok(json)
-    }
-}
-
-impl fmt::Display for Thrown<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if let Some(throw) = self.throw {
-            writeln!(f, "{throw}")?;
-        }
-        self.report.fmt(f)
-    }
-}
-
-impl Serialize for Thrown<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let json = self.json().map_err(serde::ser::Error::custom)?;
-        json.serialize(serializer)
     }
 }
 

@@ -53,11 +53,13 @@ impl Picture {
         for (y, row) in self.rows.iter().enumerate() {
             for (x, _) in row.iter().enumerate().filter(|(_, sign)| **sign == '┌') {
                 let right = (x + 1..row.len()).find(|right| matches!(row[*right], '┐' | '┌'));
-                let right = right.filter(|right| row[*right] == '┐');
-                let right = right.ok_or(format!("the frame at {x}, {y} has no right corner"))?;
+                let right = right
+                    .filter(|right| row[*right] == '┐')
+                    .ok_or(format!("the frame at {x}, {y} has no right corner"))?;
                 let mut rows = y + 1..self.rows.len();
-                let bottom = rows.find(|bottom| self.at(x, *bottom) != '│');
-                let bottom = bottom.unwrap_or(self.rows.len());
+                let bottom = rows
+                    .find(|bottom| self.at(x, *bottom) != '│')
+                    .unwrap_or(self.rows.len());
                 let corners = (self.at(x, bottom), self.at(right, bottom));
                 if corners != ('└', '┘') {
                     return Err(format!("the frame at {x}, {y} ends in {corners:?}"));
@@ -125,8 +127,11 @@ fn footer_trouble(stage: &Stage, picture: &Picture) -> Option<String> {
     if stage.lab.view().look.bare {
         return None; // no line of keys
     }
-    let last = picture.rows.get(stage.size.height as usize - 1)?;
-    let last: String = last.iter().collect();
+    let last: String = picture
+        .rows
+        .get(stage.size.height as usize - 1)?
+        .iter()
+        .collect();
     let rows = || {
         let of_panes = panes::rows().flat_map(|pane| pane.keys);
         BINDINGS.iter().chain(of_panes)
@@ -167,8 +172,10 @@ fn said_trouble(stage: &Stage, picture: &Picture) -> Option<String> {
     let notice = stage.lab.notice()?;
     let (notice, words) = (squeezed(&notice), picture.words());
     let is_cut = || {
-        let begins = notice.char_indices().map(|(end, _)| &notice[..end]);
-        let mut begins = begins.filter(|begin| begin.len() > 10);
+        let mut begins = notice
+            .char_indices()
+            .map(|(end, _)| &notice[..end])
+            .filter(|begin| begin.len() > 10);
         begins.any(|begin| words.contains(&format!("{}...", begin.trim_end())))
     };
     (!words.contains(&notice) && !is_cut()).then(|| format!("{notice:?} is cut off"))
@@ -220,8 +227,10 @@ fn keys(mode: Mode, pane: Pane) -> Vec<Key> {
         Mode::Lab => panes::row(pane).keys,
         _ => &[],
     };
-    let rows = own.iter().chain(BINDINGS);
-    let rows = rows.filter(|row| row.modes.contains(&mode));
+    let rows = own
+        .iter()
+        .chain(BINDINGS)
+        .filter(|row| row.modes.contains(&mode));
     let mut keys: Vec<Key> = Vec::new();
     for key in rows.flat_map(|row| row.keys) {
         if !keys.contains(key) {

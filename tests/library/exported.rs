@@ -411,8 +411,9 @@ fn what_cannot_be_computed_again_is_refused_with_the_reason() {
     }
     let missing = verify("nowhere/a.csv".as_ref(), no_fit, |_, _| {
         ControlFlow::Continue(())
-    });
-    let missing = missing.unwrap_err().to_string();
+    })
+    .unwrap_err()
+    .to_string();
     has(missing, "there is no such file");
 }
 

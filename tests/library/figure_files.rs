@@ -63,8 +63,9 @@ impl Picture {
         let mut data = vec![0; reader.output_buffer_size().unwrap()];
         let frame = reader.next_frame(&mut data).unwrap();
         let step = frame.color_type.samples();
-        let dots = data.chunks_exact(step);
-        let dots = dots.map(|dot| [dot[0], dot[1 % step], dot[2 % step]]);
+        let dots = data
+            .chunks_exact(step)
+            .map(|dot| [dot[0], dot[1 % step], dot[2 % step]]);
         let size = reader.info().pixel_dims.unwrap();
         assert_eq!((size.xppu, size.unit), (size.yppu, png::Unit::Meter));
         Self {
@@ -108,8 +109,11 @@ fn svg_has_a_size_on_paper_a_title_and_the_words_and_nothing_that_it_would_have_
     }
     let clip = with("clip-path");
     let reference = clip.attribute("clip-path").unwrap();
-    let name = reference.strip_prefix("url(#").unwrap();
-    let name = name.strip_suffix(')').unwrap();
+    let name = reference
+        .strip_prefix("url(#")
+        .unwrap()
+        .strip_suffix(')')
+        .unwrap();
     let with_value = |attribute: &str, value: &str| {
         let mut nodes = root.descendants();
         nodes
@@ -136,9 +140,11 @@ fn places(data: &str) -> Vec<(f64, f64)> {
         let end = rest[1..]
             .find(|c: char| c.is_ascii_alphabetic())
             .map_or(rest.len(), |end| end + 1);
-        let numbers = rest[1..end].replace('-', " -");
-        let numbers = numbers.split_whitespace().map(|n| n.parse().unwrap());
-        let numbers: Vec<f64> = numbers.collect();
+        let numbers: Vec<f64> = rest[1..end]
+            .replace('-', " -")
+            .split_whitespace()
+            .map(|n| n.parse().unwrap())
+            .collect();
         rest = &rest[end..];
         let size = match command {
             'h' | 'v' | 'z' => 1,
@@ -183,8 +189,10 @@ fn the_places_in_svg_are_those_of_the_page() {
     let cubic = Segment::Cubic(at(5.0, 5.12), at(-6.0, 0.0), at(0.0, 0.0));
     path.0.extend([quadratic, cubic]);
     let rounded = |x: f64| (x * 100.0).round() / 100.0;
-    let expected = path.points().map(|p| (rounded(p.x), rounded(p.y)));
-    let expected: Vec<_> = expected.collect();
+    let expected: Vec<_> = path
+        .points()
+        .map(|p| (rounded(p.x), rounded(p.y)))
+        .collect();
     let mut scene = PageScene::new(10.0, 10.0, "");
     scene.fill(path, RED);
     let text = svg(&scene);

@@ -318,9 +318,13 @@ fn a_path_of_few_steps_a_turn_is_drawn_as_points() {
         has(told(&coarse).join("; "), words);
         // Nothing is drawn from one step to the next.
         let is_dot = |item: &&SceneItem| matches!(&item.paint, Paint::Stroke(pen) if pen.width_pt >= 0.5 && pen.dash_pt.is_empty());
-        let dots = coarse.scene.items.iter().filter(is_dot).map(extent);
-        let dots =
-            dots.filter(|[left, top, right, bottom]| right - left < 0.03 && bottom - top < 0.03);
+        let dots = coarse
+            .scene
+            .items
+            .iter()
+            .filter(is_dot)
+            .map(extent)
+            .filter(|[left, top, right, bottom]| right - left < 0.03 && bottom - top < 0.03);
         assert!(dots.count() >= 200, "{kind}");
         let fine = drawn(&[run("cusps", &[])], &with_exact(kind));
         says(&fine.scene, &["rk4, Δt = 1 ms", "exact motion"]);
@@ -677,8 +681,9 @@ fn the_exact_motion_is_a_smooth_curve_beside_few_steps() {
         ..with_exact("z_m")
     };
     let figure = drawn(&[run("method-1", &[])], &asked);
-    let exact = wide(&figure.scene).into_iter();
-    let exact = exact.map(|index| &figure.scene.items[index]);
+    let exact = wide(&figure.scene)
+        .into_iter()
+        .map(|index| &figure.scene.items[index]);
     // 0.02 s are two nutations, of 20 steps.
     let points: usize = exact.map(|line| line.path.points().count()).sum();
     assert!(points > 200, "{points}");
@@ -698,8 +703,9 @@ fn figures_that_are_drawn_together_are_those_drawn_alone() {
     let together = of_runs::figures(&sources, &KnownNumbers::default(), |step, last| {
         ends += u32::from(step == last);
         ControlFlow::Continue(())
-    });
-    let together = together.unwrap().unwrap();
+    })
+    .unwrap()
+    .unwrap();
     // Each run once for the whole of it, and once for its beginning.
     assert!(ends <= 4, "{ends}");
     assert_eq!(together.len(), sources.len());

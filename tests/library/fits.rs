@@ -169,8 +169,9 @@ fn the_truth_lies_within_two_sigma_as_often_as_it_should() {
 
 #[test]
 fn the_scatter_of_fits_is_the_covariance_that_they_state() {
-    let fits = (1..=60_u64).map(|seed| fit_of_noise(seed * 77_777));
-    let fits: Vec<Fit> = fits.collect();
+    let fits: Vec<Fit> = (1..=60_u64)
+        .map(|seed| fit_of_noise(seed * 77_777))
+        .collect();
     let count = fits.len() as f64;
     let deviation = |fit: &Fit, index: usize| fit.keys[index].value - TRUE[index];
     let covariance = |i: usize, j: usize| {
@@ -258,14 +259,16 @@ fn heidelberg_one_weight_and_two_differ() {
     let text = gyrolab::engine::data::find_shipped("heidelberg-precession")
         .unwrap()
         .text;
-    let without = text.lines().map(|line| {
-        let mut cells: Vec<&str> = line.split(',').collect();
-        if !line.starts_with('#') {
-            cells.remove(3);
-        }
-        cells.join(",") + "\n"
-    });
-    let without: String = without.collect();
+    let without: String = text
+        .lines()
+        .map(|line| {
+            let mut cells: Vec<&str> = line.split(',').collect();
+            if !line.starts_with('#') {
+                cells.remove(3);
+            }
+            cells.join(",") + "\n"
+        })
+        .collect();
     let published = [
         (3.765, 0.047),
         (3.871, 0.062),
@@ -404,11 +407,13 @@ fn bounds_of_what_cannot_be_told_apart_hold_it_where_the_best_ratio_is_outside()
 #[test]
 fn data_without_uncertainties_are_weighed_by_their_scatter() {
     let noisy = noisy(5);
-    let text = noisy.lines().map(|line| {
-        let cells: Vec<&str> = line.split(',').collect();
-        format!("{},{}\n", cells[0], cells[1])
-    });
-    let text: String = text.collect();
+    let text: String = noisy
+        .lines()
+        .map(|line| {
+            let cells: Vec<&str> = line.split(',').collect();
+            format!("{},{}\n", cells[0], cells[1])
+        })
+        .collect();
     let model = top(&["start.spin_rpm=2950"], &FREE, &text);
     let fit = fitted(&model);
     // A dozen deviates of 0.1 degrees, of which two are taken up: their scatter is known to 22 %.
@@ -722,7 +727,8 @@ fn an_uncertain_setting_may_stand_at_the_edge_of_its_range() {
 fn data_that_no_run_comes_to_are_refused_with_the_limit() {
     let document = Document::open("cusps").unwrap();
     let far = read("far.csv", "t_s,tilt_deg\n0,20\n1e300,20\n").unwrap();
-    let told = try_model(&document, &["start.tilt_deg"], far).unwrap_err();
-    let told = told.to_string();
+    let told = try_model(&document, &["start.tilt_deg"], far)
+        .unwrap_err()
+        .to_string();
     has_all(&told, ["far.csv:3: t_s", "10 000 000 steps"]);
 }

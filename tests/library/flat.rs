@@ -67,8 +67,10 @@ fn thrown(
 
 fn fitted(measured: MeasuredData, free: &[&str]) -> (Model, Fit) {
     let document = Document::open("thrown-phone").unwrap();
-    let keys = free.iter().flat_map(|free| free.split(','));
-    let keys = keys.map(|key| Free::parse(key, &document).unwrap());
+    let keys = free
+        .iter()
+        .flat_map(|free| free.split(','))
+        .map(|key| Free::parse(key, &document).unwrap());
     let model = Model::new(&document, keys.collect(), measured).unwrap();
     let fit = fit(&model, &|| true, &|_, _| {}).unwrap_or_else(|error| panic!("{error}"));
     (model, fit)
@@ -234,8 +236,8 @@ fn a_key_at_the_least_value_it_can_have_has_an_upper_limit() {
     let text =
         "t_s,spin_rpm,spin_uncertainty_rpm\n0,1000,1\n100,1000.4,1\n200,1000.9,1\n300,1001.5,1\n";
     let measured = read("spin.csv", text).unwrap();
-    let keys = ["start.spin_rpm", "friction.spin_viscous_Nms"];
-    let keys = keys.map(|key| Free::parse(key, &document).unwrap());
+    let keys = ["start.spin_rpm", "friction.spin_viscous_Nms"]
+        .map(|key| Free::parse(key, &document).unwrap());
     let model = Model::new(&document, keys.to_vec(), measured).unwrap();
     let fit = fit(&model, &|| true, &|_, _| {}).unwrap();
     let friction = &fit.keys[1];

@@ -27,8 +27,9 @@ fn flight(omega: [f64; 3], seconds: f64) -> Vec<[f64; 3]> {
         "thrown-phone",
         &[&format!("start.omega_rad_per_s={omega:?}")],
     );
-    let values = at_times(&series, &Arc::new(thrown), &|| true);
-    let values = values.unwrap().unwrap();
+    let values = at_times(&series, &Arc::new(thrown), &|| true)
+        .unwrap()
+        .unwrap();
     (0..rows as usize)
         .map(|row| [0, 1, 2].map(|axis| values[axis][row]))
         .collect()

@@ -95,8 +95,10 @@ fn segments_count_edits_of_time_step_scheme_and_gravity_from_the_next_row_on() {
     ];
     let motion = "scheme = 'report'\ntime_step_s = 0.001\nsteps = 20";
     let samples = samples(simulation(motion, &edits));
-    let segments = samples.iter().map(|sample| sample.segment.to_string());
-    let segments: String = segments.collect();
+    let segments: String = samples
+        .iter()
+        .map(|sample| sample.segment.to_string())
+        .collect();
     assert_eq!(segments, "011122333344466666666");
 }
 

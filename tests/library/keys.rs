@@ -111,8 +111,10 @@ fn the_help_finds_keys_by_words_that_are_not_theirs() {
 /// The names of all keys there are in the lab.
 fn keys() -> Vec<String> {
     let of_panes = panes::rows().flat_map(|pane| pane.keys);
-    let rows = BINDINGS.iter().chain(of_panes);
-    let rows = rows.filter(|row| row.modes.contains(&Mode::Lab));
+    let rows = BINDINGS
+        .iter()
+        .chain(of_panes)
+        .filter(|row| row.modes.contains(&Mode::Lab));
     rows.flat_map(|row| row.keys)
         .map(ToString::to_string)
         .collect()
@@ -141,8 +143,11 @@ fn named(text: &str) -> Vec<String> {
             .trim_end_matches(['.', ',', ';', ':', ')'])
             .trim_start_matches('(');
         let bare = whole.trim_matches('`');
-        let next = words.get(at + 1).copied().unwrap_or_default();
-        let next = next.trim_matches([',', '.', ';']);
+        let next = words
+            .get(at + 1)
+            .copied()
+            .unwrap_or_default()
+            .trim_matches([',', '.', ';']);
         let is_named = whole == format!("`{bare}`")
             || word.trim_end_matches(['.', ',', ';', ':']) == format!("({bare})")
             || word.ends_with(':')
@@ -152,15 +157,17 @@ fn named(text: &str) -> Vec<String> {
         }
     }
     let rows = text.lines().map(str::trim_start);
-    let listed = rows.filter_map(|line| Some(line.split_once("    ")?.0));
-    let listed = listed.filter(|key| is_letter(key));
+    let listed = rows
+        .filter_map(|line| Some(line.split_once("    ")?.0))
+        .filter(|key| is_letter(key));
     named.extend(listed.map(str::to_owned));
     named
 }
 
 fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
-    let entries = fs::read_dir(folder).unwrap();
-    let entries = entries.map(|entry| entry.unwrap().path());
+    let entries = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path());
     let (folders, files): (Vec<_>, Vec<_>) = entries.partition(|path| path.is_dir());
     let below = folders
         .iter()

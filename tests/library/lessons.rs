@@ -496,8 +496,9 @@ fn lessons() -> Vec<Lesson> {
 #[test]
 fn every_lesson_of_the_folder_is_in_the_table() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("presets/lessons");
-    let files = fs::read_dir(folder).into_iter().flatten();
-    let mut files: Vec<_> = files
+    let mut files: Vec<_> = fs::read_dir(folder)
+        .into_iter()
+        .flatten()
         .map(|file| file.unwrap().file_name().into_string().unwrap())
         .collect();
     let mut table: Vec<_> = shipped::LESSONS

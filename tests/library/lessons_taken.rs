@@ -351,8 +351,9 @@ fn each_page_opens_with_what_matters_and_is_the_same_after_wandering() {
 
 #[test]
 fn a_page_plays_its_run_and_n_leads_to_its_end() {
-    let text = LESSON.replace("go_to = \"3 s\"", "speed = 0.5\nrun_until = \"t_s >= 3\"");
-    let text = text.replace("## Compare\n", "## Compare\n\nWatch.\n");
+    let text = LESSON
+        .replace("go_to = \"3 s\"", "speed = 0.5\nrun_until = \"t_s >= 3\"")
+        .replace("## Compare\n", "## Compare\n\nWatch.\n");
     let (mut stage, _folder, name) = with(&text);
     stage.lesson(&name, 1).arrive().press("nn").wait(0.5);
     stage

@@ -52,10 +52,12 @@ enum Accident {
 }
 
 fn number() -> impl Strategy<Value = String> {
-    let strange = "0 -0.0 -1 1 2 1e308 -1e308 1e-308 5e-324 nan inf -inf 1e154 1e-154 1e100 \
+    let strange: Vec<_> =
+        "0 -0.0 -1 1 2 1e308 -1e308 1e-308 5e-324 nan inf -inf 1e154 1e-154 1e100 \
         1e-100 100000 9223372036854775807 -9223372036854775808 9223372036854775808 0x10 1_000 \
-        1e3 [] {} true \"text\"";
-    let strange: Vec<_> = strange.split(' ').collect();
+        1e3 [] {} true \"text\""
+            .split(' ')
+            .collect();
     prop_oneof![
         prop::sample::select(strange).prop_map(str::to_owned),
         any::<f64>().prop_map(|number| format!("{number:?}")),

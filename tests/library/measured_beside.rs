@@ -135,9 +135,11 @@ fn on_a_small_screen_nothing_is_left_out_for_a_curve_shown_twice() {
             path.display()
         ));
         let picture = stage.picture();
-        let names = picture.lines().filter_map(|line| line.strip_prefix('│'));
-        let names = names.filter_map(|line| line.split(' ').next().map(str::to_owned));
-        let names = names.filter(|name| ["x", "y", "z", "tilt"].contains(&name.as_str()));
+        let names = picture
+            .lines()
+            .filter_map(|line| line.strip_prefix('│'))
+            .filter_map(|line| line.split(' ').next().map(str::to_owned))
+            .filter(|name| ["x", "y", "z", "tilt"].contains(&name.as_str()));
         names.collect::<Vec<_>>()
     };
     assert_eq!(strips(24), ["tilt", "x", "y", "z", "tilt"]);
@@ -242,8 +244,9 @@ fn what_the_run_is_known_to_say_is_not_computed_again() {
     let text = "t_s,x_m,azimuth_deg\n1,0.2,350\n2,0.3,20\n";
     let measured = data::read("bench.csv", text).unwrap();
     let run = Arc::new(preset("method-2", &["motion.steps=200"]));
-    let said = data::at_times(measured.series().unwrap(), &run, &|| true);
-    let said = said.unwrap().unwrap();
+    let said = data::at_times(measured.series().unwrap(), &run, &|| true)
+        .unwrap()
+        .unwrap();
     let knowing = |said: &[Vec<f64>]| KnownNumbers {
         recorded: None,
         said: Some(said.to_vec()),

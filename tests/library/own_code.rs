@@ -23,8 +23,8 @@ fn folder(name: &str) -> PathBuf {
 /// The names of the files of a folder without their ends, and their texts.
 fn files(name: &str) -> Vec<(String, String)> {
     let folder = folder(name);
-    let all = names(&folder).into_iter();
-    let all: Vec<_> = all
+    let all: Vec<_> = names(&folder)
+        .into_iter()
         .map(|file| {
             let text = fs::read_to_string(folder.join(&file)).unwrap();
             (file.trim_end_matches(".csv").to_owned(), text)

@@ -127,8 +127,8 @@ fn no_rim_no_rows_of_it() {
     let rim = "[body.rim]\npoints = 4\nradius_m = 1\nheight_m = 1\npoint_mass_kg = 1\n";
     let rimless = TWO_PUSHES
         .replace(rim, "")
-        .replace("at_m = [3, 0, 4]", "at_m = [3, 0, 4]\nmass_kg = 1");
-    let rimless = rimless.replace("at_m = [0, 0, 2]", "at_m = [0, 1, 2]\nmass_kg = 1");
+        .replace("at_m = [3, 0, 4]", "at_m = [3, 0, 4]\nmass_kg = 1")
+        .replace("at_m = [0, 0, 2]", "at_m = [0, 1, 2]\nmass_kg = 1");
     assert_eq!(keys(&parse(&rimless), "body"), Vec::<String>::new());
 }
 

@@ -376,8 +376,9 @@ fn each_value_of_a_part_is_listed_and_a_dimension_that_it_has_not_is_none() {
         ("block", "size x 0.1, size y 0.1, size z 0.2"),
     ] {
         let group = format!("part {shape}");
-        let rows = list.iter().filter(|row| row.group == group);
-        let rows: Vec<_> = rows
+        let rows: Vec<_> = list
+            .iter()
+            .filter(|row| row.group == group)
             .map(|row| format!("{} {}", row.label, row.shown()))
             .collect();
         let place = "mass 2, x 0, y 0, z 0.5, axis x 0, axis y 0, axis z 1";
@@ -423,8 +424,8 @@ fn a_part_takes_every_other_shape_as_large_as_it_was() {
                 + &part("ring", "radius_m = 1").replace("'ring'\nmass", "'r'\nmass")),
         ));
         for (other, ..) in &shapes {
-            let turned = changed(&scenario.file, "body.part.0.shape", Value::from(*other));
-            let turned = turned.unwrap_or_else(|problems| panic!("{shape} to {other}: {problems}"));
+            let turned = changed(&scenario.file, "body.part.0.shape", Value::from(*other))
+                .unwrap_or_else(|problems| panic!("{shape} to {other}: {problems}"));
             assert_eq!(turned.file.body.part[0].shape, *other);
         }
         // Given by its moments it is the same body.

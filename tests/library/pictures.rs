@@ -140,8 +140,7 @@ fn columns_with(picture: &str, signs: &str) -> Vec<usize> {
     let lines = picture.lines().filter(|line| line.starts_with(['│', '|']));
     let mut columns: Vec<_> = lines
         .flat_map(|line| -> Vec<usize> {
-            let cells = line.chars().enumerate();
-            let cells = cells.filter(|(_, c)| signs.contains(*c));
+            let cells = line.chars().enumerate().filter(|(_, c)| signs.contains(*c));
             cells.map(|(x, _)| x - 1).collect()
         })
         .collect();
@@ -219,8 +218,11 @@ fn pushes_and_edits_are_marked_where_they_were() {
         insta::assert_snapshot!(format!("marks_{name}"), picture);
         // 40 s on 38 columns: pushed for the first 20 s; edits at 15 s and at 30 s.
         let border = picture.lines().last().unwrap();
-        let pushed = border.chars().skip(1).take_while(|c| !"─-".contains(*c));
-        let pushed: String = pushed.collect();
+        let pushed: String = border
+            .chars()
+            .skip(1)
+            .take_while(|c| !"─-".contains(*c))
+            .collect();
         assert_eq!(pushed.chars().count(), 19, "{border}");
         assert!(pushed.contains("push"), "{border}");
         assert_eq!(columns_with(&picture, ":"), [14, 28], "{picture}");
@@ -587,8 +589,7 @@ fn the_selected_line_is_seen_at_every_place_and_size() {
 }
 
 fn question() -> InputForm {
-    let fields = [("time step", "0.05 s"), ("steps", "4600")];
-    let fields = fields
+    let fields = [("time step", "0.05 s"), ("steps", "4600")]
         .map(|(label, text)| InputField::new(label, text))
         .into();
     let keys = "Enter takes it, Esc leaves it";

@@ -19,8 +19,8 @@ use std::sync::Arc;
 #[test]
 fn the_table_of_presets_is_the_folder() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("presets");
-    let files = names(&folder).into_iter();
-    let files: BTreeSet<_> = files
+    let files: BTreeSet<_> = names(&folder)
+        .into_iter()
         .filter_map(|name| name.strip_suffix(".toml").map(str::to_owned))
         .collect();
     let table = PRESETS.iter().map(|preset| preset.name.to_owned());

@@ -308,8 +308,9 @@ fn blemish(text: &str) -> Option<String> {
 
 #[test]
 fn theory_of_a_top_that_is_pulled_up_is_about_z_as_what_is_measured() {
-    let names = "precession_rad_per_s nutation_period_s lowest_tilt_deg highest_tilt_deg";
-    let names: Vec<_> = names.split(' ').collect();
+    let names: Vec<_> = "precession_rad_per_s nutation_period_s lowest_tilt_deg highest_tilt_deg"
+        .split(' ')
+        .collect();
     let set = ["motion.gravity_m_per_s2=-9.8", "motion.scheme=exact"];
     let hanging = preset("loops", &set);
     for (scenario, names) in [(preset("earth", &[]), &names[..1]), (hanging, &names)] {
@@ -399,8 +400,9 @@ fn no_text_shows_what_is_no_number() {
             let readouts = readouts(&scenario);
             let text = summary(readouts.clone()).to_string();
             assert_eq!(blemish(&text), None, "{case}\n{text}");
-            let numbers = serde_json::to_string(&readouts).unwrap();
-            let numbers = numbers.replace(":null", ":none");
+            let numbers = serde_json::to_string(&readouts)
+                .unwrap()
+                .replace(":null", ":none");
             assert_eq!(blemish(&numbers), None, "{case}\n{numbers}");
             let picture = picture(&scenario);
             assert_eq!(blemish(&picture), None, "{case}\n{picture}");

@@ -457,8 +457,9 @@ fn read_refusal(path: &Path) -> String {
 #[test]
 fn files_that_are_no_scenarios() {
     let lab = tempfile::tempdir().unwrap();
-    let header = with_line(WHOLE, 21, "time_step_s = 0");
-    let header = header.trim_end().replace('\n', "\n# ");
+    let header = with_line(WHOLE, 21, "time_step_s = 0")
+        .trim_end()
+        .replace('\n', "\n# ");
     let wrong = format!("# {header}\nstep,t_s,x_m\n");
     for (name, bytes, words) in [
         ("empty.toml", &b""[..], &["title: is missing"][..]),

@@ -163,14 +163,16 @@ fn the_wheel_is_as_large_as_its_pane_allows() {
     let rows = rows(&picture);
     // Above the legend, whose words have the letter too.
     let of_scene = &rows[place.y as usize + 1..place.bottom() as usize - 4];
-    let masses = of_scene.iter().flat_map(|row| {
-        let row = &row[place.x as usize..place.right() as usize];
-        row.iter()
-            .enumerate()
-            .filter(|(_, sign)| ['O', 'o', '·'].contains(sign))
-            .map(|(x, _)| x)
-    });
-    let masses: Vec<_> = masses.collect();
+    let masses: Vec<_> = of_scene
+        .iter()
+        .flat_map(|row| {
+            let row = &row[place.x as usize..place.right() as usize];
+            row.iter()
+                .enumerate()
+                .filter(|(_, sign)| ['O', 'o', '·'].contains(sign))
+                .map(|(x, _)| x)
+        })
+        .collect();
     let width = masses.iter().max().unwrap() - masses.iter().min().unwrap();
     assert!(width >= 11, "{width} columns in\n{picture}");
 }

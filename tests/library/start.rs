@@ -319,8 +319,11 @@ fn the_editor_keeps_the_way_in_which_the_start_is_told() {
     let steady = with(&scenario, "start.steady", true);
     assert!((steady.file.start.spin_rad_per_s.unwrap() - 30.0).abs() < 1e-12);
     // And the other way round.
-    let told = with(&spun, "start.omega_rad_per_s.0", 0.5);
-    let told = told.file.start.omega_rad_per_s.unwrap();
+    let told = with(&spun, "start.omega_rad_per_s.0", 0.5)
+        .file
+        .start
+        .omega_rad_per_s
+        .unwrap();
     assert!((Vector3::from(told) - Vector3::new(0.5, 0.0, 0.0)).x == 0.0);
     assert!((told[1].hypot(told[2]) - TAU).abs() < 1e-12);
     let framed = with(&spun, "start.omega_frame", "body");

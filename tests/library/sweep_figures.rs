@@ -15,8 +15,9 @@ fn a_line_of_theory_with_gaps_says_where_they_are_explained() {
     let whole = SWEEP.replace("30,,,0.87,\n", "");
     assert_eq!(told(&whole), None);
     // A logarithmic axis does not show 0.
-    let zero = whole.replace("0.90,0.01", "0,0.01");
-    let zero = zero.replace("0.88,0.02", "900,0.02");
+    let zero = whole
+        .replace("0.90,0.01", "0,0.01")
+        .replace("0.88,0.02", "900,0.02");
     assert!(said(&zero).starts_with("1 of 6 values"));
     let names = |text: &str| chart(text).panels[0].series[0].name.clone();
     assert_eq!(names(&gappy), "theory (gaps: no prediction)");

@@ -365,8 +365,9 @@ fn measurement_is_theory(name: &str, scenario: &Arc<Scenario>, scheme: f64) {
 
 #[test]
 fn what_is_measured_on_exact_motion_is_what_theory_says() {
-    let names = table().map(|row| row.name);
-    let names = names.chain(["torque-free", "fast-top"]);
+    let names = table()
+        .map(|row| row.name)
+        .chain(["torque-free", "fast-top"]);
     for name in names {
         let scenario = preset(name, &[]);
         let step = scenario.motion.time_step_s;

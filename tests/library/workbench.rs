@@ -561,8 +561,10 @@ fn extent_of_the_path(picture: &str) -> (f64, f64) {
 }
 
 fn any_key() -> impl Strategy<Value = Key> {
-    let bound = BINDINGS.iter().flat_map(|row| row.keys.iter().copied());
-    let bound: Vec<Key> = bound.collect();
+    let bound: Vec<Key> = BINDINGS
+        .iter()
+        .flat_map(|row| row.keys.iter().copied())
+        .collect();
     prop_oneof![8 => prop::sample::select(bound), 1 => prop::char::range('0', 'z').prop_map(Key::Char)]
 }
 

@@ -73,8 +73,8 @@ fn notes_follow_the_lab_from_page_to_page() {
     lab.wait_for("2 of 10");
     let (sender, lines) = mpsc::channel();
     let mut notes = loop {
-        let mut notes = ground.command("lesson --notes");
-        let mut notes = notes
+        let mut notes = ground
+            .command("lesson --notes")
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
             .spawn()

@@ -571,8 +571,9 @@ fn memory_does_not_grow_with_the_run() {
 #[ignore = "draws runs of millions of steps: ten seconds"]
 fn memory_does_not_grow_with_what_is_drawn() {
     let lab = Ground::new();
-    let rows = (0..200_000).map(|row| format!("{row},{}\n", 1000 + row * 41 % 97));
-    let rows = rows.collect::<String>();
+    let rows = (0..200_000)
+        .map(|row| format!("{row},{}\n", 1000 + row * 41 % 97))
+        .collect::<String>();
     lab.write("many.csv", &format!("t_s,spin_rpm\n{rows}"));
     for arguments in [
         "writeup falling --set motion.time_step_s=1e7 --set motion.steps=200 -o falling || [ $? = 1 ]",

@@ -95,13 +95,13 @@ fn the_table_names_scenario_kind_and_columns() {
     let heads = "scheme dt s steps error m at end m order energy L.axle L_z ns/step";
     assert_eq!(words(table(&text)[0]), heads);
     // All schemes that make an error; the scenario's time step, a half, a quarter, an eighth.
-    let expected = ["report", "rk4", "strang", "srkn11b"]
+    let expected: Vec<_> = ["report", "rk4", "strang", "srkn11b"]
         .iter()
         .flat_map(|scheme| {
             ["0.001 1000", "0.0005 2000", "0.00025 4000", "0.000125 8000"]
                 .map(|step| format!("{scheme} {step} "))
-        });
-    let expected: Vec<_> = expected.collect();
+        })
+        .collect();
     assert_eq!(table(&text).len(), 1 + expected.len());
     for (row, begin) in table(&text)[1..].iter().zip(expected) {
         assert!(words(row).starts_with(&begin), "{begin}: {text}");
@@ -118,10 +118,12 @@ fn schemes_and_time_steps_are_those_asked_for() {
         "method-2 --duration 2 --schemes strang,exact,report --time-steps 0.01,0.05,0.02,0.05 -o -";
     let rows = rows(&told(&lab, args));
     let seen: Vec<_> = rows.iter().map(|row| row[..3].join(" ")).collect();
-    let expected = ["strang", "exact", "report"].iter().flat_map(|scheme| {
-        ["0.05 40", "0.02 100", "0.01 200"].map(|step| format!("{scheme} {step}"))
-    });
-    let expected: Vec<_> = expected.collect();
+    let expected: Vec<_> = ["strang", "exact", "report"]
+        .iter()
+        .flat_map(|scheme| {
+            ["0.05 40", "0.02 100", "0.01 200"].map(|step| format!("{scheme} {step}"))
+        })
+        .collect();
     assert_eq!(seen, expected, "from coarse to fine, each once");
     for row in &rows {
         assert!(number(row, "Lz_drift") < 1e-15 && number(row, "ns_per_step") > 0.0);

@@ -163,8 +163,7 @@ fn pictures_have_their_width_with_wide_characters() {
         .replace(
             "[start]",
             "[[body.point]]\nname = '轴顶端的小孔'\nat_m = [0, 0, 0.25]\n[start]",
-        );
-    let scenario = scenario
+        )
         .replace("\"body\"\nmass", "\"飞轮\"\nmass")
         .replacen(
             "title",

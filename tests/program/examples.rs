@@ -97,11 +97,17 @@ fn carry_out(of: &str, commands: &[String]) -> usize {
 fn the_examples_of_every_help_work_as_they_are_printed() {
     let ground = Ground::new();
     let help = done(ground.run("--help"));
-    let commands = stdout(&help).split("Commands:\n").nth(1).unwrap();
-    let commands = commands.split("\n\n").next().unwrap().lines();
-    let commands = commands.filter_map(|line| line.strip_prefix("  "));
-    let commands = commands.filter(|line| !line.starts_with(' '));
-    let commands = commands.filter_map(|line| line.split(' ').next());
+    let commands = stdout(&help)
+        .split("Commands:\n")
+        .nth(1)
+        .unwrap()
+        .split("\n\n")
+        .next()
+        .unwrap()
+        .lines()
+        .filter_map(|line| line.strip_prefix("  "))
+        .filter(|line| !line.starts_with(' '))
+        .filter_map(|line| line.split(' ').next());
     let mut count = carry_out("gyrolab", &examples(stdout(&help)));
     for command in commands.filter(|name| *name != "help") {
         let help = done(ground.run(&format!("{command} --help")));

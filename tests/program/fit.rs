@@ -94,8 +94,11 @@ fn the_csv_is_drawn_and_runs_again() {
         ground.refused("verify other.csv", 1, &[words]);
     }
     let mut lines = csv.lines();
-    let command = lines.find_map(|line| line.strip_prefix("# # command = "));
-    let command: toml::Value = command.unwrap().parse().unwrap();
+    let command: toml::Value = lines
+        .find_map(|line| line.strip_prefix("# # command = "))
+        .unwrap()
+        .parse()
+        .unwrap();
     let again = command.as_str().unwrap().replacen("gyrolab", "$G", 1);
     done(ground.shell(&format!("{again} -o again.csv")));
     assert_eq!(ground.read("again.csv"), csv);

@@ -10,11 +10,18 @@ use std::process::Command;
 fn every_command_has_a_page_with_examples() {
     let ground = Ground::new();
     let help = done(ground.run("--help"));
-    let commands = stdout(&help).split("Commands:\n").nth(1).unwrap();
-    let commands = commands.split("\n\n").next().unwrap().lines();
-    let commands = commands.filter_map(|line| line.strip_prefix("  "));
-    let commands = commands.filter(|line| !line.starts_with(' '));
-    let mut commands: Vec<_> = commands.filter_map(|line| line.split(' ').next()).collect();
+    let mut commands: Vec<_> = stdout(&help)
+        .split("Commands:\n")
+        .nth(1)
+        .unwrap()
+        .split("\n\n")
+        .next()
+        .unwrap()
+        .lines()
+        .filter_map(|line| line.strip_prefix("  "))
+        .filter(|line| !line.starts_with(' '))
+        .filter_map(|line| line.split(' ').next())
+        .collect();
     commands.retain(|name| *name != "help");
     assert!(commands.contains(&"verify"), "{commands:?}");
     done(ground.run("man --all -o man1"));

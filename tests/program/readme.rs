@@ -119,8 +119,13 @@ fn the_demonstration_is_recorded_to_its_end() {
 fn the_picture_is_what_its_command_draws() {
     let ground = Ground::new();
     let readme = include_str!("../../README.md");
-    let command = readme.split("`gyrolab ").nth(1).unwrap();
-    let command = command.split('`').next().unwrap();
+    let command = readme
+        .split("`gyrolab ")
+        .nth(1)
+        .unwrap()
+        .split('`')
+        .next()
+        .unwrap();
     let args: Vec<_> = command.split_whitespace().collect();
     assert_eq!(
         (args[0], args[args.len() - 1]),

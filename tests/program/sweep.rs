@@ -203,8 +203,9 @@ fn a_part_of_the_file_is_gone_on_with_and_no_row_is_computed_again() {
     };
     let end = whole.len();
     for cut in [0, 1, 50, end - 300, end - 7, end - 1, end] {
-        let kept = whole[..cut].rfind('\n');
-        let kept = kept.map_or(0, |end| rows(&whole[..end]).len());
+        let kept = whole[..cut]
+            .rfind('\n')
+            .map_or(0, |end| rows(&whole[..end]).len());
         goes_on(&whole.as_bytes()[..cut], kept.saturating_sub(1));
     }
     // What is no row, and all behind it, is computed anew: a cell too few, another point, other bytes.
@@ -468,8 +469,10 @@ fn rows_without_readouts_are_told_by_every_command_that_finds_them() {
     // A file that is whole already, and one that was ended behind its second row or before its last.
     is_told(&make(&ground, args, "whole.csv"));
     for (kept, empty) in [(2, 1), (3, 2)] {
-        let lost = rows(&whole).into_iter().skip(1 + kept);
-        let lost = lost.map(|row| row.len() + 1);
+        let lost = rows(&whole)
+            .into_iter()
+            .skip(1 + kept)
+            .map(|row| row.len() + 1);
         ground.write("cut.csv.part", &whole[..whole.len() - lost.sum::<usize>()]);
         let told = make(&ground, args, "cut.csv");
         has(

@@ -259,13 +259,13 @@ fn child() {
         return;
     };
     let folder = Path::new(&folder);
-    let exporting = Exporting::begin(
+    let mut exporting = Exporting::begin(
         endless(),
         &folder.join("run.csv"),
         CsvLayout::every(every(1000)),
         false,
-    );
-    let mut exporting = exporting.unwrap();
+    )
+    .unwrap();
     at_exit::run_hooks(Release::Suspend);
     let (step, _) = exporting.progress();
     while exporting.progress().0 == step {

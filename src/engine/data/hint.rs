@@ -52,29 +52,25 @@ fn completed(cells: &Csv, map: &[Renaming], origin: &str, only: Option<&str>) ->
         added: Vec::new(),
     };
     guess.add_all(only, origin);
-    let reads = |added: &[(usize, String)]| {
-        let mut named_cells = cells.clone();
-        for (place, name) in added {
-            let known = in_known_unit(name, is_known);
-            let known = known.map_or_else(|| format!("({LEFT_OUT})"), |(known, _)| known);
-            named_cells.name_column(*place, &known, 1.0);
-            named_cells.own[*place].is_mapped = true;
-        }
-        name_columns(&mut named_cells, origin, |_| true).is_ok() && named(&named_cells).is_ok()
-    };
-    if !reads(&guess.added) {
-        return None;
+    let mut named_cells = cells.clone();
+    for (place, name) in &guess.added {
+        let known = in_known_unit(name, is_known)
+            .map_or_else(|| format!("({LEFT_OUT})"), |(known, _)| known);
+        named_cells.name_column(*place, &known, 1.0);
+        named_cells.own[*place].is_mapped = true;
     }
-    map_option(cells, map, &guess.added)
+    let is_read =
+        name_columns(&mut named_cells, origin, |_| true).is_ok() && named(&named_cells).is_ok();
+    is_read.then(|| map_option(cells, map, &guess.added))?
 }
 
 /// The option that maps what `map` does, and the columns at these places.
 pub fn map_option(cells: &Csv, map: &[Renaming], added: &[(usize, String)]) -> Option<String> {
     let given = map.iter().map(|(column, name)| format!("{column}={name}"));
-    let added = added
+    let also = added
         .iter()
         .map(|(place, name)| format!("{}={name}", label(cells, *place)));
-    let all = given.chain(added).collect::<Vec<_>>().join(",");
+    let all = given.chain(also).collect::<Vec<_>>().join(",");
     if all
         .chars()
         .all(|c| c.is_ascii_alphanumeric() || "_=,.:/+-@".contains(c))
@@ -249,10 +245,10 @@ impl Guess<'_> {
 
     fn is_gyroscope(&self, origin: &str) -> bool {
         let says_so = |text: &str| {
-            let text = text.to_lowercase();
+            let lower = text.to_lowercase();
             ["gyr", "rot", "rate", "angular", "seconds_elapsed"]
                 .iter()
-                .any(|word| text.contains(word))
+                .any(|word| lower.contains(word))
         };
         says_so(origin) || self.cells.own.iter().any(|own| says_so(&own.name))
     }

@@ -131,8 +131,8 @@ impl Origin {
             format!("its metadata ({version}) is not understood by gyrolab {own}: {why}")
         })?;
         for file in &mut origin.files {
-            let (text, after) = rest.split_at_checked(file.bytes).ok_or(BROKEN)?;
-            (file.text, rest) = (text.to_owned(), after);
+            let (own, after) = rest.split_at_checked(file.bytes).ok_or(BROKEN)?;
+            (file.text, rest) = (own.to_owned(), after);
         }
         let is_whole = rest.is_empty() && !origin.files.is_empty();
         is_whole.then_some(origin).ok_or(BROKEN.to_owned())

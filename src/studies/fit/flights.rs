@@ -5,7 +5,7 @@
 //! rows that one such g about each axis explains within the noise, where the body turns fast. A hand that turns or catches the
 //! body changes the rates without such a product.
 
-use super::thrown::{flies, recorded};
+use super::thrown::{flies, product, recorded};
 use crate::engine::data::TimeSeries;
 use crate::engine::scenario::Scenario;
 use nalgebra::Vector3;
@@ -155,7 +155,6 @@ impl Squares {
 impl Recording {
     fn new(recorded: Vec<(f64, Vector3<f64>)>) -> Self {
         let (times_s, rates): (Vec<f64>, Vec<Vector3<f64>>) = recorded.into_iter().unzip();
-        let product = |w: &Vector3<f64>| Vector3::new(w.y * w.z, w.z * w.x, w.x * w.y);
         let mut sum = Vector3::zeros();
         let mut sums = Vec::with_capacity(rates.len());
         for row in 0..rates.len() {

@@ -95,7 +95,7 @@ fn start(
             .and_then(|axis| axis.parse::<usize>().ok());
         let value = match (&axes_of_key[..], axis) {
             ([_, ..], _) => {
-                let moment: f64 = axes_of_key.iter().map(|own| moments[*own]).sum();
+                let moment: f64 = axes_of_key.iter().map(|place| moments[*place]).sum();
                 factor * moment / axes_of_key.len() as f64
             }
             ([], Some(axis)) => rates[axis.min(2)],
@@ -140,6 +140,11 @@ pub(super) fn recorded(series: &TimeSeries) -> Option<Vec<(f64, Vector3<f64>)>> 
     Some(rates.collect())
 }
 
+/// The products of each two of three rates.
+pub(super) fn product(w: &Vector3<f64>) -> Vector3<f64> {
+    Vector3::new(w.y * w.z, w.z * w.x, w.x * w.y)
+}
+
 /// The rates of a recording, and their products summed up from time 0 on.
 struct Sums {
     mean_rate: Vector3<f64>,
@@ -150,7 +155,6 @@ struct Sums {
 
 impl Sums {
     fn new(recorded: &[(f64, Vector3<f64>)]) -> Option<Self> {
-        let product = |w: &Vector3<f64>| Vector3::new(w.y * w.z, w.z * w.x, w.x * w.y);
         let (mut before_s, mut before) = (0.0, product(&recorded.first()?.1));
         let mut sum = Vector3::zeros();
         let mut rows = Vec::with_capacity(recorded.len());

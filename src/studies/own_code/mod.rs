@@ -219,9 +219,9 @@ impl CheckOutcome<'_> {
         }
         self.try_pairs(&search);
         let single_differs = single.and_then(|single| single.differs);
-        if let Some(differs) = single_differs.filter(|_| self.explanations.is_empty()) {
+        if let Some(first) = single_differs.filter(|_| self.explanations.is_empty()) {
             search.is_single = true;
-            search.first = (differs.row, differs.step);
+            search.first = (first.row, first.step);
             self.explanations = search.alone().0;
             self.try_pairs(&search);
         }

@@ -91,15 +91,14 @@ impl ProgramColumn {
 
     /// The unit of the last digit of `value` in this column. Where all is 0 without decimals, 0 is meant.
     fn unit(&self, value: f64) -> f64 {
-        let power = |exponent: i32| 10_f64.powi(exponent);
-        let of_decimals = power(self.decimals.saturating_neg());
+        let of_decimals = 10_f64.powi(self.decimals.saturating_neg());
         match (value == 0.0, self.significant) {
             (_, 0) if self.decimals <= 0 => return 0.0,
             (true, _) | (_, 0) => return of_decimals,
             _ => {}
         }
         let first = libm::log10(value.abs()).floor() as i32;
-        of_decimals.max(power(first + 1 - self.significant))
+        of_decimals.max(10_f64.powi(first + 1 - self.significant))
     }
 
     /// Whether `yours` agrees with the scheme's value, of which `slack` is not known.

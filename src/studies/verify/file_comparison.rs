@@ -161,7 +161,7 @@ impl FileComparison {
     fn fields_differ(&self, there: &[u8], computed: &[u8]) -> Option<String> {
         let line = self.line;
         let names = self.names.as_deref().unwrap_or_default();
-        let [cells, wanted] = [there, computed].map(|line| fields(line, self.delimiter));
+        let [cells, wanted] = [there, computed].map(|text| fields(text, self.delimiter));
         let mut differing = Vec::new();
         if cells.len() == wanted.len() && names.len() == wanted.len() {
             differing.extend((0..names.len()).filter(|&at| cells[at] != wanted[at]));
@@ -175,12 +175,12 @@ impl FileComparison {
         let at = *differing
             .iter()
             .find(|at| !self.left_out.contains(&names[**at].as_str()))?;
-        let [there, computed] = [&cells[at], &wanted[at]].map(|text| match text.as_str() {
+        let [cell, expected] = [&cells[at], &wanted[at]].map(|text| match text.as_str() {
             "" => "empty".to_owned(),
             text => brief(text, MOST_SHOWN),
         });
         let (row, column) = (self.row_of(names, &wanted), &names[at]);
-        let field = format!("line {line}{row}: {column} is {there}, computed {computed}");
+        let field = format!("line {line}{row}: {column} is {cell}, computed {expected}");
         if self.rows == 0 && differing.len() > 1 {
             let why = "its rows are not those of the scenario in its header: already in the first";
             return Some(format!("{why}, {field}"));
@@ -265,12 +265,12 @@ pub fn first_difference(there: &str, made: &str) -> Option<String> {
         }
     });
     let (line, last) = (first + 1, there.len());
-    let lines = if last > line {
+    let place = if last > line {
         format!("lines {line} to {last}, of which line {line}")
     } else {
         format!("line {line}")
     };
-    Some(format!("{lines} is {there_is}, made again {made_is}"))
+    Some(format!("{place} is {there_is}, made again {made_is}"))
 }
 
 /// The fields of a line; none where it is not text.

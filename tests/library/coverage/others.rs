@@ -139,8 +139,9 @@ fn hold(what: &str, pairs: &[Pair], fewest: usize) {
             let (Some(short), Some(long)) = (pair.short[which], whole) else {
                 continue;
             };
-            let apart = first.zip(second);
-            let apart = apart.map_or(f64::INFINITY, |(a, b)| (a.value - b.value).abs());
+            let apart = first
+                .zip(second)
+                .map_or(f64::INFINITY, |(a, b)| (a.value - b.value).abs());
             let error = short.uncertainty.hypot(long.uncertainty);
             // Halves that differ are of another motion each. The exact motion stays what it is: its halves differ by beats.
             if is_exact || apart <= 0.5 * short.uncertainty {

@@ -125,8 +125,9 @@ fn a_recording_of_phyphox_is_read_as_it_is() {
         assert_eq!(measured.left_out, ["Absolute (rad/s)"]);
         let series = measured.series().unwrap();
         assert_eq!(series.times_s, [0.0, 0.01]);
-        let curves = series.curves.iter();
-        let curves: Vec<_> = curves
+        let curves: Vec<_> = series
+            .curves
+            .iter()
             .map(|curve| {
                 (
                     curve.quantity.name,
