@@ -61,7 +61,7 @@ pub enum Action {
 }
 
 impl Action {
-    /// Whether the nudges of a value before and after it are one act: one undo takes back both.
+    /// Returns whether the nudges of a value before and after it are one act: one undo takes back both.
     pub(super) fn keeps_nudge(self) -> bool {
         matches!(self, Self::Move(..) | Self::Digit(_))
     }
@@ -169,7 +169,7 @@ pub fn signed(direction: Direction, times: i32) -> i32 {
     }
 }
 
-/// How often a key acts that was pressed after this count.
+/// Returns how often a key acts that was pressed after this count.
 pub fn repeated(count: Option<u64>) -> i32 {
     count.unwrap_or(1).min(MOST_REPEATED) as i32
 }

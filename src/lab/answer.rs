@@ -61,7 +61,7 @@ impl Done {
         under_way: None,
     };
 
-    /// The command is complete; the message `text` stays for a few seconds.
+    /// Reports a complete command; the message `text` stays for a few seconds.
     pub(super) fn saying(text: impl Into<String>) -> Self {
         Self::saying_any(Some(text.into()))
     }

@@ -219,9 +219,9 @@ fn above(folder: &Path) -> Option<PathBuf> {
     full.parent().map(Path::to_owned)
 }
 
-/// Whether the file `name` may hold a run: its beginning names `motion`, as a table or key of a scenario or in the header of
-/// an exported CSV. A file that cannot be read counts too, the preview says why; and so does a long scenario, in which a
-/// body of many points may stand before it.
+/// Returns whether the file `name` may hold a run: its beginning names `motion`, as a table or key of a scenario or in
+/// the header of an exported CSV. A file that cannot be read counts too, the preview says why; and so does a long
+/// scenario, in which a body of many points may stand before it.
 fn may_hold_run(name: &str) -> bool {
     let mut head = Vec::new();
     let read = File::open(name).and_then(|file| file.take(PREVIEW_BYTES).read_to_end(&mut head));

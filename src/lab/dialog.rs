@@ -226,7 +226,7 @@ impl Dialog {
         matches!(self.question, DialogKind::Settings)
     }
 
-    /// Whether the user has confirmed that the existing file `path` is to be replaced.
+    /// Returns whether the user has confirmed that the existing file `path` is to be replaced.
     pub(super) fn may_replace(&self, path: &Path) -> bool {
         self.asked_to_replace.as_deref() == Some(path)
     }
@@ -348,7 +348,7 @@ impl Dialog {
     }
 }
 
-/// What the dialog says about a parameter: its meaning, its choices, and when a change takes effect.
+/// Returns what the dialog says about a parameter: its meaning, its choices, and when a change takes effect.
 fn about(parameter: &Parameter) -> Vec<String> {
     let mut lines = vec![parameter.spec.about.to_owned()];
     if parameter.value.is_bool() {

@@ -149,7 +149,7 @@ impl Edits {
         self.perform(acts, false, EditMessage::Text(said), player)
     }
 
-    /// The push that `choice` stands for, as the user chooses it and as it acts at the present step.
+    /// Returns the push that `choice` stands for, as the user chooses it and as it acts at the present step.
     fn given(&self, choice: &PushChoice, player: &Player) -> Result<(NextPush, PushFile), String> {
         let push = self.chosen(choice, player)?;
         let run = player.run();
@@ -361,7 +361,7 @@ impl Edits {
         }
     }
 
-    /// The answer to the command that has made `edit`, which `player` has followed.
+    /// Returns the answer to the command that has made `edit`, which `player` has followed.
     pub(super) fn answer(&self, edit: ScenarioEdit, player: &Player) -> Done {
         let said = match edit.said {
             EditMessage::Nothing => None,

@@ -41,7 +41,7 @@ impl InputField {
         }
     }
 
-    /// The field of `label` with a choice that is not typed: `text` is marked, and no cursor stands behind it.
+    /// Returns the field of `label` with a choice that is not typed: `text` is marked, and no cursor stands behind it.
     pub fn choice(label: &str, text: &str) -> Self {
         let field = Self::new(label, text);
         Self {
@@ -54,12 +54,12 @@ impl InputField {
         self.input.value()
     }
 
-    /// How many code points stand before the cursor.
+    /// Returns how many code points stand before the cursor.
     pub fn cursor(&self) -> usize {
         self.input.cursor()
     }
 
-    /// Whether the whole text is marked: typing then replaces it.
+    /// Returns whether the whole text is marked: typing then replaces it.
     pub fn is_marked(&self) -> bool {
         self.is_marked
     }
@@ -86,7 +86,8 @@ impl InputField {
 }
 
 impl InputForm {
-    /// A form with `title` and `fields`, the first of them selected; `keys` is the line about the keys that end it.
+    /// Returns a form with `title` and `fields`, the first of them selected; `keys` is the line about the keys that end
+    /// it.
     pub fn new(title: &str, fields: Vec<InputField>, keys: &'static str) -> Self {
         Self {
             title: title.to_owned(),
@@ -96,7 +97,7 @@ impl InputForm {
         }
     }
 
-    /// The text of the field `index`, from 0; empty if there is no such field.
+    /// Returns the text of the field `index`, from 0; empty if there is no such field.
     pub fn text(&self, index: usize) -> &str {
         self.fields.get(index).map_or("", InputField::text)
     }
@@ -200,7 +201,7 @@ mod tests {
         InputForm::new("test", fields, "Esc")
     }
 
-    /// What a character of the tests stands for: a key that edits, or itself.
+    /// Returns what a character of the tests stands for: a key that edits, or itself.
     fn edit(key: char) -> FieldEdit {
         match key {
             '«' => Home,

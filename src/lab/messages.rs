@@ -110,7 +110,7 @@ impl Messages {
         is_new
     }
 
-    /// Why the session cannot be saved, if it cannot.
+    /// Returns why the session cannot be saved, if it cannot.
     pub fn trouble(&self) -> Option<&str> {
         self.trouble.as_deref()
     }

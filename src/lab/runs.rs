@@ -55,7 +55,7 @@ impl Runs {
         }
     }
 
-    /// The name under which the user opened the present run: a preset or a file.
+    /// Returns the name under which the user opened the present run: a preset or a file.
     pub fn name(&self) -> &str {
         &self.present().name
     }
@@ -83,12 +83,12 @@ impl Runs {
         self.floor == Some(self.journal.done())
     }
 
-    /// Whether more was done to the runs since undo was kept from taking back what there was.
+    /// Returns whether more was done to the runs since undo was kept from taking back what there was.
     pub fn is_above_floor(&self) -> bool {
         self.floor.is_some_and(|floor| floor != self.journal.done())
     }
 
-    /// How the present run differs from the scenario as it was opened, in words; `None` where it does not.
+    /// Returns how the present run differs from the scenario as it was opened, in words; `None` where it does not.
     pub fn changed_from_file(&self) -> Option<&str> {
         self.changed_from_file.as_deref()
     }
@@ -98,7 +98,7 @@ impl Runs {
         self.original = Original::find(self.name(), file);
     }
 
-    /// `scenario`, the present run's, as it is to be written to a file: what its words say of another motion is marked.
+    /// Returns `scenario`, the present run's, as it is to be written to a file: words about another motion are marked.
     pub(super) fn flag_stale_text(&self, scenario: &Arc<Scenario>) -> Arc<Scenario> {
         self.original.flag_stale_text(scenario)
     }
@@ -108,7 +108,7 @@ impl Runs {
         self.changed_from_file = self.original.difference(scenario);
     }
 
-    /// The journal as the session keeps it, with the pinned run; `write` writes them.
+    /// Returns the journal as the session keeps it, with the pinned run; `write` writes them.
     pub(super) fn kept(
         &mut self,
         reference: Option<Reference>,
@@ -123,7 +123,8 @@ impl Runs {
         kept.clone()
     }
 
-    /// The scenario of the run from step 0 to `step`, with all that was done up to there; `to` says what it is for.
+    /// Returns the scenario of the run from step 0 to `step`, with all that was done up to there; `to` says what it is
+    /// for.
     pub(super) fn run_up_to(&self, step: u64, to: &str) -> Result<Arc<Scenario>, String> {
         if step == 0 {
             return Err(format!(

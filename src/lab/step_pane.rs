@@ -46,14 +46,14 @@ impl StepWorkings {
         })
     }
 
-    /// The phase on `page` with its number, from 1, and how many there are; `None` for a page that shows none.
+    /// Returns the phase on `page` with its number, from 1, and how many there are; `None` for a page that shows none.
     pub fn phase(&self, page: StepPageChoice) -> Option<(&Phase, usize, usize)> {
         let index = page.index(&self.workings)?;
         let phase = self.workings.phases().nth(index)?;
         Some((phase, index + 1, self.workings.phases().count()))
     }
 
-    /// The sum of each column over the first `rows` rows of `table`, the one on `page`; `None` where nobody has
+    /// Returns the sum of each column over the first `rows` rows of `table`, the one on `page`; `None` where nobody has
     /// asked for one.
     pub fn sums(&self, page: StepPageChoice, table: &PointTable, rows: usize) -> Option<Vec<f64>> {
         let (of, sums) = self.sums.as_ref()?;
@@ -75,7 +75,7 @@ impl StepWorkings {
     }
 }
 
-/// The table of `phase` whose rows are added up: its first, if it has rows.
+/// Returns the table of `phase` whose rows are added up: its first, if it has rows.
 pub fn table_of(phase: &Phase) -> Option<&PointTable> {
     let mut values = phase.quantities.iter().map(|quantity| &quantity.value);
     let first = values.find_map(|value| match value {
@@ -91,7 +91,7 @@ pub struct StepPane {
 }
 
 impl StepPane {
-    /// The time step that is taken apart; `None` at step 0, and while the pane is not shown.
+    /// Returns the time step that is taken apart; `None` at step 0, and while the pane is not shown.
     pub fn shown(&self) -> Option<&StepWorkings> {
         self.shown.as_ref()
     }
@@ -137,8 +137,8 @@ impl StepPane {
         ))
     }
 
-    /// The commands that go `times` phases forward or back. The first phase of the next step follows the last phase of
-    /// a step.
+    /// Returns the commands that go `times` phases forward or back. The first phase of the next step follows the last
+    /// phase of a step.
     pub fn other_phase(
         &self,
         times: i32,
@@ -178,7 +178,7 @@ impl StepPane {
         Ok(vec![Command::Step(steps), Command::look("phase", page)])
     }
 
-    /// The command that adds up more rows of the table, or fewer. Beyond either end all rows are added up.
+    /// Returns the command that adds up more rows of the table, or fewer. Beyond either end all rows are added up.
     pub fn other_sum(
         &self,
         direction: Direction,
@@ -212,7 +212,7 @@ impl StepPane {
 }
 
 impl View {
-    /// The command that shows why the axle goes sideways, or the first phase again.
+    /// Returns the command that shows why the axle goes sideways, or the first phase again.
     pub fn why_toggled(&self) -> Command {
         let page = match self.look.phase {
             StepPageChoice::Why => self.page_before,

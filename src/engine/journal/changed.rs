@@ -22,7 +22,7 @@ const MOST_LISTED_CHANGES: usize = 2;
 /// The longest name of a file, in characters; a file of a longer name is called "what was opened".
 const LONGEST_FILE_NAME: usize = 30;
 
-/// The `look_at` line of the file of `scenario`: what the viewer should watch for.
+/// Returns the `look_at` line of the file of `scenario`: what the viewer should watch for.
 pub fn look_at(scenario: &Scenario) -> Option<&str> {
     scenario.file.viewed_text("look_at")
 }
@@ -154,7 +154,8 @@ fn number_change(name: &str, unit: &str, [new, old]: [f64; 2]) -> Option<String>
     (new != old).then(|| format!("{name} {} {unit}, not {}", shortest(new), shortest(old)))
 }
 
-/// How the table `name` has changed: the new values, or, where they are many, that it is another. `None` if it has not.
+/// Returns how the table `name` has changed: the new values, or, where they are many, that it is another. `None` if it
+/// has not.
 fn values<T: Serialize + PartialEq>(name: &str, before: &T, now: &T) -> Option<String> {
     if before == now {
         return None;
@@ -199,7 +200,7 @@ fn written(value: &Value) -> String {
     }
 }
 
-/// How the pushes have changed, in words, by more than the rescaling that a new time step causes.
+/// Returns how the pushes have changed, in words, by more than the rescaling that a new time step causes.
 fn push_change(before: &Scenario, now: &Scenario) -> Option<&'static str> {
     let (old, new) = (&before.file, &now.file);
     if new.push == old.push

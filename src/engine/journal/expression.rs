@@ -74,7 +74,7 @@ fn truth(holds: bool) -> f64 {
 }
 
 impl Operator {
-    /// The result where one side alone decides it, whatever the other is.
+    /// Returns the result where one side alone decides it, whatever the other is.
     fn decided_by(&self, side: Option<f64>) -> Option<f64> {
         match (self.power, side?) {
             (OR, value) if value != 0.0 => Some(1.0),
@@ -83,7 +83,7 @@ impl Operator {
         }
     }
 
-    /// The result with the value `left`; `right` computes the other one where it is needed.
+    /// Returns the result with the value `left`; `right` computes the other one where it is needed.
     fn value(&self, left: Option<f64>, right: impl FnOnce() -> Option<f64>) -> Option<f64> {
         self.decided_by(left).or_else(|| {
             let other = right();
@@ -160,8 +160,8 @@ impl Expression {
         self.value_at(|index| value_of(&self.names[index].0))
     }
 
-    /// The same, with the value of the name of each index, as [`bind`](Self::bind) lists them. A name that cannot change
-    /// the result any more is not looked up.
+    /// Returns the same, with the value of the name of each index, as [`bind`](Self::bind) lists them. A name that
+    /// cannot change the result any more is not looked up.
     pub fn value_at(&self, mut value_of: impl FnMut(usize) -> Option<f64>) -> Option<f64> {
         self.root.value(&mut value_of)
     }
@@ -176,8 +176,8 @@ pub struct Conjunct {
 }
 
 impl Expression {
-    /// The parts that `and` joins, in their order, with the values of the names from `value_of`. A part in parentheses
-    /// counts as one.
+    /// Returns the parts that `and` joins, in their order, with the values of the names from `value_of`. A part in
+    /// parentheses counts as one.
     pub fn conjuncts(&self, mut value_of: impl FnMut(&str) -> Option<f64>) -> Vec<Conjunct> {
         let mut name = |index: usize| value_of(&self.names[index].0);
         let mut parts = Vec::new();
@@ -204,7 +204,7 @@ impl Expression {
 }
 
 impl ExpressionNode {
-    /// The expression in `abs(EXPRESSION - NUMBER)`.
+    /// Returns the expression in `abs(EXPRESSION - NUMBER)`.
     fn off_by(&self) -> Option<&Self> {
         let Self::Absolute(inside) = self else {
             return None;
@@ -272,7 +272,7 @@ struct Parser<'a> {
     depth: usize,
 }
 
-/// The number, name or operator in letters at the beginning of `rest`; empty where it begins with a sign.
+/// Returns the number, name or operator in letters at the beginning of `rest`; empty where it begins with a sign.
 fn word(rest: &str) -> &str {
     let is_number = rest.starts_with(|c: char| c.is_ascii_digit() || c == '.');
     let mut before = ' ';
@@ -285,7 +285,7 @@ fn word(rest: &str) -> &str {
     &rest[..end.unwrap_or(rest.len())]
 }
 
-/// What is wrong with the sign `c`, which `next` follows.
+/// Returns what is wrong with the sign `c`, which `next` follows.
 fn no_meaning(c: char, next: Option<char>) -> String {
     match (c, next) {
         ('=', Some('>')) => "write >= for =>".to_owned(),
@@ -298,14 +298,14 @@ fn no_meaning(c: char, next: Option<char>) -> String {
 }
 
 impl<'a> Parser<'a> {
-    /// What has not been read; it begins with no space.
+    /// Returns what has not been read; it begins with no space.
     fn rest(&mut self) -> &'a str {
         let rest = self.text[self.at..].trim_start();
         self.at = self.text.len() - rest.len();
         rest
     }
 
-    /// The column of the next character that is no space.
+    /// Returns the column of the next character that is no space.
     fn column(&mut self) -> usize {
         self.rest();
         self.text[..self.at].chars().count() + 1
@@ -340,7 +340,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// The operands joined by operators that bind at least as tightly as `least`.
+    /// Returns the operands joined by operators that bind at least as tightly as `least`.
     fn expression(&mut self, least: u8) -> Result<ExpressionNode, Fault> {
         let begin = self.column();
         self.depth += 1;

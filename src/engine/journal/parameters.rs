@@ -42,9 +42,9 @@ pub struct Parameter {
     size: f64,
 }
 
-/// All values of the scenario file `table`, in the order of the table of keys. A vector gives three parameters; each of
-/// the first 50 elements of an array of tables gives a group. `scenario` is the scenario of that file: it provides the spin
-/// or momentum that the file does not contain.
+/// Returns all values of the scenario file `table`, in the order of the table of keys. A vector gives three parameters;
+/// each of the first 50 elements of an array of tables gives a group. `scenario` is the scenario of that file: it
+/// provides the spin or momentum that the file does not contain.
 pub fn parameters(table: &Table, scenario: &Scenario) -> Vec<Parameter> {
     let mut list = Vec::with_capacity(64);
     for keys in KEYS.chunk_by(|one, next| array_of(one) == array_of(next)) {
@@ -59,8 +59,8 @@ pub fn parameters(table: &Table, scenario: &Scenario) -> Vec<Parameter> {
     list
 }
 
-/// The part of `file` that [`parameters`] lists, as a TOML table. It is quick for bodies of many points too, as it copies
-/// only the first 50 points and parts.
+/// Returns the part of `file` that [`parameters`] lists, as a TOML table. It is quick for bodies of many points too, as
+/// it copies only the first 50 points and parts.
 pub fn table_of(file: &ScenarioFile) -> Table {
     let point = file.body.point.iter().take(MOST_LISTED).cloned().collect();
     let part = file.body.part.iter().take(MOST_LISTED).cloned().collect();
@@ -94,9 +94,9 @@ pub fn table_at(scenario: &Scenario, step: u64) -> Table {
     table
 }
 
-/// The checked scenario of `file` with the values of `set`, as `--set key=value` gives them. Where the file gives a spin and
-/// a key is a component of the momentum, the spin is first replaced by the momentum (world frame) that it amounts to;
-/// where it gives a momentum and a key is `steady`, the momentum is replaced by its spin.
+/// Returns the checked scenario of `file` with the values of `set`, as `--set key=value` gives them. Where the file
+/// gives a spin and a key is a component of the momentum, the spin is first replaced by the momentum (world frame) that
+/// it amounts to; where it gives a momentum and a key is `steady`, the momentum is replaced by its spin.
 pub fn changed(file: &ScenarioFile, set: &Table) -> Result<Scenario, Problems> {
     let mut document = Document::from_file("scenario", file)?;
     for (key, value) in set {
@@ -121,7 +121,7 @@ fn names(table: &Table, array: &str) -> Vec<String> {
         .collect()
 }
 
-/// The parameters of one key, at its `place` in `table`: none, one, or the three components of a vector.
+/// Returns the parameters of one key, at its `place` in `table`: none, one, or the three components of a vector.
 fn parameters_of(
     key: &'static SchemaRow,
     place: &str,
@@ -161,8 +161,8 @@ fn parameters_of(
     }
 }
 
-/// The value that the file implies by leaving out the key at `place`, where it follows from other values: the spin or
-/// momentum of a start that is given in another way, the axis and the length of a part.
+/// Returns the value that the file implies by leaving out the key at `place`, where it follows from other values: the
+/// spin or momentum of a start that is given in another way, the axis and the length of a part.
 fn present(key: &SchemaRow, place: &str, table: &Table, scenario: &Scenario) -> Option<Value> {
     let start = &scenario.start;
     match key.path {
@@ -181,8 +181,9 @@ fn present(key: &SchemaRow, place: &str, table: &Table, scenario: &Scenario) -> 
     }
 }
 
-/// Whether the key at `place` fits the other keys of its table: a push has its times either in steps or in seconds, an
-/// angular velocity and Euler rates are listed only where the file gives them, and only given moments are about a point.
+/// Returns whether the key at `place` fits the other keys of its table: a push has its times either in steps or in
+/// seconds, an angular velocity and Euler rates are listed only where the file gives them, and only given moments are
+/// about a point.
 fn is_offered(place: &str, table: &Table) -> bool {
     let Some((inside, name)) = place.rsplit_once('.') else {
         return true;
@@ -251,7 +252,7 @@ impl Parameter {
         self.spec.unit
     }
 
-    /// The value as text: a number with all its digits, text without quotes and with its line ends as `\n`.
+    /// Returns the value as text: a number with all its digits, text without quotes and with its line ends as `\n`.
     pub fn shown(&self) -> String {
         match &self.value {
             Value::Float(number) => shortest(*number),
@@ -263,7 +264,7 @@ impl Parameter {
         }
     }
 
-    /// The value nudged up `times` times, or down where that is negative.
+    /// Returns the value nudged up `times` times, or down where that is negative.
     pub fn nudged(&self, times: i32) -> Result<Value, String> {
         let value = match (&self.value, self.lab.nudge) {
             (_, Nudge::Typed) => return Err("is text: type it".to_owned()),
@@ -280,7 +281,7 @@ impl Parameter {
         self.checked(value)
     }
 
-    /// The choice `times` places after the present one; after the last comes the first.
+    /// Returns the choice `times` places after the present one; after the last comes the first.
     fn cycled(&self, times: i32) -> Result<String, String> {
         let is_now = |choice: &String| Some(choice.as_str()) == self.value.as_str();
         match nudge::cycled(&self.choices, is_now, times) {
@@ -289,7 +290,7 @@ impl Parameter {
         }
     }
 
-    /// The value that the user typed: a number with or without its unit, a word, true or false, or text.
+    /// Returns the value that the user typed: a number with or without its unit, a word, true or false, or text.
     pub fn typed(&self, text: &str) -> Result<Value, String> {
         let value = match self.kind {
             ValueKind::Number(_) => Value::Float(nudge::typed(text, self.unit())?),

@@ -20,10 +20,10 @@ const COUNTED: [&str; 3] = ["first_step", "steps", "accumulates"];
 /// A push is over if less than this share of a time step remains of it; the rest is rounding.
 const PUSH_END_ROUNDING: f64 = 1e-9;
 
-/// The scenario that starts with `state`, the state of the run of `scenario` at `step`. It has the settings and pushes in
-/// force there; edits made at `step` itself are included, later ones are not. Times are counted from the new start: a push
-/// that is over is left out, one in progress is shortened, and a later one is moved. Moved pushes have their times in
-/// seconds.
+/// Returns the scenario that starts with `state`, the state of the run of `scenario` at `step`. It has the settings and
+/// pushes in force there; edits made at `step` itself are included, later ones are not. Times are counted from the new
+/// start: a push that is over is left out, one in progress is shortened, and a later one is moved. Moved pushes have
+/// their times in seconds.
 pub fn scenario_from(scenario: &Scenario, state: &State, step: u64) -> Result<Scenario, Problems> {
     let origin = "the scenario from here";
     let (motion, pushes) = in_force(scenario, step);
@@ -62,7 +62,7 @@ pub fn scenario_from(scenario: &Scenario, state: &State, step: u64) -> Result<Sc
     Document::from_file(origin, &file)?.scenario()
 }
 
-/// The number of steps that make the new run as long, in seconds, as the run of `scenario`.
+/// Returns the number of steps that make the new run as long, in seconds, as the run of `scenario`.
 fn steps_of_same_length(scenario: &Scenario, motion: &Motion) -> u64 {
     if motion.time_step_s == scenario.motion.time_step_s {
         return scenario.steps;
@@ -118,7 +118,7 @@ struct RestartPoint<'a> {
 }
 
 impl RestartPoint<'_> {
-    /// The rest of `push`, number `index` of the run, from now on; `None` where it is over.
+    /// Returns the rest of `push`, number `index` of the run, from now on; `None` where it is over.
     fn push(&self, index: usize, push: &Push) -> Result<Option<PushFile>, Problem> {
         let file = PushFile {
             point: self.scenario.point_name(push.point).unwrap_or_default(),
@@ -148,14 +148,14 @@ impl RestartPoint<'_> {
         }
     }
 
-    /// Whether the time step is still the one for which the scenario's pushes give their step numbers.
+    /// Returns whether the time step is still the one for which the scenario's pushes give their step numbers.
     fn counts_steps(&self) -> bool {
         let mut edits = self.scenario.edits.iter();
         let is_edited = edits.any(|edit| edit.step <= self.step && edit.sets_time_step);
         !is_edited && self.scenario.written_for_s == self.motion.time_step_s
     }
 
-    /// The first step, counted from now, of a push that keeps its times in steps.
+    /// Returns the first step, counted from now, of a push that keeps its times in steps.
     fn first_step(&self, first: u64, accumulates: bool) -> Result<u64, &'static str> {
         match first.checked_sub(self.step).filter(|&first| first > 0) {
             _ if accumulates && !self.counts_steps() => Err(
@@ -191,9 +191,9 @@ impl RestartPoint<'_> {
     }
 }
 
-/// The run of `scenario` with the time step `time_step_s` (s) and, where one is named, `scheme` throughout. It has the
-/// pushes and the edits of gravity and pushes at the same times, and no edits of time step and scheme. It ends at
-/// `end_s` (s).
+/// Returns the run of `scenario` with the time step `time_step_s` (s) and, where one is named, `scheme` throughout. It
+/// has the pushes and the edits of gravity and pushes at the same times, and no edits of time step and scheme. It ends
+/// at `end_s` (s).
 pub fn as_advised(
     scenario: &Scenario,
     time_step_s: f64,
@@ -229,8 +229,8 @@ pub fn as_advised(
     Document::from_file(ADVISED, &file)?.scenario()
 }
 
-/// The edits of `scenario` that a run as advised leaves out, in words: time step, scheme or both. `None` where it has
-/// none.
+/// Returns the edits of `scenario` that a run as advised leaves out, in words: time step, scheme or both. `None` where
+/// it has none.
 pub fn replaced(scenario: &Scenario) -> Option<&'static str> {
     let edits = &scenario.file.edit;
     match REPLACED.map(|key| edits.iter().any(|edit| edit.set.contains_key(key))) {
@@ -241,7 +241,7 @@ pub fn replaced(scenario: &Scenario) -> Option<&'static str> {
     }
 }
 
-/// Whether `value`, set at `key`, makes a push count in steps.
+/// Returns whether `value`, set at `key`, makes a push count in steps.
 fn counts(key: &str, value: &Value) -> bool {
     let last = key.rsplit('.').next().unwrap_or_default();
     let mut inside = value.as_table().into_iter().flat_map(Table::keys);

@@ -13,7 +13,7 @@ fn journal(name: &str) -> Journal {
     Journal::new(name, &opened_scenario(name))
 }
 
-/// The journal of the unchecked `file`.
+/// Returns the journal of the unchecked `file`.
 fn journal_of(file: ScenarioFile) -> Journal {
     let scenario = opened_scenario("method-2");
     Journal::new("edited", &Scenario { file, ..scenario })
@@ -23,7 +23,7 @@ fn perform(journal: &mut Journal, step: u64, act: Act) -> Result<Arc<Scenario>, 
     journal.perform(step, vec![act], false)
 }
 
-/// The run of method-2 after these acts, each at its step.
+/// Returns the run of method-2 after these acts, each at its step.
 fn after(acts: impl IntoIterator<Item = (u64, Act)>) -> Journal {
     let mut journal = journal("method-2");
     for (step, act) in acts {
@@ -62,7 +62,7 @@ fn one(key: &str, value: impl Into<Value>) -> Table {
     Table::from_iter([(key.to_owned(), value.into())])
 }
 
-/// The numbers of edits and of pushes in the run file.
+/// Returns the numbers of edits and of pushes in the run file.
 fn counts(journal: &Journal) -> (usize, usize) {
     let file = journal.file();
     (file.edit.len(), file.push.len())
@@ -226,7 +226,7 @@ fn time_step(journal: &Journal) -> f64 {
     edit.map_or(scenario.motion, |edit| edit.motion).time_step_s
 }
 
-/// The step at which the present run was left, and its start tilt.
+/// Returns the step at which the present run was left, and its start tilt.
 fn place(journal: &Journal) -> (u64, Option<f64>) {
     (journal.present().left_at, journal.file().start.tilt_deg)
 }

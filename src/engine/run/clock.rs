@@ -13,7 +13,7 @@ pub struct Clock {
 }
 
 impl Clock {
-    /// A clock that shows 0 at step 0.
+    /// Returns a clock that shows 0 at step 0.
     pub fn new(time_step_s: f64) -> Self {
         Self {
             anchor_step: 0,
@@ -22,7 +22,7 @@ impl Clock {
         }
     }
 
-    /// The clock in force at `step` of `scenario`, edits made at that step not yet counted.
+    /// Returns the clock in force at `step` of `scenario`, edits made at that step not yet counted.
     pub fn at(scenario: &Scenario, step: u64) -> Self {
         let mut clock = Self::new(scenario.motion.time_step_s);
         let edits = scenario.edits.iter().take_while(|edit| edit.step < step);
@@ -43,7 +43,7 @@ impl Clock {
         })
     }
 
-    /// When the run of `scenario` is over, s.
+    /// Returns when the run of `scenario` is over, s.
     pub fn end_s(scenario: &Scenario) -> f64 {
         Self::at(scenario, scenario.steps).time_s(scenario.steps)
     }
@@ -62,15 +62,16 @@ impl Clock {
         };
     }
 
-    /// The first step at or after `time_s`, within a billionth of a time step.
+    /// Returns the first step at or after `time_s`, within a billionth of a time step.
     pub fn step_at(&self, time_s: f64) -> u64 {
         let steps = ((time_s - self.anchor_s) / self.time_step_s - 1e-9).ceil();
         self.anchor_step.saturating_add(steps.max(0.0) as u64)
     }
 }
 
-/// The same run at another time step: `scenario` at `time_step_s` (s) and by `scheme` throughout: as long in seconds, its pushes and its edits of gravity
-/// at the same times. Edits of the time step and of the scheme are left out, since both are given here.
+/// Returns the same run at another time step: `scenario` at `time_step_s` (s) and by `scheme` throughout: as long in
+/// seconds, its pushes and its edits of gravity at the same times. Edits of the time step and of the scheme are left
+/// out, since both are given here.
 pub fn resampled(scenario: &Scenario, time_step_s: f64, scheme: &'static SchemeInfo) -> Scenario {
     let mut other = scenario.clone();
     for (edit, (time_s, _)) in other.edits.iter_mut().zip(Clock::edits(scenario)) {

@@ -63,7 +63,7 @@ pub fn acting(
     }
 }
 
-/// The mean force of a push during `stretch`, as a multiple of its stated force.
+/// Returns the mean force of a push during `stretch`, as a multiple of its stated force.
 fn factor(push: &Push, counting: Counting, stretch: &Stretch) -> f64 {
     match (push.window, counting) {
         (Window::Steps { first, count }, Counting::Steps) => {
@@ -88,7 +88,8 @@ fn factor(push: &Push, counting: Counting, stretch: &Stretch) -> f64 {
     }
 }
 
-/// The mean factor of an accumulating push between two times, given as numbers of its own steps since its beginning.
+/// Returns the mean factor of an accumulating push between two times, given as numbers of its own steps since its
+/// beginning.
 fn mean_growth(begin: f64, end: f64, count: f64) -> f64 {
     let nth = (end - STEP_PART_ROUNDING).ceil();
     let is_full = begin + STEP_PART_ROUNDING >= count;
@@ -115,14 +116,15 @@ impl Counting {
     }
 }
 
-/// The times at which `push` of `scenario` begins and ends to act, s; infinity for the end of an accumulating one.
+/// Returns the times at which `push` of `scenario` begins and ends to act, s; infinity for the end of an accumulating
+/// one.
 pub fn acts_s(push: &Push, scenario: &Scenario) -> (f64, f64) {
     let (begin, end) = seconds(push.window, Counting::in_seconds(scenario));
     let grows = push.accumulates && matches!(push.window, Window::Steps { .. });
     (begin, if grows { f64::INFINITY } else { end })
 }
 
-/// A window in seconds, from and to; infinite where it has none.
+/// Returns a window in seconds, from and to; infinite where it has none.
 fn seconds(window: Window, counting: Counting) -> (f64, f64) {
     match (window, counting) {
         (Window::Time { from_s, for_s }, _) => (from_s, from_s + for_s),
@@ -134,7 +136,7 @@ fn seconds(window: Window, counting: Counting) -> (f64, f64) {
     }
 }
 
-/// The share of `stretch` that lies between `from` and `to`, 0 to 1, free of rounding at both ends.
+/// Returns the share of `stretch` that lies between `from` and `to`, 0 to 1, free of rounding at both ends.
 fn share(from: f64, to: f64, stretch: &Stretch) -> f64 {
     let length = stretch.end - stretch.begin;
     if length <= 0.0 {
@@ -148,14 +150,16 @@ fn share(from: f64, to: f64, stretch: &Stretch) -> f64 {
     }
 }
 
-/// The first moment strictly inside `stretch` at which a push counted in seconds begins, ends or (accumulating) grows.
+/// Returns the first moment strictly inside `stretch` at which a push counted in seconds begins, ends or (accumulating)
+/// grows.
 pub fn next_change(pushes: &[Push], counting: Counting, stretch: &Stretch) -> Option<f64> {
     let margin = STEP_PART_ROUNDING * (stretch.end - stretch.begin);
     let moment = next_after(pushes, counting, stretch.begin + margin);
     (moment < stretch.end - margin).then_some(moment)
 }
 
-/// The first moment after `time_s` (s) at which a push counted in seconds begins, ends or grows; infinite where none does.
+/// Returns the first moment after `time_s` (s) at which a push counted in seconds begins, ends or grows; infinite where
+/// none does.
 pub fn next_after(pushes: &[Push], counting: Counting, time_s: f64) -> f64 {
     let changes = pushes.iter().flat_map(|push| {
         let (begin, end) = seconds(push.window, counting);
@@ -210,7 +214,7 @@ mod tests {
             .collect()
     }
 
-    /// The times from `begin` on at which the forces of `push` change.
+    /// Returns the times from `begin` on at which the forces of `push` change.
     fn changes(push: Push, counting: Counting, begin: f64, end: f64) -> Vec<f64> {
         let change = |&from: &f64| {
             let stretch = Stretch {

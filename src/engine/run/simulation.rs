@@ -48,7 +48,7 @@ pub struct NotFinite {
 }
 
 impl NotFinite {
-    /// What has happened, without the step.
+    /// Returns what has happened, without the step.
     pub fn fact(&self) -> &'static str {
         if self.is_too_far {
             "the body turns too far for the exact motion to be integrated"
@@ -163,8 +163,8 @@ impl Simulation {
         &self.now
     }
 
-    /// Whether the [workings](Step::workings) of the steps to come are kept; if not, those of the present one go too.
-    /// They change no bit of the run, but it takes a multiple of the time.
+    /// Sets whether the [workings](Step::workings) of the steps to come are kept; if not, those of the present one
+    /// go too. They change no bit of the run, but it takes a multiple of the time.
     pub fn keep_workings(&mut self, kept: bool) {
         self.keeps_workings = kept;
         self.now.workings.take_if(|_| !kept);
@@ -194,7 +194,7 @@ impl Simulation {
         self.now.scenario = scenario;
     }
 
-    /// Whether the numbers of the next step are not finite.
+    /// Returns whether the numbers of the next step are not finite.
     pub fn has_ended(&self) -> bool {
         self.ended.is_some()
     }
@@ -333,7 +333,7 @@ impl Simulation {
         &self.now.after
     }
 
-    /// The forces of the step taken last (at step 0: gravity alone).
+    /// Returns the forces of the step taken last (at step 0: gravity alone).
     pub fn loads(&self) -> &Loads {
         &self.now.loads
     }
@@ -343,17 +343,17 @@ impl Simulation {
         &self.now.motion
     }
 
-    /// What the scheme has to say of how the run was computed, beyond its name.
+    /// Returns what the scheme has to say of how the run was computed, beyond its name.
     pub fn remark(&self) -> Option<String> {
         self.scheme.remark()
     }
 
-    /// The numbers of this step, as they leave the program.
+    /// Returns the numbers of this step, as they leave the program.
     pub fn sample(&self) -> Sample {
         self.now.sample()
     }
 
-    /// The first step at or after `time_s` (s), edits of the time step counted in.
+    /// Returns the first step at or after `time_s` (s), edits of the time step counted in.
     pub fn step_at(scenario: &Scenario, time_s: f64) -> u64 {
         let mut clock = Clock::new(scenario.motion.time_step_s);
         for edit in scenario.edits.iter().filter(|edit| edit.sets_time_step) {
@@ -365,7 +365,7 @@ impl Simulation {
         clock.step_at(time_s)
     }
 
-    /// When the next step ends, s.
+    /// Returns when the next step ends, s.
     pub fn next_time_s(&self) -> f64 {
         let number = self.now.number;
         let mut clock = self.clock;
@@ -404,7 +404,7 @@ fn step_of_edit(scenario: &Scenario, index: usize) -> u64 {
     scenario.edits.get(index).map_or(u64::MAX, |edit| edit.step)
 }
 
-/// How the step counts of pushes are read: as steps, unless they were written for another time step.
+/// Returns how the step counts of pushes are read: as steps, unless they were written for another time step.
 fn counting(scenario: &Scenario) -> Counting {
     if scenario.written_for_s == scenario.motion.time_step_s {
         Counting::Steps

@@ -76,18 +76,18 @@ impl Step {
         &self.motion
     }
 
-    /// The forces that acted on it, those at its end if they changed (at the start: gravity alone).
+    /// Returns the forces that acted on it, those at its end if they changed (at the start: gravity alone).
     pub fn loads(&self) -> &Loads {
         &self.loads
     }
 
-    /// How often the forces have changed so far, edits of the time step and the scheme counted in: a period
-    /// or rate that is measured across such a change belongs to no motion.
+    /// Returns how often the forces have changed so far, edits of the time step and the scheme counted in: a period or
+    /// rate that is measured across such a change belongs to no motion.
     pub fn changes(&self) -> u64 {
         self.changes
     }
 
-    /// The state before it; `None` at the start.
+    /// Returns the state before it; `None` at the start.
     pub fn before(&self) -> Option<&State> {
         (self.number > 0).then_some(&self.before)
     }
@@ -100,18 +100,18 @@ impl Step {
         self.after.time_s
     }
 
-    /// What the scheme computed on the way; `None` at the start, and where nobody has
-    /// [asked for it](super::Simulation::keep_workings).
+    /// Returns what the scheme computed on the way; `None` at the start, and where nobody has [asked for
+    /// it](super::Simulation::keep_workings).
     pub fn workings(&self) -> Option<&Arc<Workings>> {
         self.workings.as_ref()
     }
 
-    /// The axle's azimuth after it, counted on through full turns.
+    /// Returns the axle's azimuth after it, counted on through full turns.
     pub fn azimuth(&self) -> &Azimuth {
         &self.azimuth
     }
 
-    /// The traced point, world frame, m.
+    /// Returns the traced point, world frame, m.
     #[inline]
     pub fn position(&self) -> &Vector3<f64> {
         self.derived.position.get_or_init(|| {
@@ -158,7 +158,7 @@ impl Step {
         drift.is_finite().then_some(drift)
     }
 
-    /// What the energy drift is measured in; `None` where there is nothing to measure it by.
+    /// Returns what the energy drift is measured in; `None` where there is nothing to measure it by.
     pub fn energy_unit(&self) -> Option<EnergyUnit> {
         self.energy.scale.map(|scale| scale.unit)
     }
@@ -192,8 +192,8 @@ impl Step {
         }
     }
 
-    /// Whether every number read off the state is finite: squares leave the range of numbers before L itself does. A
-    /// finite energy means a finite Omega too.
+    /// Returns whether every number read off the state is finite: squares leave the range of numbers before L itself
+    /// does. A finite energy means a finite Omega too.
     pub(super) fn can_be_read(&self) -> bool {
         self.energy().is_finite() && self.position().iter().all(|c| c.is_finite())
     }

@@ -54,23 +54,23 @@ impl Truth {
         truth
     }
 
-    /// The state at `time_s`, s, not negative. Later times cost little; one before the forces last changed goes
+    /// Returns the state at `time_s`, s, not negative. Later times cost little; one before the forces last changed goes
     /// through the changes from the start again.
     pub fn state_at(&mut self, time_s: f64) -> State {
         self.go_to(time_s);
         self.piece.at(time_s)
     }
 
-    /// The orientation of [`state_at`](Self::state_at) alone, which takes half of the time.
+    /// Returns the orientation of [`state_at`](Self::state_at) alone, which takes half of the time.
     #[inline]
     pub fn orientation_at(&mut self, time_s: f64) -> Matrix3<f64> {
         self.go_to(time_s);
         self.piece.orientation_at(time_s)
     }
 
-    /// Where the point `at` of the body (body frame, m) is at `times` (s, in order), within a few units of rounding of its
-    /// distance from the pivot: x, y and z, m, world frame. `None` where there is no such short way, or the forces change
-    /// before the last of them.
+    /// Returns where the point `at` of the body (body frame, m) is at `times` (s, in order), within a few units of
+    /// rounding of its distance from the pivot: x, y and z, m, world frame. `None` where there is no such short way, or
+    /// the forces change before the last of them.
     pub fn positions_near(
         &self,
         at: &Vector3<f64>,
@@ -116,12 +116,12 @@ impl Truth {
         &self.scenario
     }
 
-    /// The exact motion under the forces of the time asked for last.
+    /// Returns the exact motion under the forces of the time asked for last.
     pub fn motion(&self) -> &ExactMotion {
         &self.piece
     }
 
-    /// The forces of the time asked for last.
+    /// Returns the forces of the time asked for last.
     pub fn loads(&self) -> &Loads {
         &self.loads
     }
@@ -131,13 +131,13 @@ impl Truth {
         self.end_s
     }
 
-    /// How it is found at the time asked for last.
+    /// Returns how it is found at the time asked for last.
     pub fn kind(&self) -> ExactMethod {
         self.piece.kind()
     }
 
-    /// The number of times the forces have changed so far. What a caller keeps of [`motion`](Self::motion) is valid as long
-    /// as this number stays the same.
+    /// Returns the number of times the forces have changed so far. What a caller keeps of [`motion`](Self::motion) is
+    /// valid as long as this number stays the same.
     pub fn changes(&self) -> u64 {
         self.pieces
     }
@@ -147,7 +147,7 @@ impl Truth {
         begun.saturating_sub(1)
     }
 
-    /// When the forces change next after `begin` (s).
+    /// Returns when the forces change next after `begin` (s).
     fn end_of_piece(&self, begin: f64) -> f64 {
         let index = self.era_at(begin);
         let counting = Counting::in_seconds(&self.scenario);
@@ -159,7 +159,7 @@ impl Truth {
         next_push.min(next_era)
     }
 
-    /// The forces of the piece from `begin` to [`end_s`](Self::end_s), s.
+    /// Returns the forces of the piece from `begin` to [`end_s`](Self::end_s), s.
     fn loads_from(&self, begin: f64) -> Loads {
         let era = &self.eras[self.era_at(begin)];
         let stretch = Stretch {

@@ -64,12 +64,12 @@ impl ValueList {
         self.is_shown(value).then_some(value)
     }
 
-    /// The number of the selected value among all, from 0.
+    /// Returns the number of the selected value among all, from 0.
     pub fn selected_index(&self) -> usize {
         self.selected
     }
 
-    /// The values that are shown, in order, each with its number among all.
+    /// Returns the values that are shown, in order, each with its number among all.
     pub fn shown(&self) -> Vec<(usize, &ListedValue)> {
         let values = self.values.iter().enumerate();
         values.filter(|(_, value)| self.is_shown(value)).collect()
@@ -149,7 +149,7 @@ impl ListedValue {
         })
     }
 
-    /// How its group, label and key answer the search for `name`.
+    /// Returns how its group, label and key answer the search for `name`.
     pub(super) fn answers(&self, name: &str) -> Option<Match> {
         let key = self.key.as_deref().unwrap_or_default();
         Match::find(&format!("{} {} {key}", self.group, self.label), name)
@@ -187,7 +187,7 @@ mod tests {
     use crate::engine::journal::parameters::{parameters, table_of};
     use crate::lab::for_tests::scenario;
 
-    /// A value of a scenario that is listed under this group and label.
+    /// Returns a value of a scenario that is listed under this group and label.
     fn listed((group, label): (&str, &str)) -> ListedValue {
         let scenario = scenario();
         let mut parameter = parameters(&table_of(&scenario.file), &scenario).remove(0);
