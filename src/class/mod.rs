@@ -1,5 +1,7 @@
 //! A class: a teacher's lab and the seats of the students, which know of each other through files in a folder.
 //!
+//! It uses the [`lessons`](crate::lessons) and the [`lab`](crate::lab). What one lab of a class tells another belongs here.
+//!
 //! ```text
 //! DIR/.gyrolab/teacher/state                what the teacher's lab shows, and the rounds of votes
 //! DIR/.gyrolab/seats/anna-471108/           a seat: its exports

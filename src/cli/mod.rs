@@ -1,4 +1,7 @@
-//! The commands: what they are called, and what each does with the rooms below.
+//! The subcommands of the command line: a file for each, with its options and what it does.
+//!
+//! It uses every other module. Options, the manual and the completions belong here. What a subcommand computes belongs to a
+//! module below, so that the lab can use it too.
 //!
 //! Data goes to stdout, talk to stderr. Exit codes: 0 done (a closed pipe too), 1 failed, 2 wrong usage, 130 Ctrl-C.
 

@@ -1,5 +1,8 @@
 //! Runs of a gyroscope, without a terminal: what a scenario file says, its steps, the user's edits, and the numbers.
 //!
+//! It uses the crate [`physics`]. All that a run is belongs here, if it needs neither a screen nor a page. A module that draws or
+//! asks the user belongs to the program.
+//!
 //! The modules; each uses only modules listed before it:
 //!
 //! - [`text`](mod@text): numbers and words as people read them, without control characters that a terminal would obey.
@@ -14,8 +17,6 @@
 //! - [`recording`]: the curves of a run, as the least and greatest value of each bin of steps.
 //! - [`export`]: output of a run: columns, CSV, summaries, and the files they are written to.
 //! - [`data`]: measured values read from a CSV, and the same quantities of a run.
-//!
-//! Nothing here knows a screen, a page or a class: a module that draws or asks the user belongs to the program.
 
 #![cfg(unix)]
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]

@@ -1,6 +1,9 @@
 //! The lab: a run, what the user does to it, and how it is shown. It draws nothing, and reads no clock: the time is
 //! passed to it.
 //!
+//! It uses the [`engine`](crate::engine) for the run, and [`report`](crate::report) and [`studies`](crate::studies) for figures
+//! and checks. All state of the lab belongs here. What a terminal draws belongs to [`tui`](crate::tui).
+//!
 //! [`Lab`] consists of parts. Each owns its state; [`Lab::carry_out`] calls the part that carries out a [`Command`]:
 //!
 //! | part | state | commands |
@@ -20,8 +23,8 @@
 //! For a command that changes the run, [`Edits`] returns a `ScenarioEdit`; `Lab::apply` changes the other parts.
 //! `dispatch` leads commands to the parts, `routing` [actions](action::Action) and time.
 //!
-//! A new command stands in three files: [`command`] with its row in the table, the `match` of `Lab::dispatch`, and the part that
-//! carries it out.
+//! A new command changes three files: [`command`] with the row in its table, the `match` of `Lab::dispatch`, and the part that
+//! carries it out. It is also added to the table above.
 
 pub mod action;
 mod advice;

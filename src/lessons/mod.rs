@@ -1,6 +1,9 @@
 //! Lessons: Markdown files with blocks that say what the lab does, read, checked, played without a screen, and taken beside
 //! the lab.
 //!
+//! It uses the [`lab`](crate::lab), to which its blocks send commands. All that concerns the content, the course or the print
+//! of a lesson belongs here. The pane that shows a page belongs to [`tui`](crate::tui).
+//!
 //! - [`lesson`]: a lesson as it was read: its pages, and the blocks of each.
 //! - [`reading`]: Markdown becomes a [`Lesson`]; every refusal names file, line and key.
 //! - [`text`](mod@text): text whose numbers come from the run.

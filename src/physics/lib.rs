@@ -1,5 +1,8 @@
 //! A rigid body that turns about a fixed point: its exact motion, and numerical schemes that step it.
 //!
+//! It uses no other crate of gyrolab. A new scheme, force or observable belongs here. Files, edits, and measurements of a whole
+//! run belong to the crate `gyrolab-engine`.
+//!
 //! What turns is a [`Body`] of point masses; a solid [`PlacedSolid`] stands for six of them. It has a [`State`] (time, orientation,
 //! angular momentum), and [`Loads`] act on it: gravity, constant forces on points, [`Friction`].
 //!

@@ -1,4 +1,7 @@
-//! Charts and pages: what stands on a page, and the page as the bytes of a file. Nothing here knows a run or a body.
+//! Charts and pages, and their files in SVG, PDF and PNG. Nothing here knows a run or a body.
+//!
+//! It uses the [`engine`](crate::engine) for numbers and text only, and to embed the provenance of a figure in its file. The
+//! drawing of any chart belongs here. The choice of curves for a run or a table belongs to [`report`](crate::report).
 //!
 //! - [`chart`]: the axes, curves, marks and legends of a chart, and its place on a page.
 //! - [`camera`]: positions in space in a plane picture.

@@ -1,10 +1,10 @@
-//! Pictures and pages for a write-up.
+//! Figures and write-ups of runs, and figures of the tables of [`studies`](crate::studies).
+//!
+//! It uses [`plot`](crate::plot) to draw, and [`studies`](crate::studies) and the [`engine`](crate::engine) to compute. A new
+//! kind of figure, or a new part of a write-up, belongs here.
 //!
 //! - [`figure`]: pictures of runs and of tables, and the same pictures drawn again from their files.
 //! - [`writeup`]: a run as a folder of files for a write-up.
-//!
-//! What draws (axes, curves, letters, the formats of files) belongs to [`plot`](crate::plot); what computes, to
-//! [`studies`](crate::studies) and the [`engine`](crate::engine).
 
 pub mod figure;
 pub mod writeup;

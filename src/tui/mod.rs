@@ -1,4 +1,7 @@
-//! The terminal: the loop, the keys, and what is drawn of the lab.
+//! The terminal: the main loop, the keys, and the panes.
+//!
+//! It uses the [`lab`](crate::lab), the [`lessons`](crate::lessons) and the [`class`](crate::class), and draws their state.
+//! Keys, panes, and all that a terminal reads or writes belong here. A value that outlives a frame belongs to the lab.
 //!
 //! ```text
 //! key ─keymap→ Command ┬→ lab.carry_out ─→ the part of the lab whose command it is ┐
