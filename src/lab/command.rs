@@ -16,10 +16,10 @@ use crate::engine::journal::next_push::Toward;
 use crate::engine::scenario::file::Choice;
 use crate::engine::scenario::keys::KEYS;
 use crate::engine::scenario::kind::ValueKind;
+use crate::engine::scenario::screen::TRACES;
 use crate::engine::scenario::{Problem, Problems};
 use crate::lab::playback::pace::Speed;
 use crate::lab::view::{Pane, ViewSettings};
-use crate::report::figure::FigureSpec;
 use form::ValueSchema::{self, Is, View};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -184,6 +184,10 @@ fn once() -> i32 {
     1
 }
 
+fn traces() -> String {
+    TRACES.to_owned()
+}
+
 /// Writes the run up to a step as CSV.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Export {
@@ -202,9 +206,12 @@ pub struct Export {
 pub struct FigureCommand {
     /// The file; its name's end says in which form.
     pub path: String,
-    /// Of which a command sets the kind, and whether the exact motion is drawn.
-    #[serde(flatten)]
-    pub spec: FigureSpec,
+    /// The name of a [`FigureKind`](crate::report::figure::kind::FigureKind).
+    #[serde(default = "traces")]
+    pub kind: String,
+    /// Whether the exact motion is drawn beside the run.
+    #[serde(default)]
+    pub exact: bool,
     /// Up to this step instead of the present one.
     pub to_step: Option<u64>,
     /// Whether an existing file is replaced.

@@ -17,7 +17,6 @@ use crate::engine::scenario::Scenario;
 use crate::engine::scenario::keys::Effect;
 use crate::engine::text::printable::PrintablePath;
 use crate::lab::storage::exporting::{self, Estimate};
-use crate::report::figure::FigureSpec;
 use indicatif::{DecimalBytes, HumanCount};
 use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};
@@ -257,11 +256,8 @@ impl Dialog {
             }),
             DialogKind::Figure(to_step) => Command::Figure(Box::new(FigureCommand {
                 path,
-                spec: FigureSpec {
-                    kind: Some(self.form.text(1).trim().to_owned()),
-                    exact: player.run().overlay().is_some(),
-                    ..FigureSpec::default()
-                },
+                kind: self.form.text(1).trim().to_owned(),
+                exact: player.run().overlay().is_some(),
                 to_step: Some(*to_step),
                 force,
             })),

@@ -8,7 +8,6 @@ use crate::engine::data::{self, MeasuredData};
 use crate::engine::export::Destination;
 use crate::engine::export::destination::DestinationError;
 use crate::engine::scenario::limits::{LONGEST_SCENARIO_FILE, SCENARIO_TOO_LONG, check_toml_size};
-use crate::engine::scenario::screen::TRACES;
 use crate::engine::scenario::{Document, Problem, Problems, Scenario, presets};
 use crate::engine::text::printable::{PrintablePath, is_steering};
 use crate::lab::storage::confined::Confined;
@@ -141,12 +140,13 @@ impl Files {
         let scenario = run_up_to(figure.to_step, "draw", runs, player)?;
         let path = self.path_of(&figure.path);
         self.may_export_to(&path)?;
-        let kind = figure.spec.kind.as_deref().unwrap_or(TRACES);
-        let kind = FigureKind::named(kind).map_err(|refusal| format!("kind {kind} {refusal}"))?;
+        let kind = FigureKind::named(&figure.kind)
+            .map_err(|refusal| format!("kind {} {refusal}", figure.kind))?;
         let source = FigureSource {
             spec: FigureSpec {
                 kind: Some(kind.name()),
-                ..figure.spec.clone()
+                exact: figure.exact,
+                ..FigureSpec::default()
             },
             runs: vec![FigureRun::titled(scenario)],
             measured,
