@@ -76,7 +76,7 @@ fn a_session_of_another_version_is_named_and_left_alone() {
     let ground = Ground::new();
     let folder = ground.state().join("gyrolab");
     fs::create_dir_all(&folder).unwrap();
-    for (name, version) in [("1.session", 3), ("2.session", 5)] {
+    for (name, version) in [("1.session", 4), ("2.session", 6)] {
         fs::write(folder.join(name), format!("gyrolab session {version}\nx\n")).unwrap();
     }
     let mut lab = ground.open("--resume");
