@@ -167,10 +167,10 @@ impl Grid {
             }
             let corners = simplified(&outline, OUTLINE_TOLERANCE);
             let cells = |count: f64| count * self.cell_pt;
-            let corners = corners[..corners.len() - 1]
+            let places = corners[..corners.len() - 1]
                 .iter()
                 .map(|p| at(self.origin.x + cells(p.x), self.origin.y + cells(p.y)));
-            path.0.extend(VectorPath::polyline(corners).0);
+            path.0.extend(VectorPath::polyline(places).0);
             path.0.push(Segment::Close);
         }
         path

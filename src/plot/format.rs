@@ -67,8 +67,8 @@ pub fn write(
 /// # Errors
 /// When a place on one of them is no number, or too far away.
 pub fn write_sheets(scenes: &[PageScene]) -> Result<Vec<u8>, Unwritable> {
-    let scenes: Vec<PageScene> = scenes.iter().map(rounded).collect::<Result<_, _>>()?;
-    Ok(pdf::written(&scenes, env!("CARGO_PKG_VERSION")))
+    let pages: Vec<PageScene> = scenes.iter().map(rounded).collect::<Result<_, _>>()?;
+    Ok(pdf::written(&pages, env!("CARGO_PKG_VERSION")))
 }
 
 /// The page in whole hundredths of a point, all of them numbers that a file can hold, without empty paths.

@@ -187,9 +187,9 @@ impl PageScene {
         let r = MARK_PT;
         let place = |(x, y): (f64, f64)| at(middle.x + x, middle.y + y);
         let mut lines = |ends: [[(f64, f64); 2]; 2]| {
-            let ends = ends.map(|ends| ends.map(place));
-            ends.into_iter()
-                .for_each(|ends| self.line(ends, 0.5, color));
+            for line in ends {
+                self.line(line.map(place), 0.5, color);
+            }
         };
         let polygon =
             |corners: &[(f64, f64)]| VectorPath::polygon(corners.iter().copied().map(place));

@@ -65,8 +65,8 @@ fn in_bands(
     let mut rows = writer.stream_writer()?;
     let band = (DOTS_OF_BAND / width).max(1);
     for top in (0..height).step_by(band as usize) {
-        let sheet = Pixmap::new(width, band.min(height - top));
-        let sheet = sheet.ok_or(::png::EncodingError::LimitsExceeded)?;
+        let sheet = Pixmap::new(width, band.min(height - top))
+            .ok_or(::png::EncodingError::LimitsExceeded)?;
         let sheet = drawn(scene, sheet, top, dots_per_inch);
         let parts = if is_grey { 1 } else { 3 };
         for row in sheet.data().chunks_exact(4 * width as usize) {
@@ -164,8 +164,12 @@ fn ink(Color([red, green, blue]): Color) -> Ink<'static> {
 fn stroke(pen: &StrokeStyle) -> Stroke {
     // An odd number of lengths is gone through twice, as in SVG and PDF.
     let twice = 1 + pen.dash_pt.len() % 2;
-    let dash = pen.dash_pt.repeat(twice).into_iter();
-    let dash = dash.map(|length| length as f32).collect();
+    let dash = pen
+        .dash_pt
+        .repeat(twice)
+        .into_iter()
+        .map(|length| length as f32)
+        .collect();
     Stroke {
         width: pen.width_pt as f32,
         miter_limit: MITER_LIMIT as f32,

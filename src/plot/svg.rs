@@ -24,11 +24,11 @@ pub fn written(scene: &PageScene, has_text: bool) -> String {
     let _ = writeln!(out, "<title>{}</title>", xml(&scene.title));
     let _ = writeln!(out, "<path fill=\"#fff\" d=\"M0 0h{width}v{height}H0z\"/>");
     for clip in clips(scene) {
-        let name = name(&clip);
+        let id = name(&clip);
         let [left, top, right, bottom] = [clip[0].x, clip[0].y, clip[1].x, clip[1].y].map(number);
         let _ = writeln!(
             out,
-            "<clipPath id=\"{name}\"><path d=\"M{left} {top}H{right}V{bottom}H{left}z\"/></clipPath>"
+            "<clipPath id=\"{id}\"><path d=\"M{left} {top}H{right}V{bottom}H{left}z\"/></clipPath>"
         );
     }
     for group in scene.groups() {
@@ -191,12 +191,12 @@ impl PathData {
         for point in points {
             self.at = [hundredths(point.x), hundredths(point.y)];
             for &axis in axes {
-                let number = number((self.at[axis] - from[axis]) as f64 / 100.0);
+                let step = number((self.at[axis] - from[axis]) as f64 / 100.0);
                 // A blank where one number would run into the next.
-                if self.text.ends_with(|c: char| c.is_ascii_digit()) && !number.starts_with('-') {
+                if self.text.ends_with(|c: char| c.is_ascii_digit()) && !step.starts_with('-') {
                     self.text.push(' ');
                 }
-                self.text += &number;
+                self.text += &step;
             }
         }
     }

@@ -193,10 +193,9 @@ pub fn residuals(
 
 /// Whether the directions of `points`, degrees, were counted on through full turns.
 pub fn is_counted(points: &[MeasuredPoint]) -> bool {
-    let values = || points.iter().map(|point| point.value);
-    let (least, most) = (
-        values().fold(f64::INFINITY, f64::min),
-        values().fold(f64::NEG_INFINITY, f64::max),
+    let (least, most) = points.iter().map(|point| point.value).fold(
+        (f64::INFINITY, f64::NEG_INFINITY),
+        |(least, most), value| (least.min(value), most.max(value)),
     );
     most - least > 360.0
 }

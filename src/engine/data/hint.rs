@@ -151,9 +151,11 @@ impl Guess<'_> {
                 self.added.push((place, known));
             }
         }
-        let is_quantity = |(_, name): &(usize, String)| name != LEFT_OUT && !name.starts_with("t_");
         if !has_quantity
-            && !self.added.iter().any(is_quantity)
+            && !self
+                .added
+                .iter()
+                .any(|(_, name): &(usize, String)| name != LEFT_OUT && !name.starts_with("t_"))
             && let Some(&place) = places
                 .iter()
                 .filter(|&&place| readouts::find(&self.cells.names[place]).is_none())
@@ -187,14 +189,14 @@ impl Guess<'_> {
     /// The first numbers of a column.
     fn numbers(&self, place: usize) -> Vec<f64> {
         let rows = self.cells.rows.iter().take(MOST_ROWS);
-        let number = |(_, row): &(u64, Vec<String>)| {
+        rows.filter_map(|(_, row): &(u64, Vec<String>)| {
             let text = match self.cells.separator {
                 ',' => row[place].clone(),
                 _ => row[place].replacen(',', ".", 1),
             };
             text.parse::<f64>().ok().filter(|number| number.is_finite())
-        };
-        rows.filter_map(number).collect()
+        })
+        .collect()
     }
 
     fn largest(&self, place: usize) -> f64 {
@@ -244,13 +246,13 @@ impl Guess<'_> {
     }
 
     fn is_gyroscope(&self, origin: &str) -> bool {
-        let says_so = |text: &str| {
+        let names = self.cells.own.iter().map(|own| own.name.as_str());
+        names.chain([origin]).any(|text| {
             let lower = text.to_lowercase();
             ["gyr", "rot", "rate", "angular", "seconds_elapsed"]
                 .iter()
                 .any(|word| lower.contains(word))
-        };
-        says_so(origin) || self.cells.own.iter().any(|own| says_so(&own.name))
+        })
     }
 
     /// The quantity that the column probably is.

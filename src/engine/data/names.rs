@@ -133,8 +133,9 @@ pub(super) fn without_uncertainty(name: &str) -> Option<String> {
 
 /// Whether gyrolab itself calls a column `name`.
 pub(super) fn is_known(name: &str) -> bool {
-    let is_key = || name.contains('.') && keys::find(name).is_ok();
-    quantity::names().any(|known| known == name) || readouts::find(name).is_some() || is_key()
+    quantity::names().any(|known| known == name)
+        || readouts::find(name).is_some()
+        || name.contains('.') && keys::find(name).is_ok()
 }
 
 /// Whether `--map` may give a column the name `name`.
@@ -203,12 +204,11 @@ fn kind_is_whole(columns: &[NamedColumn], is_series: bool) -> Option<Problem> {
         return (!has(|is| matches!(is, ColumnRole::Quantity(_)))).then(|| Problem::at("", rule));
     }
     // What a run has at every time tells no run of a table from another.
-    let is_of_runs = |column: &NamedColumn| {
-        matches!(column.is, ColumnRole::Readout(_)) && RunQuantity::find(&column.name).is_none()
-    };
     let has_key = has(|is| matches!(is, ColumnRole::Key(_)));
     let rule = match has(|is| matches!(is, ColumnRole::Readout(_))) {
-        true if has_key || columns.iter().any(is_of_runs) => return None,
+        true if has_key || columns.iter().any(|column: &NamedColumn| {
+        matches!(column.is, ColumnRole::Readout(_)) && RunQuantity::find(&column.name).is_none()
+    }) => return None,
         false if has_key => {
             "has no column that was measured: beside the keys of the scenario a table of runs needs a readout (gyrolab readouts lists them)".to_owned()
         }

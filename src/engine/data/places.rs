@@ -65,9 +65,8 @@ fn on_axle(
     if (of_tilt, of_azimuth) == (None, None) {
         return (at, [None, None]);
     }
-    let radians = |sigma: Option<f64>| sigma.unwrap_or(0.0).to_radians();
-    let outwards = length_m * cos_tilt * radians(of_tilt);
-    let around = length_m * sin_tilt * radians(of_azimuth);
+    let outwards = length_m * cos_tilt * of_tilt.unwrap_or(0.0).to_radians();
+    let around = length_m * sin_tilt * of_azimuth.unwrap_or(0.0).to_radians();
     let sigma = |out: f64, round: f64| Some(libm::hypot(outwards * out, around * round));
     (at, [sigma(cos, sin), sigma(sin, cos)])
 }

@@ -37,14 +37,14 @@ impl FromStr for ColumnSigma {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let wrong = || "must be COLUMN=VALUE, such as tilt_deg=0.5, with VALUE above 0".to_owned();
-        let (column, number) = text.rsplit_once('=').ok_or_else(wrong)?;
+        const WRONG: &str = "must be COLUMN=VALUE, such as tilt_deg=0.5, with VALUE above 0";
+        let (column, number) = text.rsplit_once('=').ok_or(WRONG)?;
         let value = number.trim().parse::<f64>().ok();
         Ok(Self {
             column: column.trim().to_owned(),
             value: value
                 .filter(|value| *value > 0.0 && value.is_finite())
-                .ok_or_else(wrong)?,
+                .ok_or(WRONG)?,
         })
     }
 }

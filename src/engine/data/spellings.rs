@@ -180,14 +180,16 @@ pub(super) fn track(cells: &Csv, place: usize) -> Option<&str> {
 impl Company {
     fn new(cells: &Csv, origin: &str) -> Self {
         let has = |name: &str| cells.own.iter().any(|own| own.name == name);
-        let is_t = |own: &str| Unit::split(own).map_or(own, |(stem, _)| stem) == "t";
         let file = Path::new(origin)
             .file_name()
             .unwrap_or_default()
             .to_string_lossy()
             .to_lowercase();
         Self {
-            has_t: cells.own.iter().any(|own| is_t(&own.name)),
+            has_t: cells
+                .own
+                .iter()
+                .any(|own| Unit::split(&own.name).map_or(&*own.name, |(stem, _)| stem) == "t"),
             has_time: has("time"),
             is_gyroscope: has(SENSOR_LOGGER) && file.contains("gyroscope"),
         }

@@ -32,8 +32,9 @@ impl PlacedPanel {
         let clip = self.frame.grown(BEYOND_PT);
         let places = series.points.iter().map(|point| self.place(point));
         let pieces = if !series.band.is_empty() {
-            let edges = self.edges(&series.band);
-            let edges = edges.map(|edge| clipped(edge.into_iter(), &clip));
+            let edges = self
+                .edges(&series.band)
+                .map(|edge| clipped(edge.into_iter(), &clip));
             edges.concat()
         } else if series.style.is_dots {
             dots(places.filter(|place| clip.holds(*place)))
@@ -58,8 +59,9 @@ impl PlacedPanel {
     /// Fills the band of `series`, if it has one.
     pub fn fill_band(&self, series: &ChartSeries, scene: &mut PageScene) {
         let [least, greatest] = self.edges(&series.band);
-        let outline = least.into_iter().chain(greatest.into_iter().rev());
-        let outline: Vec<_> = outline
+        let outline: Vec<_> = least
+            .into_iter()
+            .chain(greatest.into_iter().rev())
             .map(|place| self.frame.grown(BEYOND_PT).nearest(place))
             .collect();
         if !outline.is_empty() {
@@ -110,10 +112,11 @@ pub fn draw_curve(
     clip: Option<&PageRectangle>,
     scene: &mut PageScene,
 ) {
-    let lines = pieces.iter();
     let within_pt = (TOLERANCE * pen.width_pt).min(UNSEEN_PT);
-    let lines = lines.map(|piece| simplified(piece, within_pt));
-    let lines: Vec<Vec<Point>> = lines.collect();
+    let lines: Vec<Vec<Point>> = pieces
+        .iter()
+        .map(|piece| simplified(piece, within_pt))
+        .collect();
     let count: usize = lines.iter().map(Vec::len).sum();
     if pen.dash_pt.is_empty() && count > MANY_LINE_POINTS {
         let area = cover::area(&lines, pen.width_pt);
@@ -157,20 +160,20 @@ impl Above {
     /// Takes note of a line that consists of `pieces`, and makes its `style` one in which it is seen: wide where other lines
     /// cover it for most of its length, thin where they do not, with its core on top where the first line hides it.
     pub fn add(&mut self, pieces: &[Vec<Point>], style: &mut SeriesStyle) {
-        let way_pt = way_pt(pieces);
+        let length_pt = way_pt(pieces);
         let is_hidden = self
             .first_pt
-            .is_some_and(|first_pt| hides(first_pt, way_pt));
-        let squares: HashSet<_> = squares(pieces).collect();
+            .is_some_and(|first_pt| hides(first_pt, length_pt));
+        let covered: HashSet<_> = squares(pieces).collect();
         if let Some(color) = style.core {
-            match self.width_over(&squares) {
+            match self.width_over(&covered) {
                 Some(width_pt) => style.width_pt = width_pt + Self::WIDER_PT,
                 None => style.color = color,
             }
         }
         style.core = style.core.filter(|_| is_hidden);
-        self.first_pt.get_or_insert(way_pt);
-        for square in squares {
+        self.first_pt.get_or_insert(length_pt);
+        for square in covered {
             let width_pt = self.squares.entry(square).or_default();
             *width_pt = width_pt.max(style.width_pt);
         }

@@ -31,8 +31,10 @@ impl Chart {
     fn as_seen(&self, layout: &ChartLayout) -> Self {
         let mut seen = self.clone();
         seen.x.range = layout.panels.first().map(|placed| placed.x.range);
-        let magnified = seen.magnified.iter_mut();
-        let magnified = magnified.flat_map(|chart| &mut chart.panels);
+        let magnified = seen
+            .magnified
+            .iter_mut()
+            .flat_map(|chart| &mut chart.panels);
         let places = layout.panels.iter().chain(&layout.magnified);
         for (panel, placed) in seen.panels.iter_mut().chain(magnified).zip(places) {
             panel.y.range = Some(placed.y.range);
@@ -85,8 +87,10 @@ impl Chart {
     fn magnified(&self) -> Option<String> {
         let (from, to) = self.magnified.as_ref()?.x.range?;
         let [from, to] = [from, to].map(|end| with_minus(&significant(end, 9)));
-        let unit = Some(&self.x.unit).filter(|unit| !unit.is_empty());
-        let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
+        let unit = match self.x.unit.as_str() {
+            "" => String::new(),
+            unit => format!(" {unit}"),
+        };
         let remark = format!("right: {from} to {to}{unit}, magnified");
         let room = self.width_pt - 2.0 * PAGE_EDGE;
         Some(letters::shortened(&remark, LABEL_PT, room))
@@ -196,9 +200,8 @@ fn write_below(chart: &Chart, panels: &[PlacedPanel], layout: &ChartLayout, scen
     };
     let room = chart.width_pt / columns - 2.0 * PAGE_EDGE;
     let (title, size) = layout::fitted(chart.x.title(&last.below), room);
-    let middle = 0.5 * (last.frame.left + last.frame.right);
     let half = 0.5 * ink::width(&title, size);
-    let middle = middle
+    let middle = (0.5 * (last.frame.left + last.frame.right))
         .min(chart.width_pt - PAGE_EDGE - half)
         .max(PAGE_EDGE + half);
     scene.write(&title, size, at(middle, layout.title_at()), 0.5);

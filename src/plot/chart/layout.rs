@@ -74,13 +74,19 @@ impl ChartLayout {
         let top = above + PAGE_EDGE + 0.5 * label;
         let place = |chart: &Chart, x: AxisScale| {
             let ticks = ticks_of(chart, &y_ranges, height);
-            let panels = chart.panels.iter().zip(&y_ranges).zip(ticks).enumerate();
-            let panels = panels.map(|(index, ((panel, range), ticks))| {
-                let top = top + index as f64 * (height + label + PANEL_GAP);
-                let y = AxisScale::of(&panel.y, *range, (top + height, top));
-                let title = fitted(panel.y.title(&ticks), height + 0.7 * (label + PANEL_GAP));
-                PlacedPanel::new(chart, x, y, ticks, title)
-            });
+            let panels = chart
+                .panels
+                .iter()
+                .zip(&y_ranges)
+                .zip(ticks)
+                .enumerate()
+                .map(|(index, ((panel, range), ticks))| {
+                    let own_top = top + index as f64 * (height + label + PANEL_GAP);
+                    let places = (own_top + height, own_top);
+                    let y = AxisScale::of(&panel.y, *range, places);
+                    let title = fitted(panel.y.title(&ticks), height + 0.7 * (label + PANEL_GAP));
+                    PlacedPanel::new(chart, x, y, ticks, title)
+                });
             panels.collect::<Vec<_>>()
         };
         let [x, beside] = columns(chart, left, right);
@@ -130,9 +136,9 @@ fn columns(chart: &Chart, left: f64, right: f64) -> [AxisScale; 2] {
             0.5 * ink::width(&tick.label, LABEL_PT) - (edge - scale.place(tick.at)).abs()
         })
     };
-    let over = over(&from, &chart.x, <[Tick]>::last, half).max(0.0)
+    let both = over(&from, &chart.x, <[Tick]>::last, half).max(0.0)
         + over(&to, &magnified.x, <[Tick]>::first, half).max(0.0);
-    let apart = 0.5 * (over + BESIDE);
+    let apart = 0.5 * (both + BESIDE);
     [
         scale(chart, (left, half - apart)),
         scale(magnified, (half + apart, right)),

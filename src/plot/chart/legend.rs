@@ -64,8 +64,8 @@ impl Legend {
 
     pub fn of(chart: &Chart, remarks: impl IntoIterator<Item = String>) -> Self {
         let series = chart.panels.iter().flat_map(|panel| &panel.series);
-        let series = series.map(|series| (series.name.as_str(), &series.style));
-        Self::new(series, remarks)
+        let named = series.map(|series| (series.name.as_str(), &series.style));
+        Self::new(named, remarks)
     }
 
     /// The rows in which it stands above the panels, within `room` pt.

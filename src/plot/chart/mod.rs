@@ -98,8 +98,11 @@ impl ChartSeries {
 
     /// The ends of the error bar of a point along the axis x (0) or y (1); without an error, the point.
     pub fn ends(&self, index: usize, axis: usize) -> [[f64; 2]; 2] {
-        let error = self.errors[axis].get(index).copied();
-        let error = error.filter(|error| error.is_finite()).unwrap_or(0.0);
+        let error = self.errors[axis]
+            .get(index)
+            .copied()
+            .filter(|error| error.is_finite())
+            .unwrap_or(0.0);
         [error, -error].map(|error| {
             let mut end = self.points[index];
             end[axis] += error;
@@ -329,11 +332,13 @@ impl ChartAxis {
 
     /// Name, offset and unit, as it is written along the axis with these ticks.
     pub fn title(&self, ticks: &Ticks) -> String {
-        let offset = ticks.offset.as_deref();
-        let offset = offset.map_or_else(String::new, |offset| match offset.strip_prefix('−') {
-            Some(size) => format!(" + {size}"),
-            None => format!(" − {offset}"),
-        });
+        let offset = match ticks.offset.as_deref() {
+            None => String::new(),
+            Some(offset) => match offset.strip_prefix('−') {
+                Some(size) => format!(" + {size}"),
+                None => format!(" − {offset}"),
+            },
+        };
         let power = match ticks.power {
             0 => String::new(),
             power => power_of_ten(power),
@@ -352,9 +357,10 @@ impl ChartAxis {
         if let Some(range) = self.range {
             return range;
         }
-        let values = values.filter(|value| value.is_finite() && (!self.is_log || *value > 0.0));
-        let values = values.map(|value| value.clamp(-FARTHEST_AXIS_END, FARTHEST_AXIS_END));
-        let Some((low, high)) = extent(values) else {
+        let in_range = values
+            .filter(|value| value.is_finite() && (!self.is_log || *value > 0.0))
+            .map(|value| value.clamp(-FARTHEST_AXIS_END, FARTHEST_AXIS_END));
+        let Some((low, high)) = extent(in_range) else {
             return if self.is_log { (0.1, 10.0) } else { (0.0, 1.0) };
         };
         if self.is_log {

@@ -129,8 +129,9 @@ impl Ticks {
             let powers = (first..=last).filter(|power| power.rem_euclid(every) == 0);
             powers.map(|power| decade(power as i32)).collect()
         };
-        let every = (1..=last - first + 1).find(|&every| fits(&all(every)));
-        let every = every.unwrap_or(last - first + 1);
+        let every = (1..=last - first + 1)
+            .find(|&every| fits(&all(every)))
+            .unwrap_or(last - first + 1);
         let minor = match every {
             1 => (first - 1..=last).flat_map(parts_of_decade).collect(),
             _ => (first..=last)
@@ -150,8 +151,8 @@ impl Ticks {
 
     fn of_rungs(low: f64, high: f64) -> Self {
         let begin = nice_numbers::rung_below(low);
-        let rungs = (begin..).map(|rung| (rung, nice_numbers::rung(rung)));
-        let rungs: Vec<_> = rungs
+        let rungs: Vec<_> = (begin..)
+            .map(|rung| (rung, nice_numbers::rung(rung)))
             .take_while(|(_, at)| *at <= high * (1.0 + TICK_ROUNDING))
             .filter(|(_, at)| *at >= low * (1.0 - TICK_ROUNDING))
             .collect();

@@ -75,8 +75,9 @@ impl Setter {
         let style = if self.is_italic { &*ITALIC } else { &*REGULAR };
         let slanted = ITALIC.letter(letter).filter(|_| self.is_italic);
         let is_italic = slanted.is_some();
-        let drawn = slanted.or_else(|| REGULAR.letter(letter));
-        let drawn = drawn.unwrap_or_else(missing);
+        let drawn = slanted
+            .or_else(|| REGULAR.letter(letter))
+            .unwrap_or_else(missing);
         let scale = self.size_pt / UNITS_PER_EM;
         self.x_pt += self.gap(style, letter);
         let origin = at(self.x_pt, self.baseline_pt);
@@ -182,8 +183,10 @@ pub fn missing() -> table::Letter {
 
 /// A script in a line of plain text: `⁻³`, `₂`, `_p`, `^(a+b)`.
 fn script_words(words: &str, is_above: bool) -> String {
-    let characters = words.chars().map(|c| script_character(c, is_above));
-    let characters: Option<String> = characters.collect();
+    let characters: Option<String> = words
+        .chars()
+        .map(|c| script_character(c, is_above))
+        .collect();
     let sign = if is_above { '^' } else { '_' };
     characters.unwrap_or_else(|| match words.chars().nth(1) {
         None => format!("{sign}{words}"),

@@ -185,8 +185,7 @@ mod tests {
         for (style, least) in [(&*REGULAR, 780), (&*ITALIC, 740)] {
             assert!(style.lines.len() > least, "{}", style.lines.len());
             for code in style.lines.keys() {
-                let letter = style.numbered(*code);
-                let letter = letter.unwrap_or_else(|| panic!("{code:X}"));
+                let letter = style.numbered(*code).unwrap_or_else(|| panic!("{code:X}"));
                 assert!((0.0..2600.0).contains(&letter.advance), "{code:X}");
                 let is_blank = char::from_u32(*code).is_some_and(char::is_whitespace);
                 assert_eq!(letter.outline.0.is_empty(), is_blank, "{code:X}");

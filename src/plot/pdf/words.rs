@@ -34,13 +34,14 @@ struct OfPage {
 impl Fonts {
     pub fn of(scenes: &[PageScene]) -> Self {
         Self([false, true].map(|is_italic| {
-            let letters = scenes
+            let letters: BTreeSet<char> = scenes
                 .iter()
                 .flat_map(|scene| &scene.items)
                 .filter_map(|item| item.words.as_ref())
-                .flat_map(|words| &words.letters);
-            let letters = letters.filter(|letter| letter.is_italic == is_italic);
-            let letters: BTreeSet<char> = letters.map(|letter| letter.letter).collect();
+                .flat_map(|words| &words.letters)
+                .filter(|letter| letter.is_italic == is_italic)
+                .map(|letter| letter.letter)
+                .collect();
             let (style, name, end) = if is_italic {
                 (&*ITALIC, &b"I"[..], "Italic")
             } else {
@@ -163,8 +164,7 @@ impl OfPage {
         for (glyph, letter) in font.letters() {
             map.pair(glyph, letter);
         }
-        let map = map.finish();
-        pdf.stream(letters, &packed(map.as_slice()))
+        pdf.stream(letters, &packed(map.finish().as_slice()))
             .filter(Filter::FlateDecode);
     }
 

@@ -74,9 +74,6 @@ impl Edge {
                 "{key} stands at its bound {value}: the fit would be better beyond it, and it has no uncertainty. Begun at another value by --set, the search may find a better fit within."
             )
         };
-        let most = |least: String, end: String| {
-            format!(", at most {least} with 68 % probability and {end} with 95 %")
-        };
         match (self.rule, self.most) {
             (Rule::Least(place) | Rule::Greatest(place), None) => drawn(place),
             (Rule::Least(place) | Rule::Greatest(place), Some(Most { at_68, at_95 })) => {
@@ -85,13 +82,13 @@ impl Edge {
                     [at_68, at_95].map(|it| significant(keys[place].value + it, 2));
                 format!(
                     "{key} is at {value}, the least that it can be{}.",
-                    most(at_68, at_95)
+                    at_most(&at_68, &at_95)
                 )
             }
             (Rule::SecondMoment { part, axis }, _) => {
                 let (sum, moment) = FLAT[axis].split_once(" = ").unwrap_or_default();
                 let most = self.percents().map_or(String::new(), |[a, b]| {
-                    let percents = most(percent(a), percent(b));
+                    let percents = at_most(&percent(a), &percent(b));
                     format!(" {sum} is above {moment} by{}", &percents[1..])
                 });
                 format!(
@@ -104,7 +101,7 @@ impl Edge {
                 let (moment, _) = ROD[axis].split_once(" = ").unwrap_or_default();
                 let other = ["A", "B", "C"][(axis + 1) % 3];
                 let most = self.percents().map_or(String::new(), |[a, b]| {
-                    let percents = most(percent(a), percent(b));
+                    let percents = at_most(&percent(a), &percent(b));
                     format!(" {moment} is{} of {other}.", &percents[1..])
                 });
                 format!(
@@ -145,39 +142,43 @@ pub fn edges_at(
     variance: Option<f64>,
 ) -> Vec<Edge> {
     let keys = chart.keys(&minimum.p);
-    let edge = |&place: &usize| {
-        let rule = chart.rules[place];
-        let inside = Inside::new(minimum, chart, place);
-        let moves = match &inside {
-            Some(inside) => (&chart.inverse * &inside.moves).as_slice().to_vec(),
-            None => vec![0.0; free.len()],
-        };
-        let holds = |key: usize| match rule {
-            Rule::Least(held) | Rule::Greatest(held) => held == key,
-            Rule::SecondMoment { part, .. } | Rule::Moment { part, .. } => {
-                let mut moments = free[key].keys.iter().filter_map(|key| moment(key));
-                moments.any(|(own, _)| own == part)
+    minimum
+        .held
+        .iter()
+        .map(|&place: &usize| {
+            let rule = chart.rules[place];
+            let inside = Inside::new(minimum, chart, place);
+            let moves = match &inside {
+                Some(inside) => (&chart.inverse * &inside.moves).as_slice().to_vec(),
+                None => vec![0.0; free.len()],
+            };
+            let is_of_nature = rule.is_of_nature(free);
+            let moment_at_limit = match rule {
+                Rule::Least(_) | Rule::Greatest(_) => None,
+                Rule::SecondMoment { part, axis } => chart.moment(part, axis, &keys),
+                Rule::Moment { part, axis } => chart.moment(part, (axis + 1) % 3, &keys),
+            };
+            Edge {
+                moment: moment_at_limit,
+                is_of_nature,
+                rule,
+                holds: (0..free.len())
+                    .map(|key: usize| match rule {
+                        Rule::Least(held) | Rule::Greatest(held) => held == key,
+                        Rule::SecondMoment { part, .. } | Rule::Moment { part, .. } => {
+                            let mut moments = free[key].keys.iter().filter_map(|key| moment(key));
+                            moments.any(|(own, _)| own == part)
+                        }
+                    })
+                    .collect(),
+                moves,
+                most: inside
+                    .filter(|_| is_of_nature)
+                    .zip(variance)
+                    .and_then(|(it, variance)| it.most(variance)),
             }
-        };
-        let is_of_nature = rule.is_of_nature(free);
-        let moment = match rule {
-            Rule::Least(_) | Rule::Greatest(_) => None,
-            Rule::SecondMoment { part, axis } => chart.moment(part, axis, &keys),
-            Rule::Moment { part, axis } => chart.moment(part, (axis + 1) % 3, &keys),
-        };
-        Edge {
-            moment,
-            is_of_nature,
-            rule,
-            holds: (0..free.len()).map(holds).collect(),
-            moves,
-            most: inside
-                .filter(|_| is_of_nature)
-                .zip(variance)
-                .and_then(|(it, variance)| it.most(variance)),
-        }
-    };
-    minimum.held.iter().map(edge).collect()
+        })
+        .collect()
 }
 
 /// The normal distribution of the distance to a limit, by the data alone.
@@ -193,8 +194,10 @@ impl Inside {
     /// The distribution for the limit at `place`, the others held; `None` where the data do not say.
     fn new(minimum: &Minimum, chart: &Chart, place: usize) -> Option<Self> {
         let slopes = &minimum.slopes;
-        let unit = |norm: f64| if norm > 0.0 { norm.recip() } else { 1.0 };
-        let units = slopes.column_iter().map(|column| unit(column.norm()));
+        let units = slopes.column_iter().map(|column| match column.norm() {
+            norm if norm > 0.0 => norm.recip(),
+            _ => 1.0,
+        });
         let units = DVector::from_iterator(slopes.ncols(), units);
         let scaled = |index: usize| chart.limits[index].normal.component_mul(&units);
         let others: Vec<DVector<f64>> = minimum
@@ -248,18 +251,26 @@ fn sigmas_to_most(below: f64, level: f64) -> f64 {
     if below > FAR {
         return -libm::log(1.0 - level) / below;
     }
-    let part = |from: f64| libm::erfc(from * std::f64::consts::FRAC_1_SQRT_2);
-    let wanted = (1.0 - level) * part(below);
+    let wanted = (1.0 - level) * both_tails(below);
     let (mut from, mut to) = (0.0, 3.0);
     for _ in 0..60 {
         let middle = 0.5 * (from + to);
-        if part(below + middle) > wanted {
+        if both_tails(below + middle) > wanted {
             from = middle;
         } else {
             to = middle;
         }
     }
     to
+}
+
+fn at_most(at_68: &str, at_95: &str) -> String {
+    format!(", at most {at_68} with 68 % probability and {at_95} with 95 %")
+}
+
+/// The probability that a standard normal number is farther than `from` from 0.
+fn both_tails(from: f64) -> f64 {
+    libm::erfc(from * std::f64::consts::FRAC_1_SQRT_2)
 }
 
 #[cfg(test)]

@@ -166,10 +166,10 @@ impl Recording {
         }
         let apart_s = median(times_s.windows(2).map(|pair| pair[1] - pair[0]).collect());
         // Of white noise the third differences have 20 times the variance; smooth motion hardly has any.
-        let third = |row: &[Vector3<f64>]| row[3] - 3.0 * row[2] + 3.0 * row[1] - row[0];
         let thirds = rates
             .windows(4)
-            .flat_map(|row| <[f64; 3]>::from(third(row).abs()));
+            .map(|row| row[3] - 3.0 * row[2] + 3.0 * row[1] - row[0])
+            .flat_map(|third| <[f64; 3]>::from(third.abs()));
         Self {
             noise: median(thirds.collect()) / (0.6745 * 20.0_f64.sqrt()),
             times_s,

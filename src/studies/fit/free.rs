@@ -146,17 +146,15 @@ fn not_a_number(key: &str, kind: ValueKind) -> String {
 }
 
 fn ends(bounds: &str) -> Result<(f64, f64), String> {
-    let wrong = || {
-        "bounds must be FROM..TO, two numbers of which either may be left out, such as 0.1..0.5 or 0..".to_owned()
-    };
-    let (from, to) = bounds.split_once("..").ok_or_else(wrong)?;
+    const WRONG: &str = "bounds must be FROM..TO, two numbers of which either may be left out, such as 0.1..0.5 or 0..";
+    let (from, to) = bounds.split_once("..").ok_or(WRONG)?;
     let number = |text: &str, absent: f64| match text.trim() {
         "" => Ok(absent),
         text => text
             .parse()
             .ok()
             .filter(|number: &f64| number.is_finite())
-            .ok_or_else(wrong),
+            .ok_or(WRONG.to_owned()),
     };
     let (from, to) = (number(from, f64::NEG_INFINITY)?, number(to, f64::INFINITY)?);
     if from < to {

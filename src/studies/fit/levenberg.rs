@@ -132,16 +132,18 @@ impl<'a> Linear<'a> {
         let units = scale.map(|scale| if scale > 0.0 { scale.recip() } else { 1.0 });
         let scaled = slopes * DMatrix::from_diagonal(&units);
         let (q, root) = scaled.qr().unpack();
-        let of_step = |limit: &Limit| {
-            let normal = limit.normal.component_mul(&units);
-            Limit {
-                least: -limit.room(p).max(0.0) / normal.norm(),
-                normal: normal.normalize(),
-            }
-        };
         Self {
             slopes,
-            limits: limits.iter().map(of_step).collect(),
+            limits: limits
+                .iter()
+                .map(|limit: &Limit| {
+                    let normal = limit.normal.component_mul(&units);
+                    Limit {
+                        least: -limit.room(p).max(0.0) / normal.norm(),
+                        normal: normal.normalize(),
+                    }
+                })
+                .collect(),
             along: q.tr_mul(r),
             root,
             units,

@@ -58,11 +58,10 @@ impl Fitted {
     }
 
     fn json(&self) -> Value {
-        let bound = |bound: f64| bound.is_finite().then_some(bound);
         json!({
             "key": self.free.key, "value": self.value, "uncertainty": self.sigma, "start": self.free.start,
             "uncertainty_below": self.sides.map(|sides| sides.below), "uncertainty_above": self.sides.map(|sides| sides.above),
-            "from": bound(self.free.from), "to": bound(self.free.to), "is_at_bound": self.is_held,
+            "from": finite(self.free.from), "to": finite(self.free.to), "is_at_bound": self.is_held,
         })
     }
 }
@@ -132,7 +131,6 @@ impl FitReport<'_> {
     fn furthest(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         const MOST_REPORTED_ROWS: usize = 5;
         let mut all: Vec<(usize, &Residual)> = self.fit.residuals.iter().enumerate().collect();
-        let size = |residual: &Residual| residual.in_sigmas().unwrap_or(residual.value()).abs();
         all.sort_by(|a, b| size(b.1).total_cmp(&size(a.1)));
         let rows = all
             .iter()
@@ -265,7 +263,6 @@ fn write_table<const N: usize>(
     let rows: Vec<_> = std::iter::once(head.map(str::to_owned))
         .chain(rows)
         .collect();
-    let width = |cell: &String| columns(&printable(cell));
     let widths: Vec<usize> = (0..N)
         .filter_map(|column| rows.iter().map(|row| width(&row[column])).max())
         .collect();
@@ -401,4 +398,18 @@ fn at_cells(data: &DataKind, row: usize) -> Vec<String> {
 /// A number as CSVs of runs have it.
 fn number(number: f64) -> String {
     ryu::Buffer::new().format(number).to_owned()
+}
+
+fn finite(bound: f64) -> Option<f64> {
+    bound.is_finite().then_some(bound)
+}
+
+/// The size of a residual in units of its uncertainty, or where it has none as it is.
+fn size(residual: &Residual) -> f64 {
+    residual.in_sigmas().unwrap_or(residual.value()).abs()
+}
+
+/// The columns that a cell takes on a terminal.
+fn width(cell: &str) -> usize {
+    columns(&printable(cell))
 }

@@ -420,16 +420,19 @@ impl LeastSquares for Weighed<'_> {
                 self.slope(p, *index, *change)
             })?;
         let keys = self.chart.keys(p);
-        let column = |(index, (slope, _)): (usize, &(Vec<f64>, f64))| {
-            let whitened = self.weights.whitened(slope);
-            // The slope of what does not move is rounding, and would lead anywhere.
-            if whitened.norm() * self.model.free[index].size(keys[index]) <= SILENT_KEY {
-                DVector::zeros(whitened.len())
-            } else {
-                whitened
-            }
-        };
-        let columns: Vec<DVector<f64>> = found.iter().enumerate().map(column).collect();
+        let columns: Vec<DVector<f64>> = found
+            .iter()
+            .enumerate()
+            .map(|(index, (slope, _)): (usize, &(Vec<f64>, f64))| {
+                let whitened = self.weights.whitened(slope);
+                // The slope of what does not move is rounding, and would lead anywhere.
+                if whitened.norm() * self.model.free[index].size(keys[index]) <= SILENT_KEY {
+                    DVector::zeros(whitened.len())
+                } else {
+                    whitened
+                }
+            })
+            .collect();
         *self.kept() = found.iter().map(|(_, change)| *change).collect();
         let slopes = DMatrix::from_columns(&columns);
         // The decomposition of a matrix with a NaN would not end.

@@ -69,17 +69,14 @@ fn start(
     sums: &Sums,
     moments: &Vector3<f64>,
 ) -> Vec<f64> {
-    let axes = |free: &Free| -> Vec<usize> {
-        free.keys
-            .iter()
-            .filter_map(|key| moment(key))
-            .filter(|(part, _)| *part == 0)
-            .map(|(_, axis)| axis)
-            .collect()
-    };
     // The moments that are held are what they are; where none is, their sum stays.
     let mut held: Vec<usize> = (0..3)
-        .filter(|axis| !model.free.iter().any(|free| axes(free).contains(axis)))
+        .filter(|axis| {
+            !model
+                .free
+                .iter()
+                .any(|free| moment_axes(free).contains(axis))
+        })
         .collect();
     if held.is_empty() {
         held = vec![0, 1, 2];
@@ -87,23 +84,27 @@ fn start(
     let sum = |of: &Vector3<f64>| held.iter().map(|axis| of[*axis]).sum::<f64>();
     let factor = sum(own) / sum(moments);
     let rates = sums.rates_at_start(moments);
-    let value = |(free, rate): (&Free, &f64)| {
-        let axes_of_key = axes(free);
-        let axis = free
-            .key
-            .strip_prefix(START_OMEGA_KEY)
-            .and_then(|axis| axis.parse::<usize>().ok());
-        let value = match (&axes_of_key[..], axis) {
-            ([_, ..], _) => {
-                let moment: f64 = axes_of_key.iter().map(|place| moments[*place]).sum();
-                factor * moment / axes_of_key.len() as f64
-            }
-            ([], Some(axis)) => rates[axis.min(2)],
-            ([], None) => *rate,
-        };
-        value.clamp(free.from, free.to)
-    };
-    model.free.iter().zip(p).map(value).collect()
+    model
+        .free
+        .iter()
+        .zip(p)
+        .map(|(free, rate): (&Free, &f64)| {
+            let axes_of_key = moment_axes(free);
+            let axis = free
+                .key
+                .strip_prefix(START_OMEGA_KEY)
+                .and_then(|axis| axis.parse::<usize>().ok());
+            let value = match (&axes_of_key[..], axis) {
+                ([_, ..], _) => {
+                    let moment: f64 = axes_of_key.iter().map(|place| moments[*place]).sum();
+                    factor * moment / axes_of_key.len() as f64
+                }
+                ([], Some(axis)) => rates[axis.min(2)],
+                ([], None) => *rate,
+            };
+            value.clamp(free.from, free.to)
+        })
+        .collect()
 }
 
 /// The moments of a body with these second moments of mass, in which none is too small.
@@ -207,4 +208,14 @@ impl Sums {
         let growth = Vector3::new((b - c) / a, (c - a) / b, (a - b) / c);
         self.mean_rate - growth.component_mul(&self.mean_sum)
     }
+}
+
+/// The axes of the first part whose moments `free` sets.
+fn moment_axes(free: &Free) -> Vec<usize> {
+    free.keys
+        .iter()
+        .filter_map(|key| moment(key))
+        .filter(|(part, _)| *part == 0)
+        .map(|(_, axis)| axis)
+        .collect()
 }

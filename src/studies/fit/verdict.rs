@@ -146,11 +146,10 @@ impl Fit {
         let held = self.edges.iter().map(|edge| edge.remark(&self.keys));
         let pairs = (0..self.keys.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
         // Of two keys that one limit holds, each says what the other is.
-        let is_apart = |(i, j): &(usize, usize)| {
+        let close = pairs.filter(|(i, j): &(usize, usize)| {
             let mut edges = self.edges.iter();
             !edges.any(|edge| edge.holds[*i] && edge.holds[*j])
-        };
-        let close = pairs.filter(is_apart).filter_map(|(i, j)| {
+        }).filter_map(|(i, j)| {
             let correlation = solution.correlation(i, j).filter(|c| c.abs() > HARDLY)?;
             let (one, other) = (key(j), key(i));
             Some(format!(
@@ -184,14 +183,12 @@ impl Fit {
             .filter(|[time_s, _]| *time_s > 0.0)
             .collect();
         let apart_s = ways.iter().map(|way| way[0]).reduce(f64::min)?;
-        let is_even = |[time_s, _]: &[f64; 2]| {
+        let is_aliased = ways.iter().all(|[time_s, _]: &[f64; 2]| {
             let times = time_s / apart_s;
             (times - times.round()).abs() < EVEN_TIMES
-        };
-        let is_aliased = ways.iter().all(is_even)
-            && ways
-                .iter()
-                .any(|[time_s, way]| (way * apart_s / time_s).abs() > 360.0 / MOST_ROWS)
+        }) && ways
+            .iter()
+            .any(|[time_s, way]| (way * apart_s / time_s).abs() > 360.0 / MOST_ROWS)
             && !is_counted(&points);
         is_aliased.then(|| {
             let rate = significant(360.0 / apart_s, 3);

@@ -98,12 +98,6 @@ pub fn complement<'a>(
     normals: impl Iterator<Item = &'a DVector<f64>>,
     count: usize,
 ) -> DMatrix<f64> {
-    let across = |mut vector: DVector<f64>, basis: &[DVector<f64>]| {
-        for _ in 0..2 {
-            basis.iter().for_each(|it| vector -= it * it.dot(&vector));
-        }
-        vector
-    };
     let mut basis: Vec<DVector<f64>> = Vec::new();
     for normal in normals {
         let next = across(normal.normalize(), &basis);
@@ -133,4 +127,12 @@ fn solved(a: &DMatrix<f64>, c: &DVector<f64>) -> DVector<f64> {
     let least = ROUNDING * ROUNDING * svd.singular_values.amax();
     svd.solve(c, least)
         .unwrap_or_else(|_| DVector::zeros(a.ncols()))
+}
+
+/// The part of `vector` square to the `basis`; taken out twice, for rounding.
+fn across(mut vector: DVector<f64>, basis: &[DVector<f64>]) -> DVector<f64> {
+    for _ in 0..2 {
+        basis.iter().for_each(|it| vector -= it * it.dot(&vector));
+    }
+    vector
 }

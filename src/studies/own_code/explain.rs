@@ -82,22 +82,23 @@ impl Explanation {
 
     /// Returns what the program does, and what the report does.
     pub fn words(&self) -> String {
-        let of_place = |place: usize| {
-            let all = std::iter::once(&self.variants).chain(&self.alternatives);
-            let mut programs: Vec<&str> = Vec::new();
-            for variants in all {
-                let program = variants[place].program.as_str();
-                if !programs.contains(&program) {
-                    programs.push(program);
+        let words: Vec<_> = (0..self.variants.len())
+            .map(|place: usize| {
+                let all = std::iter::once(&self.variants).chain(&self.alternatives);
+                let mut programs: Vec<&str> = Vec::new();
+                for variants in all {
+                    let program = variants[place].program.as_str();
+                    if !programs.contains(&program) {
+                        programs.push(program);
+                    }
                 }
-            }
-            format!(
-                "{}. {}",
-                programs.join(", or "),
-                self.variants[place].report
-            )
-        };
-        let words: Vec<_> = (0..self.variants.len()).map(of_place).collect();
+                format!(
+                    "{}. {}",
+                    programs.join(", or "),
+                    self.variants[place].report
+                )
+            })
+            .collect();
         words.join(" Second: ")
     }
 }

@@ -128,12 +128,12 @@ impl<A: Stepper, B: Stepper> ReferenceRun<A, B> {
                 _ => slack,
             }
         });
-        let is_large = |place: usize| {
-            let scales = self.so_far[place / 3 * 3..place / 3 * 3 + 3].iter();
-            let scale = scales.fold(0.0, |most: f64, it| most.max(it[1]));
-            slack[place] > MOST_SLACK * scale
-        };
-        let is_lost = self.rounding == Rounding::SingleOfSlip && (0..6).any(is_large);
+        let is_lost = self.rounding == Rounding::SingleOfSlip
+            && (0..6).any(|place: usize| {
+                let scales = self.so_far[place / 3 * 3..place / 3 * 3 + 3].iter();
+                let scale = scales.fold(0.0, |most: f64, it| most.max(it[1]));
+                slack[place] > MOST_SLACK * scale
+            });
         (is_finite && !is_lost).then_some(At { values, slack })
     }
 
@@ -253,17 +253,18 @@ pub fn compare_rows<A: Stepper, B: Stepper>(
         step += 1;
     }
     // Of equals the first.
-    let best = |best: RowAgreement, lane: RowAgreement| match (best.is_whole(), lane.is_whole()) {
-        (true, _) => best,
-        (false, true) => lane,
-        _ if lane.agreeing > best.agreeing => lane,
-        _ => best,
-    };
     // That the start stands there twice is no agreement with the run.
     lanes
         .into_iter()
         .filter(|lane| lane.offset >= 0 || lane.moves)
-        .reduce(best)
+        .reduce(
+            |best: RowAgreement, lane: RowAgreement| match (best.is_whole(), lane.is_whole()) {
+                (true, _) => best,
+                (false, true) => lane,
+                _ if lane.agreeing > best.agreeing => lane,
+                _ => best,
+            },
+        )
         .unwrap_or_default()
 }
 

@@ -300,22 +300,22 @@ impl CheckOutcome<'_> {
     /// The preset with which all rows agree.
     fn other_preset(&self) -> Option<&'static str> {
         self.rows.columns.iter().find(|column| column.varies())?;
-        let is_its = |scenario: Scenario| {
-            let (times, dt) = (&self.rows.times, scenario.motion.time_step_s);
-            let mut others = times.others.iter();
-            let steps = if dt == self.scenario.motion.time_step_s {
-                &times.steps
-            } else {
-                &others.find(|(own, _)| *own == dt)?.1
-            };
-            let none = Vec::<MutantStepper<f64>>::new();
-            let run = ReferenceRun::new(Simulation::new(scenario.into()), none, Rounding::Double);
-            Some(compare_rows(self.rows, steps, run))
-        };
         let names = PRESETS.iter().map(|preset| preset.name);
         names.into_iter().find(|name| {
             let scenario = Document::open(name).and_then(|it| it.scenario());
-            let followed = scenario.ok().and_then(is_its);
+            let followed = scenario.ok().and_then(|scenario: Scenario| {
+                let (times, dt) = (&self.rows.times, scenario.motion.time_step_s);
+                let mut others = times.others.iter();
+                let steps = if dt == self.scenario.motion.time_step_s {
+                    &times.steps
+                } else {
+                    &others.find(|(own, _)| *own == dt)?.1
+                };
+                let none = Vec::<MutantStepper<f64>>::new();
+                let run =
+                    ReferenceRun::new(Simulation::new(scenario.into()), none, Rounding::Double);
+                Some(compare_rows(self.rows, steps, run))
+            });
             followed.is_some_and(|it| it.is_whole() && it.agreeing == self.rows.count)
         })
     }

@@ -54,7 +54,6 @@ impl Plan {
         let of_body =
             start.momentum_Js.is_none() || start.momentum_frame == Some(VectorFrame::Body);
         let (orientation, momentum) = (scenario.start.orientation, scenario.start.momentum);
-        let is_zero = |deg: Option<f64>| deg.unwrap_or(0.0) == 0.0;
         let points = body.points().iter();
         is_plain.then(|| Self {
             points: points.map(|point| (point.at.into(), point.mass)).collect(),
@@ -63,7 +62,9 @@ impl Plan {
             traced: scenario.trace,
             start: ProgramStart {
                 tilt_deg: start.tilt_deg.unwrap_or(0.0),
-                is_tilt: is_zero(start.turn_deg) && is_zero(start.roll_deg),
+                is_tilt: [start.turn_deg, start.roll_deg]
+                    .iter()
+                    .all(|deg| deg.unwrap_or(0.0) == 0.0),
                 momentum: if of_body {
                     orientation.tr_mul(&momentum)
                 } else {
@@ -79,8 +80,6 @@ impl Plan {
     }
 
     pub(super) fn part(&self, part: usize) -> String {
-        let number = |value: f64| shortest(rounded(value, 4));
-        let vector = |of: &Vector3<f64>| format!("({})", of.map(number).as_slice().join(", "));
         match part {
             0 => match self.pushes.first() {
                 None => "no push".to_owned(),
@@ -189,4 +188,12 @@ impl Plan {
         let mut others = named.filter(|(place, _)| self.rim + place != k);
         others.nth(nth).map(|(_, name)| &**name)
     }
+}
+
+fn number(value: f64) -> String {
+    shortest(rounded(value, 4))
+}
+
+fn vector(of: &Vector3<f64>) -> String {
+    format!("({})", of.map(number).as_slice().join(", "))
 }

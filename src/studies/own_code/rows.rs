@@ -118,14 +118,13 @@ impl ProgramColumn {
 
     /// Whether each value is a number of single precision, as far as its digits say.
     fn is_of_single(&self) -> bool {
-        let is_of_single = |value: &f64| {
+        self.values.iter().all(|value: &f64| {
             let nearest = *value as f32;
             let off = (value - f64::from(nearest)).abs();
             // NumPy and others print the shortest number that reads back to the same float32.
             off <= 0.5 * self.unit(*value) * (1.0 + 1e-6)
                 || nearest.to_string().parse() == Ok(*value)
-        };
-        self.values.iter().all(is_of_single)
+        })
     }
 
     pub fn varies(&self) -> bool {

@@ -159,8 +159,6 @@ impl<T: Real> MutantStepper<T> {
 
     /// Takes a step, and gives what each phase of it results in, with the phase's name.
     pub fn numbers(&mut self) -> Vec<(PhaseName, WorkedQuantity)> {
-        let vector = |of: &Vector3<T>| WorkedValue::from(of.map(T::f64));
-        let matrix = |of: &Matrix3<T>| WorkedValue::from(of.map(T::f64));
         let (omega, turn, torque) = self.step();
         let mut numbers = vec![
             (PhaseName::Inertia, "I", "kg m²", matrix(&self.inertia)),
@@ -473,4 +471,12 @@ fn solve<T: Real>(matrix: &Matrix3<T>, vector: &Vector3<T>) -> Vector3<T> {
         a.dot(&b.cross(vector)),
     ];
     Vector3::from(parts) / a.dot(&across)
+}
+
+fn vector<T: Real>(of: &Vector3<T>) -> WorkedValue {
+    of.map(T::f64).into()
+}
+
+fn matrix<T: Real>(of: &Matrix3<T>) -> WorkedValue {
+    of.map(T::f64).into()
 }

@@ -61,17 +61,17 @@ impl CheckOutcome<'_> {
 
     /// The columns that differ first, with the values of the file and of the scheme.
     fn differing(&self) -> Vec<(&ProgramColumn, f64, f64)> {
-        let differing = |differs: RowDifference| {
-            let values = self.rows.columns.iter().map(move |column| {
-                let (yours, scheme) = (column.values[differs.row], differs.scheme[column.place]);
-                (column, yours, scheme)
-            });
-            values.filter(|(column, yours, scheme)| !column.agrees(*yours, *scheme, 0.0))
-        };
         self.beside
             .differs
             .into_iter()
-            .flat_map(differing)
+            .flat_map(|differs: RowDifference| {
+                let values = self.rows.columns.iter().map(move |column| {
+                    let (yours, scheme) =
+                        (column.values[differs.row], differs.scheme[column.place]);
+                    (column, yours, scheme)
+                });
+                values.filter(|(column, yours, scheme)| !column.agrees(*yours, *scheme, 0.0))
+            })
             .collect()
     }
 
