@@ -77,7 +77,7 @@ impl ShowArgs {
         let name = self.scenario.as_deref().unwrap_or(DEFAULT);
         let files = vec![File::new(Payload::Run, name, &scenario.to_toml())];
         let origin = Origin::new(&BTreeMap::from([(SCREEN, true)]), files);
-        provenance::carry(&picture, &origin).unwrap_or(picture)
+        provenance::embed(&picture, &origin).unwrap_or(picture)
     }
 }
 

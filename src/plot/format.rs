@@ -57,7 +57,7 @@ pub fn write(
         PageFormat::Png => png::written(&scene, DOTS_PER_INCH)?,
     };
     match origin {
-        Some(origin) => provenance::carry(&picture, origin).ok_or(Unwritable::Origin),
+        Some(origin) => provenance::embed(&picture, origin).ok_or(Unwritable::Origin),
         None => Ok(picture),
     }
 }

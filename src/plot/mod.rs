@@ -8,12 +8,11 @@
 //! - [`scene`]: filled and stroked paths; no form of file is named there.
 //! - [`ink`]: the pens, marks and lines of text of which figures are made.
 //! - [`letters`]: text as outlines, and as a font of them.
-//! - [`line`](mod@line): lines that end at a frame, and lines through fewer points; [`cover`]: the outline of what a line covers.
+//! - [`line`](mod@line): lines that end at a frame, and lines through fewer points; [`stroke_outline`]: the outline of what a line covers.
 //! - [`format`](mod@format): the forms of file, by [`svg`], [`pdf`] and [`png`].
 
 pub mod camera;
 pub mod chart;
-pub mod cover;
 pub mod format;
 pub mod ink;
 pub mod letters;
@@ -21,6 +20,7 @@ pub mod line;
 pub mod pdf;
 pub mod png;
 pub mod scene;
+pub mod stroke_outline;
 pub mod svg;
 
 pub use format::{PageFormat, write};

@@ -5,7 +5,7 @@
 //! `svg`, `pdf` and `png` put this text into the file of a picture and find it there; taken out, it leaves that file
 //! as it was.
 
-mod parted;
+mod extracted;
 mod pdf;
 mod png;
 mod svg;
@@ -18,7 +18,7 @@ use std::fs::File as Opened;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
-use parted::{BROKEN, Extracted, LONGEST_TEXT, NO_RUN_TEXT, packed};
+use extracted::{BROKEN, Extracted, LONGEST_TEXT, NO_RUN_TEXT, packed};
 
 /// The longest file of a figure that is read, bytes.
 const LONGEST_FIGURE: u64 = 128 << 20;
@@ -177,23 +177,23 @@ impl FileFormat {
         }
     }
 
-    fn carry(self, picture: &[u8], text: &str) -> Option<Vec<u8>> {
+    fn embed(self, picture: &[u8], text: &str) -> Option<Vec<u8>> {
         let before = picture.strip_suffix(self.end())?;
         Some([before, &self.carrier(before, text)?, self.end()].concat())
     }
 
-    fn part(self, file: &[u8]) -> Result<Extracted, &'static str> {
+    fn extract(self, file: &[u8]) -> Result<Extracted, &'static str> {
         match self {
-            Self::Svg => svg::part(file),
-            Self::Pdf => pdf::part(file),
-            Self::Png => png::part(file),
+            Self::Svg => svg::extract(file),
+            Self::Pdf => pdf::extract(file),
+            Self::Png => png::extract(file),
         }
     }
 }
 
 /// The `picture`, a file that this program wrote, with its origin in it; `None` where that is too long.
-pub fn carry(picture: &[u8], origin: &Origin) -> Option<Vec<u8>> {
-    FileFormat::of(picture)?.carry(picture, &origin.text(picture)?)
+pub fn embed(picture: &[u8], origin: &Origin) -> Option<Vec<u8>> {
+    FileFormat::of(picture)?.embed(picture, &origin.text(picture)?)
 }
 
 /// A figure that was read.
@@ -213,7 +213,7 @@ impl FigureFile {
     /// A file may be large: it is neither copied, nor are two copies of its text kept with it for longer than is needed.
     pub fn of(mut file: Vec<u8>) -> Result<Self, String> {
         let form = FileFormat::of(&file).ok_or(NO_RUN_TEXT)?;
-        let Extracted { carrier, text } = form.part(&file)?;
+        let Extracted { carrier, text } = form.extract(&file)?;
         let text = String::from_utf8(text).map_err(|_| BROKEN)?;
         let (before, rest) = file.split_at(carrier.start);
         let is_as_written = rest[carrier.len()..] == *form.end()

@@ -1,7 +1,7 @@
 //! PDF: the text is an attached file, which is appended to the picture's file as PDF's own incremental updates are: the
 //! attachment, the catalog that names it, and where they stand.
 
-use super::parted::{BROKEN, Extracted, packed, place, unpacked};
+use super::extracted::{BROKEN, Extracted, packed, place, unpacked};
 
 const PDF_MARK: &str = "\n% gyrolab figure\n";
 const STREAM: &[u8] = b"\nstream\n";
@@ -50,7 +50,7 @@ pub fn carrier(picture: &[u8], text: &str) -> Option<Vec<u8>> {
     Some(update)
 }
 
-pub fn part(file: &[u8]) -> Result<Extracted, &'static str> {
+pub fn extract(file: &[u8]) -> Result<Extracted, &'static str> {
     let begin = place(file, PDF_MARK.as_bytes())?;
     let update = &file[begin..];
     let stream = update

@@ -1,6 +1,6 @@
 //! PNG: the text is the last chunk before the end, a compressed iTXt with the keyword `gyrolab`.
 
-use super::parted::{Extracted, NO_RUN_TEXT, TWO, packed, unpacked};
+use super::extracted::{Extracted, NO_RUN_TEXT, TWO, packed, unpacked};
 use crate::text::checksum::crc32;
 
 pub const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
@@ -18,7 +18,7 @@ pub fn carrier(text: &str) -> Option<Vec<u8>> {
     Some([&length, chunk.as_slice(), &sum].concat())
 }
 
-pub fn part(file: &[u8]) -> Result<Extracted, &'static str> {
+pub fn extract(file: &[u8]) -> Result<Extracted, &'static str> {
     let (mut at, mut found) = (SIGNATURE.len(), None);
     while let Some((chunk, end)) = chunk(file, at) {
         if let Some(content) = chunk.strip_prefix(KEYWORD)

@@ -1,7 +1,7 @@
 //! SVG: the text is the last element, `<metadata>`. What XML does not take as it is, and `%`, is written as `%` and two
 //! hexadecimal digits for each byte, so that no other program has a reason to write it otherwise.
 
-use super::parted::{BROKEN, Extracted, place};
+use super::extracted::{BROKEN, Extracted, place};
 
 const BEGIN: &str = "<metadata>\n";
 /// The begin, with the first letters of the text.
@@ -17,7 +17,7 @@ pub fn carrier(text: &str) -> Vec<u8> {
     carrier.into_bytes()
 }
 
-pub fn part(file: &[u8]) -> Result<Extracted, &'static str> {
+pub fn extract(file: &[u8]) -> Result<Extracted, &'static str> {
     let begin = place(file, BEGIN_OF_TEXT)?;
     let rest = &file[begin + BEGIN.len()..];
     let end = rest.iter().position(|byte| *byte == b'<').ok_or(BROKEN)?;

@@ -2,10 +2,10 @@
 
 use super::layout::PlacedPanel;
 use super::{ChartSeries, Panel, SeriesStyle};
-use crate::plot::cover;
 use crate::plot::ink::{PageRectangle, at, paler};
 use crate::plot::line::{clipped, simplified};
 use crate::plot::scene::{PageScene, Point, StrokeStyle, VectorPath};
+use crate::plot::stroke_outline;
 use std::collections::{HashMap, HashSet};
 
 /// How far a line may leave its points, of its width: a tenth of a dot at 600 an inch for a line of 0.7 pt.
@@ -119,7 +119,7 @@ pub fn draw_curve(
         .collect();
     let count: usize = lines.iter().map(Vec::len).sum();
     if pen.dash_pt.is_empty() && count > MANY_LINE_POINTS {
-        let area = cover::area(&lines, pen.width_pt);
+        let area = stroke_outline::area(&lines, pen.width_pt);
         // There is none of lines that need too large a grid.
         if !area.0.is_empty() && area.0.len() < count {
             return scene.fill_in(area, pen.color, clip);

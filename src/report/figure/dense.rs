@@ -12,8 +12,8 @@ use crate::plot::PT_PER_MM;
 use crate::plot::chart::Chart;
 use crate::plot::chart::curve;
 use crate::plot::chart::layout::{ChartLayout, PlacedPanel};
-use crate::plot::cover::Grid;
 use crate::plot::scene::Point;
+use crate::plot::stroke_outline::Grid;
 
 /// Parts of a panel's width that are looked at, pt.
 const PART_PT: f64 = 1.0;
