@@ -37,8 +37,10 @@ pub fn verify(
     let head = Head::read(&mut file)?;
     let header = run_file(&head)?;
     let document = Document::parse_header(&path.display().to_string(), &header)?;
-    let version = document.table().get("gyrolab");
-    let version = version.and_then(toml::Value::as_str);
+    let version = document
+        .table()
+        .get("gyrolab")
+        .and_then(toml::Value::as_str);
     let mut notes = Vec::from_iter(version.and_then(other_version));
     let recipe = CsvRecipe::read(path, &head, &header, &document)?;
     let mut comparison = FileComparison::new(&head, file);

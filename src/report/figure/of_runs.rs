@@ -70,8 +70,8 @@ pub fn figures(
         }
         if !all_played.iter().any(|(it, _)| it.is_alike(job)) {
             let alike = jobs.iter().filter(|it| it.is_alike(job));
-            let wanted = wanted(job, alike.map(|it| it.kind));
-            match play(job, &wanted, &mut watch)? {
+            let samples = wanted(job, alike.map(|it| it.kind));
+            match play(job, &samples, &mut watch)? {
                 Some(played) => all_played.push((job, played)),
                 None => return Ok(None),
             }
@@ -103,13 +103,15 @@ fn play(
         }
         let is_shown =
             !wanted.columns.is_empty() && (!is_exact(&run.scenario) || wanted.counts_steps());
-        let few = || few_a_swing(run).filter(|_| is_shown);
-        warnings.extend(not_believed(run, course, spec.exact).or_else(few));
+        warnings.extend(
+            not_believed(run, course, spec.exact).or_else(|| few_a_swing(run).filter(|_| is_shown)),
+        );
         warnings.extend(limited(run, course));
     }
     if spec.exact {
-        let is_exact = |run: &FigureRun| is_exact(&run.scenario);
-        warnings.extend(runs.iter().any(is_exact).then(|| IS_EXACT.to_owned()));
+        if runs.iter().any(|run| is_exact(&run.scenario)) {
+            warnings.push(IS_EXACT.to_owned());
+        }
         let Some(truths) = play_truths(job, wanted, watch) else {
             return Ok(None);
         };
@@ -135,8 +137,11 @@ fn play_runs(
 ) -> Option<Vec<SampledRunNumbers>> {
     let named = job.runs.iter().zip(names(job)).enumerate();
     let drawn = named.map(|(index, (run, name))| {
-        let recorded = job.known.recorded.as_ref();
-        let recorded = recorded.and_then(|all| all.part(&run.scenario, wanted));
+        let recorded = job
+            .known
+            .recorded
+            .as_ref()
+            .and_then(|all| all.part(&run.scenario, wanted));
         let is_exact = is_exact(&run.scenario);
         Some(SampledRunNumbers {
             name,
@@ -258,8 +263,8 @@ fn magnified(
         spec: &spec,
         ..*job
     };
-    let wanted = wanted(&part, [job.kind].into_iter());
-    let Some(played) = play(&part, &wanted, watch)? else {
+    let samples = wanted(&part, [job.kind].into_iter());
+    let Some(played) = play(&part, &samples, watch)? else {
         return Ok(None);
     };
     let (chart, _) = over_time(&part, columns, &played.drawn)?;

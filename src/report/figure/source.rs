@@ -124,9 +124,9 @@ impl FigureSource {
                     source.runs.push(FigureRun { scenario, named });
                 }
                 Payload::Data => {
-                    let data = data::read(&named, &text)?;
-                    let data = data.until(source.spec.measured_until_s);
-                    source.measured = Some(Arc::new(data));
+                    let until_s = source.spec.measured_until_s;
+                    let measured = data::read(&named, &text)?.until(until_s);
+                    source.measured = Some(Arc::new(measured));
                 }
                 Payload::Table => source.table = TableSource::of(&named, text)?,
             }
@@ -137,8 +137,12 @@ impl FigureSource {
 
 /// The figure of `table` that is asked for.
 fn of_table(table: &TableSource, spec: &FigureSpec) -> Result<DrawnFigure, String> {
-    let columns = spec.kind.iter().flat_map(|kind| kind.split(','));
-    let columns: Vec<_> = columns.map(str::trim).collect();
+    let columns: Vec<_> = spec
+        .kind
+        .iter()
+        .flat_map(|kind| kind.split(','))
+        .map(str::trim)
+        .collect();
     let mut chart = of_table::chart(table, &columns, spec.page_width_pt())?;
     let without_point = of_table::warning(table, &chart);
     let hidden = spec.labels.apply(&mut chart)?;

@@ -202,8 +202,9 @@ fn of_run(
     }
     let from_above = "Path of the traced point from above";
     let mut above = plan(ABOVE, FigureKind::Above, from_above);
-    let has_places = |beside: &&MeasuredComparison| !beside.compared.places.is_empty();
-    let measured = beside.filter(has_places).map(MeasuredComparison::reached);
+    let measured = beside
+        .filter(|beside| !beside.compared.places.is_empty())
+        .map(MeasuredComparison::reached);
     above.source.draw_with(measured);
     planned.push(above);
     let in_space = "Path of the traced point in space";

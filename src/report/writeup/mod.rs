@@ -54,11 +54,15 @@ impl Writeup {
             (READOUTS_FILE, self.readouts_json()),
             (WRITEUP_PAGE, self.page()),
         ];
-        let beside = self.beside.iter();
-        let beside = beside.map(|beside| (beside.name(), beside.measured.text.to_string()));
-        let texts = texts.into_iter().chain(beside);
-        let texts = texts.map(|(name, text)| (name.to_owned(), text.into_bytes()));
-        let mut files: Vec<_> = texts.collect();
+        let measured = self
+            .beside
+            .iter()
+            .map(|beside| (beside.name(), beside.measured.text.to_string()));
+        let mut files: Vec<_> = texts
+            .into_iter()
+            .chain(measured)
+            .map(|(name, text)| (name.to_owned(), text.into_bytes()))
+            .collect();
         for drawing in &self.drawings {
             for (ending, format) in [("svg", PageFormat::Svg), ("pdf", PageFormat::Pdf)] {
                 let bytes = drawing.source.write(&drawing.scene, format)?;

@@ -162,8 +162,8 @@ impl CsvRecipe {
                 time_steps_s,
             } => {
                 notes.push(OF_THE_CLOCK.to_owned());
-                let rows = compare::compare(scenario, schemes, time_steps_s, watch);
-                let rows = rows.ok_or(Unverified::Stopped)?;
+                let rows = compare::compare(scenario, schemes, time_steps_s, watch)
+                    .ok_or(Unverified::Stopped)?;
                 out.write_all(&csv_of_comparison(scenario, &rows)?)?;
             }
             Self::Fit { command } => out.write_all(&fit(command)?)?,
@@ -183,8 +183,9 @@ fn write_rows(
     in_order(
         0..total,
         |row, goes_on: &dyn Fn() -> bool| {
-            let is_watched = || watch(done.load(Ordering::Relaxed), total).is_continue();
-            sweep.row(row, &|| goes_on() && is_watched())
+            sweep.row(row, &|| {
+                goes_on() && watch(done.load(Ordering::Relaxed), total).is_continue()
+            })
         },
         |rows| {
             for row in rows {

@@ -52,8 +52,10 @@ pub(super) fn drawn(
         has_points: has(QuantityOwner::Measured) || has(QuantityOwner::Value),
         has_gaps: has_gaps(table, columns, varied),
     };
-    let panels = quantities.iter().map(|quantity| drawing.panel(quantity));
-    let mut panels = panels.collect::<Result<Vec<_>, _>>()?;
+    let mut panels = quantities
+        .iter()
+        .map(|quantity| drawing.panel(quantity))
+        .collect::<Result<Vec<_>, _>>()?;
     let Some(first) = panels.first_mut() else {
         return Err("no column of this sweep is a number that can be drawn".to_owned());
     };
@@ -74,8 +76,11 @@ fn too_many_curves(count: usize, varied: &[String], along: &str) -> String {
 }
 
 fn too_many(quantities: &[QuantityColumns]) -> String {
-    let names = quantities.iter().flatten();
-    let names: Vec<_> = names.map(|part| part.name.as_str()).collect();
+    let names: Vec<_> = quantities
+        .iter()
+        .flatten()
+        .map(|part| part.name.as_str())
+        .collect();
     format!(
         "{} quantities do not fit on a page: choose some with --kind, such as --kind {}; there are {}",
         quantities.len(),
@@ -94,8 +99,12 @@ const SIMULATED_LABEL: &str = "simulated, without error";
 
 /// The rows of `table` whose runs did not fail.
 fn rows_run(table: &TableSource, varied: &[String]) -> Vec<usize> {
-    let readouts = table.names().iter().filter(|name| !varied.contains(name));
-    let readouts: Vec<_> = readouts.filter_map(|name| table.texts(name)).collect();
+    let readouts: Vec<_> = table
+        .names()
+        .iter()
+        .filter(|name| !varied.contains(name))
+        .filter_map(|name| table.texts(name))
+        .collect();
     (0..table.count())
         .filter(|row| readouts.iter().any(|texts| !texts[*row].is_empty()))
         .collect()
