@@ -331,8 +331,8 @@ impl FromArgMatches for LayoutArgs {
             .iter()
             .filter_map(|row| Some((row.path.to_owned(), value(row)?)));
         let file = Table::from_iter(values).try_into::<LayoutFile>();
-        let wrong = |error| clap::Error::raw(ErrorKind::ValueValidation, error);
-        file.map(Self).map_err(wrong)
+        file.map(Self)
+            .map_err(|error| clap::Error::raw(ErrorKind::ValueValidation, error))
     }
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {

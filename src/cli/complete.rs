@@ -210,15 +210,17 @@ fn is_free(key: &SchemaRow) -> bool {
 /// The key `path` with a number for each `*`: the one that stands there in `typed`, or else 0.
 fn instance(path: &str, typed: &str) -> String {
     let mut typed_parts = typed.split('.');
-    let part = |part| {
-        let number = typed_parts
-            .next()
-            .filter(|typed_part| typed_part.parse::<usize>().is_ok());
-        if part == "*" {
-            number.unwrap_or("0")
-        } else {
-            part
-        }
-    };
-    path.split('.').map(part).collect::<Vec<_>>().join(".")
+    path.split('.')
+        .map(|part| {
+            let number = typed_parts
+                .next()
+                .filter(|typed_part| typed_part.parse::<usize>().is_ok());
+            if part == "*" {
+                number.unwrap_or("0")
+            } else {
+                part
+            }
+        })
+        .collect::<Vec<_>>()
+        .join(".")
 }

@@ -377,8 +377,13 @@ fn measured(args: &FitArgs) -> Result<MeasuredData, Problems> {
 fn scenario(args: &FitArgs) -> Result<(Document, Option<&'static str>), Problems> {
     let mut document = open(&args.scenario)?;
     let mut own = None;
-    let sets_scheme = |set: &String| set.trim_start().starts_with("motion.scheme");
-    if args.changes.scheme.is_none() && !args.changes.set.iter().any(sets_scheme) {
+    if args.changes.scheme.is_none()
+        && !args
+            .changes
+            .set
+            .iter()
+            .any(|set: &String| set.trim_start().starts_with("motion.scheme"))
+    {
         // What is wrong with it is told as it stands in its file.
         own = Some(document.scenario()?.motion.scheme.name);
         let written = document.set_value("motion.scheme", Value::String(FITTED_SCHEME.to_owned()));

@@ -268,16 +268,17 @@ fn fixed(title: &'static str) -> ManualSection {
 /// Each term and what it means beside it; a long term has its meaning below it.
 fn terms(rows: &[(String, &str)]) -> String {
     const MANUAL_INDENT: usize = 16;
-    let row = |(term, meaning): &(String, &str)| {
-        let meaning = wrapped(meaning, MANUAL_WIDTH - MANUAL_INDENT)
-            .join(&format!("\n{:MANUAL_INDENT$}", ""));
-        let begin = match wrapped(term, MANUAL_WIDTH - 4).join("\n    ") {
-            short if columns(&short) + 4 <= MANUAL_INDENT => format!("  {short:<14}"),
-            long => format!("  {long}\n{:MANUAL_INDENT$}", ""),
-        };
-        format!("{begin}{meaning}\n")
-    };
-    rows.iter().map(row).collect()
+    rows.iter()
+        .map(|(term, meaning): &(String, &str)| {
+            let meaning = wrapped(meaning, MANUAL_WIDTH - MANUAL_INDENT)
+                .join(&format!("\n{:MANUAL_INDENT$}", ""));
+            let begin = match wrapped(term, MANUAL_WIDTH - 4).join("\n    ") {
+                short if columns(&short) + 4 <= MANUAL_INDENT => format!("  {short:<14}"),
+                long => format!("  {long}\n{:MANUAL_INDENT$}", ""),
+            };
+            format!("{begin}{meaning}\n")
+        })
+        .collect()
 }
 
 fn paragraph(text: &str) -> String {

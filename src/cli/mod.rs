@@ -264,11 +264,14 @@ fn misspelt_command() -> Option<String> {
 /// Prints what clap has to say instead of going on: help, or why it takes no such arguments. clap repeats the arguments
 /// as they are: where one holds a character that could steer a terminal, the text is printed escaped and without colours.
 fn misused(error: &clap::Error) -> ExitCode {
-    let is_hostile = |argument: OsString| argument.to_string_lossy().contains(is_steering);
     let text = error.render().to_string();
     let plain = printable_lines(&text);
     let is_help = !error.use_stderr();
-    let printed = match (std::env::args_os().any(is_hostile), error.use_stderr()) {
+    let printed = match (
+        std::env::args_os()
+            .any(|argument: OsString| argument.to_string_lossy().contains(is_steering)),
+        error.use_stderr(),
+    ) {
         (false, _) => error.print(),
         (true, true) => io::stderr().write_all(plain.as_bytes()),
         (true, false) => io::stdout().write_all(plain.as_bytes()),

@@ -242,16 +242,15 @@ pub(super) fn with_clock<T>(what: &str, work: impl FnOnce() -> T) -> T {
         return work();
     }
     let (working, is_done) = mpsc::channel::<()>();
-    let tick = move || {
-        let meter = Meter::counting("second");
-        while is_done.recv_timeout(PROGRESS_INTERVAL) == Err(RecvTimeoutError::Timeout) {
-            let elapsed = HumanDuration(meter.begin.elapsed());
-            meter.say(&format!("{what}: {elapsed:#}"));
-        }
-    };
     thread::scope(|scope| {
         // If the system gives no thread, nothing is shown.
-        let _ = thread::Builder::new().spawn_scoped(scope, tick);
+        let _ = thread::Builder::new().spawn_scoped(scope, move || {
+            let meter = Meter::counting("second");
+            while is_done.recv_timeout(PROGRESS_INTERVAL) == Err(RecvTimeoutError::Timeout) {
+                let elapsed = HumanDuration(meter.begin.elapsed());
+                meter.say(&format!("{what}: {elapsed:#}"));
+            }
+        });
         let result = work();
         drop(working);
         result

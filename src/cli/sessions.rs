@@ -179,10 +179,12 @@ pub(super) fn come_back(
     confined: Option<&Confined>,
     folder: Result<PathBuf, String>,
 ) -> anyhow::Result<SessionLab> {
-    let read = |content: &session::SessionContent| resumed(content, args.look, confined);
-    let found = folder
-        .clone()
-        .and_then(|folder| session::resume(&folder, None, read).map_err(|error| error.to_string()));
+    let found = folder.clone().and_then(|folder| {
+        session::resume(&folder, None, |content: &session::SessionContent| {
+            resumed(content, args.look, confined)
+        })
+        .map_err(|error| error.to_string())
+    });
     let why_none = match found {
         Ok(found) => {
             let passed_over = left_alone(&found.left_alone) + &in_use(&found.in_use_by);

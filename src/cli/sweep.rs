@@ -145,8 +145,12 @@ fn place(problem: &mut Problem, keys: &[String], args: &SweepArgs) {
     let key = number
         .and_then(|number| keys.get(number))
         .unwrap_or(&problem.key);
-    let is_of_key = |argument: &&String| argument.split('=').next().map(str::trim) == Some(key);
-    if let Some(argument) = args.vary.iter().rev().find(is_of_key) {
+    if let Some(argument) = args
+        .vary
+        .iter()
+        .rev()
+        .find(|argument: &&String| argument.split('=').next().map(str::trim) == Some(key))
+    {
         return axis::place(problem, argument);
     }
     let option = match problem.key.as_str() {
@@ -237,18 +241,21 @@ fn add_rows(
     let (begin, all) = (part.rows, sweep.rows());
     let meter = Meter::counting("row");
     meter.begin(all - begin);
-    let row = |row: u64, goes_on: &dyn Fn() -> bool| {
-        sweep.row(row, &|| goes_on() && !interruption.has_come())
-    };
     let mut added = Ok(());
-    in_order(begin..all, row, |rows| {
-        added = part.add(rows);
-        if added.is_err() {
-            return ControlFlow::Break(());
-        }
-        // The rows of an earlier command say nothing about the time that the others take.
-        meter.show(part.rows - begin, all - begin);
-        interruption.go_on()
-    });
+    in_order(
+        begin..all,
+        |row: u64, goes_on: &dyn Fn() -> bool| {
+            sweep.row(row, &|| goes_on() && !interruption.has_come())
+        },
+        |rows| {
+            added = part.add(rows);
+            if added.is_err() {
+                return ControlFlow::Break(());
+            }
+            // The rows of an earlier command say nothing about the time that the others take.
+            meter.show(part.rows - begin, all - begin);
+            interruption.go_on()
+        },
+    );
     added
 }

@@ -115,14 +115,20 @@ impl VectorPath {
 
     /// The path with each of its points, control points too, moved to where `to` says.
     pub fn mapped(self, to: impl Fn(Point) -> Point) -> Self {
-        let segment = |segment| match segment {
-            Segment::Move(end) => Segment::Move(to(end)),
-            Segment::Line(end) => Segment::Line(to(end)),
-            Segment::Quadratic(control, end) => Segment::Quadratic(to(control), to(end)),
-            Segment::Cubic(first, second, end) => Segment::Cubic(to(first), to(second), to(end)),
-            Segment::Close => Segment::Close,
-        };
-        Self(self.0.into_iter().map(segment).collect())
+        Self(
+            self.0
+                .into_iter()
+                .map(|segment| match segment {
+                    Segment::Move(end) => Segment::Move(to(end)),
+                    Segment::Line(end) => Segment::Line(to(end)),
+                    Segment::Quadratic(control, end) => Segment::Quadratic(to(control), to(end)),
+                    Segment::Cubic(first, second, end) => {
+                        Segment::Cubic(to(first), to(second), to(end))
+                    }
+                    Segment::Close => Segment::Close,
+                })
+                .collect(),
+        )
     }
 
     /// The points of the path, control points among them: what it covers lies inside of their hull.

@@ -110,8 +110,8 @@ impl Grid {
             };
             let (left, right) = (enters.min(leaves) as usize, enters.max(leaves) as usize);
             let begin = row * self.columns;
-            if let Some(cells) = self.is_inked.get_mut(begin + left..=begin + right) {
-                cells.fill(true);
+            if let Some(inked) = self.is_inked.get_mut(begin + left..=begin + right) {
+                inked.fill(true);
             }
             enters = leaves;
         }
@@ -134,8 +134,8 @@ impl Grid {
                         let half = halves[other.abs_diff(row)];
                         let begin = other * self.columns + column.saturating_sub(half);
                         let end = other * self.columns + (end + half).min(self.columns);
-                        if let Some(cells) = self.is_inked.get_mut(begin..end) {
-                            cells.fill(true);
+                        if let Some(inked) = self.is_inked.get_mut(begin..end) {
+                            inked.fill(true);
                         }
                     }
                 }

@@ -81,7 +81,7 @@ pub fn compare(
         .map(|cell| cell.steps)
         .fold(0, u64::saturating_add);
     let taken = AtomicU64::new(0);
-    let row = |cell: &Arc<Scenario>| {
+    let rows: Option<Vec<ComparisonRow>> = cores::map(&cells, |cell: &Arc<Scenario>| {
         let mut before = 0;
         let trial = ComparisonTrial::run(cell, until_s.unwrap_or(f64::INFINITY), |step| {
             let now = taken.fetch_add(step - before, Ordering::Relaxed) + (step - before);
@@ -89,8 +89,7 @@ pub fn compare(
             watch(now, total)
         });
         trial.map(|trial| trial.row(cell))
-    };
-    let rows: Option<Vec<ComparisonRow>> = cores::map(&cells, row);
+    });
     rows.map(|rows| with_orders(rows, ERROR_ROUNDING * scenario.arm_m()))
 }
 
@@ -271,16 +270,19 @@ impl ComparisonTable<'_> {
     /// # Errors
     /// Never, unless memory runs out.
     pub fn json(&self, title: &str, duration_s: f64, truth: &str) -> serde_json::Result<Value> {
-        let row = |row: &ComparisonRow| {
-            let mut value = serde_json::to_value(row)?;
-            for field in value.as_object_mut().into_iter().flat_map(Map::values_mut) {
-                if field == NOT_AVAILABLE {
-                    *field = Value::Null;
+        let rows: serde_json::Result<Vec<Value>> = self
+            .rows
+            .iter()
+            .map(|row: &ComparisonRow| {
+                let mut value = serde_json::to_value(row)?;
+                for field in value.as_object_mut().into_iter().flat_map(Map::values_mut) {
+                    if field == NOT_AVAILABLE {
+                        *field = Value::Null;
+                    }
                 }
-            }
-            Ok(value)
-        };
-        let rows: serde_json::Result<Vec<Value>> = self.rows.iter().map(row).collect();
+                Ok(value)
+            })
+            .collect();
         Ok(json!({
             "title": title,
             "duration_s": duration_s,

@@ -304,8 +304,11 @@ fn tried(scenario: &Scenario, is_wanted: &dyn Fn() -> bool) -> Advice {
         return Advice::Nothing;
     }
     if trial(own, scheme).is_some() {
-        let is_edited = |edit: &Edit| edit.motion.scheme != scheme || edit.sets_time_step;
-        return if scenario.edits.iter().any(is_edited) {
+        return if scenario
+            .edits
+            .iter()
+            .any(|edit: &Edit| edit.motion.scheme != scheme || edit.sets_time_step)
+        {
             Advice::TimeStep(own)
         } else {
             Advice::Holds

@@ -72,9 +72,9 @@ impl ChartLayout {
         let y_ranges: Vec<_> = chart.panels.iter().map(y_range).collect();
         let (left, right, height) = sides(chart, x_range(chart), &y_ranges);
         let top = above + PAGE_EDGE + 0.5 * label;
-        let place = |chart: &Chart, x: AxisScale| {
-            let ticks = ticks_of(chart, &y_ranges, height);
-            let panels = chart
+        let place = |part: &Chart, x: AxisScale| {
+            let ticks = ticks_of(part, &y_ranges, height);
+            let panels = part
                 .panels
                 .iter()
                 .zip(&y_ranges)
@@ -85,7 +85,7 @@ impl ChartLayout {
                     let places = (own_top + height, own_top);
                     let y = AxisScale::of(&panel.y, *range, places);
                     let title = fitted(panel.y.title(&ticks), height + 0.7 * (label + PANEL_GAP));
-                    PlacedPanel::new(chart, x, y, ticks, title)
+                    PlacedPanel::new(part, x, y, ticks, title)
                 });
             panels.collect::<Vec<_>>()
         };
@@ -101,7 +101,9 @@ impl ChartLayout {
                 + TITLE_BELOW
                 + title_height()
                 + PAGE_EDGE,
-            magnified: magnified.flat_map(|chart| place(chart, beside)).collect(),
+            magnified: magnified
+                .flat_map(|beside_it| place(beside_it, beside))
+                .collect(),
             panels,
         }
     }
@@ -123,17 +125,18 @@ fn x_range(chart: &Chart) -> (f64, f64) {
 
 /// The axes x of `chart` and of what it magnifies, from `left` to `right`: so far apart that their labels do not touch.
 fn columns(chart: &Chart, left: f64, right: f64) -> [AxisScale; 2] {
-    let scale = |chart: &Chart, places| AxisScale::of(&chart.x, x_range(chart), places);
+    let scale = |part: &Chart, places| AxisScale::of(&part.x, x_range(part), places);
     let Some(magnified) = &chart.magnified else {
         return [scale(chart, (left, right)); 2];
     };
     let half = 0.5 * (left + right);
     let [from, to] = [scale(chart, (left, half)), scale(magnified, (half, right))];
-    let over = |scale: &AxisScale, axis, tick: fn(&[Tick]) -> Option<&Tick>, edge: f64| {
-        let ticks = scale.ticks_below(axis);
+    let over = |along: &AxisScale, axis, tick: fn(&[Tick]) -> Option<&Tick>, edge: f64| {
+        let ticks = along.ticks_below(axis);
         let label = tick(&ticks.major);
-        label.map_or(0.0, |tick| {
-            0.5 * ink::width(&tick.label, LABEL_PT) - (edge - scale.place(tick.at)).abs()
+        label.map_or(0.0, |label_there| {
+            0.5 * ink::width(&label_there.label, LABEL_PT)
+                - (edge - along.place(label_there.at)).abs()
         })
     };
     let both = over(&from, &chart.x, <[Tick]>::last, half).max(0.0)

@@ -28,11 +28,14 @@ impl Font {
         let known = letters
             .iter()
             .filter_map(|&letter| Some((letter, style.letter(letter)?)));
-        let (letters, mut glyphs): (Vec<_>, Vec<_>) = known
+        let (drawn_letters, mut glyphs): (Vec<_>, Vec<_>) = known
             .map(|(letter, drawn)| (letter, Glyph::of(&drawn)))
             .unzip();
         glyphs.insert(0, Glyph::of(&missing()));
-        Self { letters, glyphs }
+        Self {
+            letters: drawn_letters,
+            glyphs,
+        }
     }
 
     /// The number of a letter's glyph; 0 where there is none.
@@ -157,7 +160,7 @@ impl Glyph {
             let places = || contours.iter().flatten().map(of);
             (places().min().unwrap_or(0), places().max().unwrap_or(0))
         };
-        let ((left, right), (low, high)) = (ends(|point| point.0), ends(|point| point.1));
+        let ((left, right), (low, high)) = (ends(|p| p.0), ends(|p| p.1));
         Self {
             advance: letter.advance as u16,
             bounds: [left, low, right, high],

@@ -94,8 +94,10 @@ impl FontStyle {
             let code = u32::from_str_radix(fields.next()?, 16).ok()?;
             let right: f64 = fields.next()?.parse().ok()?;
             let up: f64 = fields.next()?.parse().ok()?;
-            let part = self.numbered(code)?.outline;
-            whole.0.extend(part.mapped(|p| at(p.x + right, p.y - up)).0);
+            let outline = self.numbered(code)?.outline;
+            whole
+                .0
+                .extend(outline.mapped(|p| at(p.x + right, p.y - up)).0);
         }
         Some(whole)
     }

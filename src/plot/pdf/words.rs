@@ -78,17 +78,19 @@ impl Fonts {
     /// Writes `words` where they stand; y runs down.
     pub fn put(&self, words: &TextItem, content: &mut Content) {
         content.begin_text();
-        let is_one_line = |a: &PlacedLetter, b: &PlacedLetter| {
-            let off = |p: &PlacedLetter| {
-                if words.is_upward {
-                    p.origin.x
-                } else {
-                    p.origin.y
-                }
-            };
-            (a.is_italic, a.size_pt, off(a)) == (b.is_italic, b.size_pt, off(b))
-        };
-        for line in words.letters.chunk_by(is_one_line) {
+        for line in words
+            .letters
+            .chunk_by(|a: &PlacedLetter, b: &PlacedLetter| {
+                let off = |p: &PlacedLetter| {
+                    if words.is_upward {
+                        p.origin.x
+                    } else {
+                        p.origin.y
+                    }
+                };
+                (a.is_italic, a.size_pt, off(a)) == (b.is_italic, b.size_pt, off(b))
+            })
+        {
             self.put_line(line, words.is_upward, content);
         }
         content.end_text();

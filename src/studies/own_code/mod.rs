@@ -219,9 +219,9 @@ impl CheckOutcome<'_> {
         }
         self.try_pairs(&search);
         let single_differs = single.and_then(|single| single.differs);
-        if let Some(first) = single_differs.filter(|_| self.explanations.is_empty()) {
+        if let Some(differs_first) = single_differs.filter(|_| self.explanations.is_empty()) {
             search.is_single = true;
-            search.first = (first.row, first.step);
+            search.first = (differs_first.row, differs_first.step);
             self.explanations = search.alone().0;
             self.try_pairs(&search);
         }
