@@ -4,7 +4,7 @@
 //! It uses the [`engine`](crate::engine) for the run, and [`report`](crate::report) and [`studies`](crate::studies) for figures
 //! and checks. All state of the lab belongs here. What a terminal draws belongs to [`tui`](crate::tui).
 //!
-//! [`Lab`] consists of parts. Each owns its state; [`Lab::carry_out`] calls the part that carries out a [`Command`]:
+//! [`Lab`] consists of parts. Each owns its state; [`Lab::carry_out`] calls the part that carries out a [`Command`](command::Command):
 //!
 //! | part | state | commands |
 //! |---|---|---|

@@ -114,7 +114,6 @@ impl Monitor {
 
     /// Takes in `step`; to be shown every step. Every one of them is compared with the exact motion: what leaves it and
     /// comes back between two looks has left it too.
-    #[inline]
     pub fn record(&mut self, step: &Step) {
         self.measure(step);
         self.beside.hold(step.after());
@@ -122,7 +121,6 @@ impl Monitor {
 
     /// The same, but the step is compared with the exact motion later: when [`catch_up`](Self::catch_up) is called, at the
     /// latest when health or theory is asked for. So the time that stepping takes can be told from it.
-    #[inline]
     pub fn record_ahead(&mut self, step: &Step) {
         self.measure(step);
         self.beside.wait(step.after());
@@ -145,7 +143,7 @@ impl Monitor {
         self.beside.settle_while(go_on)
     }
 
-    /// As [`follow`](Self::follow), without comparing the step with the exact motion: for a reader of what is measured
+    /// As [`record`](Self::record), without comparing the step with the exact motion: for a reader of what is measured
     /// and of the extremes alone.
     #[inline]
     pub fn measure(&mut self, step: &Step) {

@@ -5,7 +5,7 @@
 //! An act at an earlier step makes the acts at later steps ineffective. They stay in the list and become effective again
 //! once that act is undone.
 //!
-//! - [`run_file`] computes the run file of the present run from the acts in force.
+//! - `run_file` computes the run file of the present run from the acts in force.
 //! - [`parameters`] lists and changes the values of a scenario, [`next_push`] those of the push that the user prepares.
 //! - [`expression`] reads and evaluates conditions over a run's numbers.
 //! - [`restart`] makes the scenario that starts from a state of a run, and the one that follows an advice; [`changed`] says
