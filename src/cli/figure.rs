@@ -119,7 +119,7 @@ struct LabelArgs {
 impl LabelArgs {
     /// The form in which `output` is written.
     fn format(&self, output: &Path) -> anyhow::Result<PageFormat> {
-        match (PageFormat::of(output)?, self.text) {
+        match (PageFormat::from_path(output)?, self.text) {
             (PageFormat::Svg, true) => Ok(PageFormat::SvgText),
             (_, true) => {
                 bail!("--text is for .svg: the words of a .pdf can be selected as they are")

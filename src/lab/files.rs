@@ -152,7 +152,7 @@ impl Files {
             measured,
             table: None,
         };
-        let format = PageFormat::of(&path).map_err(|refusal| refusal.to_string())?;
+        let format = PageFormat::from_path(&path).map_err(|refusal| refusal.to_string())?;
         let begun = Exporting::begin_figure(source, &path, format, figure.force);
         self.begin(begun, "the figure is drawn in the background")
     }

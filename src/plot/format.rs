@@ -25,7 +25,7 @@ impl PageFormat {
     ///
     /// # Errors
     /// When it is none of these.
-    pub fn of(file: &FilePath) -> Result<Self, Unwritable> {
+    pub fn from_path(file: &FilePath) -> Result<Self, Unwritable> {
         let ending = file.extension().map(|e| e.to_string_lossy().to_lowercase());
         match ending.as_deref() {
             Some("svg") => Ok(Self::Svg),
@@ -163,7 +163,7 @@ mod tests {
 
     #[test]
     fn the_ending_says_the_form() {
-        let of = |name: &str| PageFormat::of(FilePath::new(name));
+        let of = |name: &str| PageFormat::from_path(FilePath::new(name));
         assert_eq!(of("a.svg"), Ok(PageFormat::Svg));
         assert_eq!(of("dir.png/A.B.PDF"), Ok(PageFormat::Pdf));
         assert_eq!(of("x.Png"), Ok(PageFormat::Png));

@@ -29,7 +29,7 @@ fn refs(page: i32) -> (Ref, Ref) {
 /// Pages whose places are whole hundredths of a point, written by this `version` of the program; the first one's title is
 /// the file's.
 pub fn written(scenes: &[PageScene], version: &str) -> Vec<u8> {
-    let fonts = Fonts::of(scenes);
+    let fonts = Fonts::from_scenes(scenes);
     let packed = |bytes: &[u8]| miniz_oxide::deflate::compress_to_vec_zlib(bytes, PDF_COMPRESSION);
     let mut pdf = Pdf::new();
     // The version which every pdflatex includes without a warning.

@@ -90,11 +90,11 @@ impl TableSource {
             return Err(refused(Problem::at("", rule)));
         }
         let text = csv::text(path).map_err(refused)?;
-        Self::of(&path.display().to_string(), text)
+        Self::from_csv(&path.display().to_string(), text)
     }
 
     /// The table in `text`, the content of the file `origin`; `None` where it is none.
-    pub fn of(origin: &str, text: String) -> Result<Option<Self>, Problems> {
+    pub fn from_csv(origin: &str, text: String) -> Result<Option<Self>, Problems> {
         let head = Head::read(&mut text.as_bytes()).ok();
         let Some((subject, title)) = head.and_then(|head| subject(&head)) else {
             return Ok(None);

@@ -111,7 +111,7 @@ const OF_SAVE: &[SchemaRow] = &[may("from_here", Flag, "")];
 pub(super) fn check_together(command: &Command) -> Result<(), Problem> {
     match command {
         Command::Export(export) => export.layout.clone().check().map(drop),
-        Command::Figure(figure) => match PageFormat::of(Path::new(&figure.path)) {
+        Command::Figure(figure) => match PageFormat::from_path(Path::new(&figure.path)) {
             Ok(_) => Ok(()),
             Err(refusal) => Err(Problem::at("", refusal.to_string())),
         },

@@ -16,7 +16,7 @@ pub struct AxisScale {
 }
 
 impl AxisScale {
-    pub fn of(axis: &ChartAxis, range: (f64, f64), places: (f64, f64)) -> Self {
+    pub fn new(axis: &ChartAxis, range: (f64, f64), places: (f64, f64)) -> Self {
         Self {
             range,
             is_log: axis.is_log,

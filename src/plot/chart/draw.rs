@@ -52,7 +52,7 @@ impl Chart {
     /// The chart in its places; `bare` leaves no room for a legend above the panels.
     fn placed(&self, bare: ChartLayout) -> PageScene {
         let remarks = self.remark(&bare).into_iter().chain(self.magnified());
-        let legend = Legend::of(self, remarks);
+        let legend = Legend::from_chart(self, remarks);
         let corner = legend.free_corner(self, &bare);
         let layout = match corner {
             Some(_) => bare,

@@ -83,7 +83,7 @@ impl ChartLayout {
                 .map(|(index, ((panel, range), ticks))| {
                     let own_top = top + index as f64 * (height + label + PANEL_GAP);
                     let places = (own_top + height, own_top);
-                    let y = AxisScale::of(&panel.y, *range, places);
+                    let y = AxisScale::new(&panel.y, *range, places);
                     let title = fitted(panel.y.title(&ticks), height + 0.7 * (label + PANEL_GAP));
                     PlacedPanel::new(part, x, y, ticks, title)
                 });
@@ -125,7 +125,7 @@ fn x_range(chart: &Chart) -> (f64, f64) {
 
 /// The axes x of `chart` and of what it magnifies, from `left` to `right`: so far apart that their labels do not touch.
 fn columns(chart: &Chart, left: f64, right: f64) -> [AxisScale; 2] {
-    let scale = |part: &Chart, places| AxisScale::of(&part.x, x_range(part), places);
+    let scale = |part: &Chart, places| AxisScale::new(&part.x, x_range(part), places);
     let Some(magnified) = &chart.magnified else {
         return [scale(chart, (left, right)); 2];
     };
@@ -206,14 +206,14 @@ fn y_range(panel: &Panel) -> (f64, f64) {
 fn ticks_of(chart: &Chart, ranges: &[(f64, f64)], height: f64) -> Vec<Ticks> {
     let panels = chart.panels.iter().zip(ranges);
     let ticks = panels.map(|(panel, &range)| {
-        AxisScale::of(&panel.y, range, (height, 0.0)).ticks_beside(&panel.y)
+        AxisScale::new(&panel.y, range, (height, 0.0)).ticks_beside(&panel.y)
     });
     ticks.collect()
 }
 
 /// Where the panels end at the right, so that half of the last label has room.
 fn right_edge(chart: &Chart, range: (f64, f64), left: f64, right: f64) -> f64 {
-    let scale = AxisScale::of(&chart.x, range, (left, right));
+    let scale = AxisScale::new(&chart.x, range, (left, right));
     let ticks = scale.ticks_below(&chart.x);
     let over = ticks.major.last().map_or(0.0, |tick| {
         let end = scale.place(tick.at) + 0.5 * ink::width(&tick.label, LABEL_PT);

@@ -62,7 +62,7 @@ impl Legend {
         Self { entries }
     }
 
-    pub fn of(chart: &Chart, remarks: impl IntoIterator<Item = String>) -> Self {
+    pub fn from_chart(chart: &Chart, remarks: impl IntoIterator<Item = String>) -> Self {
         let series = chart.panels.iter().flat_map(|panel| &panel.series);
         let named = series.map(|series| (series.name.as_str(), &series.style));
         Self::new(named, remarks)

@@ -24,14 +24,14 @@ struct Glyph {
 }
 
 impl Font {
-    pub fn of(style: &FontStyle, letters: &BTreeSet<char>) -> Self {
+    pub fn subset(style: &FontStyle, letters: &BTreeSet<char>) -> Self {
         let known = letters
             .iter()
             .filter_map(|&letter| Some((letter, style.letter(letter)?)));
         let (drawn_letters, mut glyphs): (Vec<_>, Vec<_>) = known
-            .map(|(letter, drawn)| (letter, Glyph::of(&drawn)))
+            .map(|(letter, drawn)| (letter, Glyph::from_letter(&drawn)))
             .unzip();
-        glyphs.insert(0, Glyph::of(&missing()));
+        glyphs.insert(0, Glyph::from_letter(&missing()));
         Self {
             letters: drawn_letters,
             glyphs,
@@ -135,7 +135,7 @@ fn shorts(parts: &[&[u16]]) -> Vec<u8> {
 }
 
 impl Glyph {
-    fn of(letter: &Letter) -> Self {
+    fn from_letter(letter: &Letter) -> Self {
         let mut contours: Vec<Vec<(i16, i16, bool)>> = Vec::new();
         let point = |p: Point, is_on: bool| (p.x as i16, -p.y as i16, is_on);
         for segment in &letter.outline.0 {
@@ -248,7 +248,7 @@ mod tests {
 
     #[test]
     fn a_font_has_its_letters_and_the_box_and_no_others() {
-        let font = Font::of(&REGULAR, &"Äo 速".chars().collect());
+        let font = Font::subset(&REGULAR, &"Äo 速".chars().collect());
         assert_eq!(
             ["Ä", "o", " ", "速"].map(|c| font.glyph(c.chars().next().unwrap())),
             [3, 2, 1, 0]
@@ -273,7 +273,7 @@ mod tests {
     #[test]
     fn an_outline_is_that_of_the_table() {
         let drawn = REGULAR.letter('g').unwrap();
-        let glyph = Glyph::of(&drawn);
+        let glyph = Glyph::from_letter(&drawn);
         let [left, low, right, high] = glyph.bounds;
         let points = || drawn.outline.points();
         let (x, y) = (

@@ -32,7 +32,7 @@ struct OfPage {
 }
 
 impl Fonts {
-    pub fn of(scenes: &[PageScene]) -> Self {
+    pub fn from_scenes(scenes: &[PageScene]) -> Self {
         Self([false, true].map(|is_italic| {
             let letters: BTreeSet<char> = scenes
                 .iter()
@@ -49,7 +49,7 @@ impl Fonts {
             };
             OfPage {
                 names: (name, format!("{}+STIXTwoText-{end}", tag(&letters))),
-                font: (!letters.is_empty()).then(|| Font::of(style, &letters)),
+                font: (!letters.is_empty()).then(|| Font::subset(style, &letters)),
                 is_italic,
             }
         }))

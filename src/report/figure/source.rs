@@ -128,7 +128,7 @@ impl FigureSource {
                     let measured = data::read(&named, &text)?.until(until_s);
                     source.measured = Some(Arc::new(measured));
                 }
-                Payload::Table => source.table = TableSource::of(&named, text)?,
+                Payload::Table => source.table = TableSource::from_csv(&named, text)?,
             }
         }
         Ok(source)
