@@ -211,12 +211,12 @@ impl RunSampler {
         if self.curves.is_empty() {
             return;
         }
-        let sample = sample();
+        let numbers = sample();
         let columns = self.wanted.columns.chunks(EXACT_TOGETHER);
         for (columns, curves) in columns.zip(&mut self.curves) {
             let mut values = [0.0; EXACT_TOGETHER];
             for (value, column) in values.iter_mut().zip(columns) {
-                *value = column.value(&self.scenario, &sample);
+                *value = column.value(&self.scenario, &numbers);
             }
             curves.push_values(time_s, values);
         }
@@ -300,8 +300,8 @@ pub fn exact(
     let closed = truth.motion().closed_form();
     let period_s = closed.and_then(LagrangeTop::nutation_period);
     let look_every = if closed.is_some() { 1024 } else { 1 };
-    let apart_s = apart_s(end_s - begin_s, scenario.motion.time_step_s, period_s);
-    let count = ((end_s - begin_s) / apart_s)
+    let interval_s = apart_s(end_s - begin_s, scenario.motion.time_step_s, period_s);
+    let count = ((end_s - begin_s) / interval_s)
         .ceil()
         .max(LEAST_EXACT_SAMPLES) as u64;
     let mut recorder = RunSampler::of(scenario, wanted.clone(), true);
@@ -313,8 +313,8 @@ pub fn exact(
             break; // what comes after it is no number either
         }
         azimuth.turn_to(&state.axle());
-        let sample = sample(scenario, &state, &azimuth, truth.loads().gravity);
-        recorder.take(time_s, 0.0, &sample.position, || sample);
+        let numbers = sample(scenario, &state, &azimuth, truth.loads().gravity);
+        recorder.take(time_s, 0.0, &numbers.position, || numbers);
         if number.is_multiple_of(look_every) && watch(number, count).is_break() {
             return None;
         }
@@ -326,8 +326,8 @@ pub fn exact(
 }
 
 /// How far the moments of a stretch of the exact motion are apart, s.
-fn apart_s(length_s: f64, time_step_s: f64, period_s: Option<f64>) -> f64 {
-    let period_s = period_s.unwrap_or(f64::INFINITY);
+fn apart_s(length_s: f64, time_step_s: f64, known_period_s: Option<f64>) -> f64 {
+    let period_s = known_period_s.unwrap_or(f64::INFINITY);
     let apart_s = (period_s / A_PERIOD)
         .min(time_step_s)
         .max(length_s / MOST_EXACT_SAMPLES);

@@ -67,12 +67,12 @@ impl Columns {
                 .filter_map(|(_, extent)| *extent)
                 .reduce(Extent::and)
         };
-        let places = (0..self.0.len()).filter_map(|index| Some((index, extent(index)?)));
-        let places = places.map(|(index, extent)| {
-            let x = low + apart * (index as f64 + 0.5);
-            [x, extent.min, extent.max]
-        });
-        let mut band: Vec<_> = places.collect();
+        let mut band: Vec<_> = (0..self.0.len())
+            .filter_map(|index| {
+                let Extent { min, max } = extent(index)?;
+                Some([low + apart * (index as f64 + 0.5), min, max])
+            })
+            .collect();
         let (begin, end) = (low + 0.5 * apart, high - 0.5 * apart);
         if let [first, .., last] = &mut band[..] {
             // The outermost ones reach to the ends of the axis.
@@ -128,10 +128,10 @@ pub(super) fn draw_bands(
     let layout = ChartLayout::new(chart, 0.0);
     let panels = chart.panels.iter_mut().zip(&layout.panels);
     for (column, (panel, placed)) in columns.iter().zip(panels) {
-        let all = drawn
+        let all: Vec<Columns> = drawn
             .iter()
-            .map(|it| Columns::new(&it.course.parts(column), placed));
-        let all: Vec<Columns> = all.collect();
+            .map(|it| Columns::new(&it.course.parts(column), placed))
+            .collect();
         let widths = panel.series.iter().map(|series| series.style.width_pt);
         let dense = all
             .iter()

@@ -243,30 +243,30 @@ fn series(measured: &MeasuredData) -> Result<&data::TimeSeries, String> {
 
 /// The name of the data in the legend, as markup, with the `count` of the points that the figure has of them.
 fn name(measured: &MeasuredData, count: usize, spec: &FigureSpec) -> String {
-    let file = Path::new(&measured.origin).file_stem();
-    let file = file.map_or(measured.origin.as_str().into(), |file| {
-        file.to_string_lossy()
-    });
-    let count = match count {
+    let file = Path::new(&measured.origin)
+        .file_stem()
+        .map_or(measured.origin.as_str().into(), |stem| {
+            stem.to_string_lossy()
+        });
+    let points = match count {
         1 => "1 point".to_owned(),
-        count => format!("{count} points"),
+        _ => format!("{count} points"),
     };
-    let name = format!("measured: {file} ({count})");
-    letters::shortened(&name, LABEL_PT, longest_name(spec.page_width_pt()))
+    let whole = format!("measured: {file} ({points})");
+    letters::shortened(&whole, LABEL_PT, longest_name(spec.page_width_pt()))
 }
 
 /// `points` in the stretch of time that is drawn, with their errors: NaN where none is stated.
-fn drawn(job: &FigureJob<'_>, series: &data::TimeSeries, points: &[MeasuredPoint]) -> ChartSeries {
-    let time_s = |point: &MeasuredPoint| series.times_s[point.row];
-    let points = points.iter();
-    let points = points.filter(|point| job.has(time_s(point)));
-    let (points, errors) = points
-        .map(|point| {
-            (
-                [time_s(point), point.value],
-                point.sigma.unwrap_or(f64::NAN),
-            )
-        })
+fn drawn(
+    job: &FigureJob<'_>,
+    series: &data::TimeSeries,
+    measured: &[MeasuredPoint],
+) -> ChartSeries {
+    let (points, errors) = measured
+        .iter()
+        .map(|point| (series.times_s[point.row], point))
+        .filter(|(time_s, _)| job.has(*time_s))
+        .map(|(time_s, point)| ([time_s, point.value], point.sigma.unwrap_or(f64::NAN)))
         .unzip();
     ChartSeries {
         points,
@@ -285,8 +285,8 @@ fn turned(
     let curve = &series.curves[place];
     match job.runs.first() {
         Some(run) if curve.quantity.is_direction => {
-            let said = said(job, series, run, |_, _| ControlFlow::Continue(()))?;
-            let model = said.and_then(|mut said| said.get_mut(place).map(std::mem::take));
+            let model = said(job, series, run, |_, _| ControlFlow::Continue(()))?
+                .and_then(|mut curves| curves.get_mut(place).map(std::mem::take));
             Ok(beside(curve, &model.unwrap_or_default(), |pair| {
                 pair.measured
             }))

@@ -73,8 +73,11 @@ fn within_room(markup: String, plain: &str, room_pt: f64) -> String {
 
 /// The points of those of `rows` that have a place along the axis below, from left to right.
 fn points(rows: &RowIndices, along: &[f64], values: &[f64]) -> Vec<[f64; 2]> {
-    let points = rows.iter().map(|&row| [along[row], values[row]]);
-    let mut points: Vec<_> = points.filter(|[along, _]| along.is_finite()).collect();
+    let mut points: Vec<_> = rows
+        .iter()
+        .map(|&row| [along[row], values[row]])
+        .filter(|[x, _]| x.is_finite())
+        .collect();
     points.sort_by(|a, b| a[0].total_cmp(&b[0]));
     points
 }

@@ -123,14 +123,15 @@ pub fn unit_markup(unit: &str) -> String {
             (digits, sign) => format!("{base}^{{{}}}", with_minus(&format!("{sign}{digits}"))),
         }
     };
-    let above = above
+    let numerator = above
         .split(' ')
-        .filter(|word| !word.is_empty() && *word != "1");
-    let below = below.split(' ').filter(|word| !word.is_empty());
-    let all = above
-        .map(|word| power(word, ""))
-        .chain(below.map(|word| power(word, "-")));
-    all.collect::<Vec<_>>().join(" ")
+        .filter(|word| !word.is_empty() && *word != "1")
+        .map(|word| power(word, ""));
+    let denominator = below
+        .split(' ')
+        .filter(|word| !word.is_empty())
+        .map(|word| power(word, "-"));
+    numerator.chain(denominator).collect::<Vec<_>>().join(" ")
 }
 
 #[cfg(test)]

@@ -28,8 +28,7 @@ pub fn redraw(
         return Err(rule.to_owned().into());
     }
     let folder = path.parent().unwrap_or(Path::new(""));
-    let source = FigureSource::of(&figure.origin, folder);
-    let source = source.map_err(|problems| {
+    let source = FigureSource::of(&figure.origin, folder).map_err(|problems| {
         let versions = notes.first().map(|note| format!(" ({note})"));
         problems.in_one_line() + &versions.unwrap_or_default()
     })?;

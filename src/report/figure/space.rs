@@ -52,9 +52,10 @@ pub(super) fn scene(
 ) -> (PageScene, Option<Dense>) {
     let width_pt = job.spec.page_width_pt();
     let space = Space::fitted(job.runs, drawn, width_pt);
-    let looks = drawn.iter();
-    let looks = looks.map(|drawn| chords::as_drawn(drawn, &drawn.course.path));
-    let (names, mut styles): (Vec<_>, Vec<_>) = looks.unzip();
+    let (names, mut styles): (Vec<_>, Vec<_>) = drawn
+        .iter()
+        .map(|drawn| chords::as_drawn(drawn, &drawn.course.path))
+        .unzip();
     let mut above = curve::Above::default();
     for (drawn, style) in drawn.iter().zip(&mut styles) {
         let lines = drawn.course.path.lines(|at| space.place(&space.boxed(at)));

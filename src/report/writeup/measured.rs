@@ -123,10 +123,9 @@ impl MeasuredComparison {
                 json!(sum.scatter.first().map(|(_, scatter)| scatter));
             column
         });
-        let columns: Vec<_> = columns.collect();
         let mut all = of(&self.compared.sum);
         all["file"] = json!(self.name());
-        all["columns"] = json!(columns);
+        all["columns"] = json!(columns.collect::<Vec<_>>());
         all
     }
 }
@@ -137,8 +136,9 @@ fn write_row(page: &mut String, name: &str, own: &Sum) -> fmt::Result {
         let time_s = significant(largest.time_s, 9);
         format!("{} at {time_s} s", significant(largest.sigmas, 3))
     });
-    let rms = own.scatter.first();
-    let rms = rms.map(|(quantity, rms)| format!("{} {}", significant(*rms, 3), quantity.unit()));
+    let scatter = own.scatter.first();
+    let rms =
+        scatter.map(|(quantity, rms)| format!("{} {}", significant(*rms, 3), quantity.unit()));
     let [chi_squared, largest, rms] =
         [chi_squared, largest, rms].map(|text| text.unwrap_or(NOT_AVAILABLE.to_owned()));
     writeln!(

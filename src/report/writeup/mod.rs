@@ -81,8 +81,11 @@ impl Writeup {
     /// When the forces last changed, s, where that is not the start.
     fn forces_changed_s(&self) -> Option<f64> {
         // The first step under other forces: they changed where it began.
-        let step = self.readouts.since.checked_sub(1);
-        let step = step.filter(|step| *step > 0)?;
+        let step = self
+            .readouts
+            .since
+            .checked_sub(1)
+            .filter(|step| *step > 0)?;
         Some(Clock::at(&self.scenario, step).time_s(step))
     }
 
@@ -92,8 +95,9 @@ impl Writeup {
 
     /// The readouts without the times by the clock, one object.
     pub fn readouts_json(&self) -> String {
-        let lasting = READOUTS.iter();
-        let lasting = lasting.filter(|readout| readout.source != ReadoutSource::Clock);
+        let lasting = READOUTS
+            .iter()
+            .filter(|readout| readout.source != ReadoutSource::Clock);
         let named = lasting.map(|readout| {
             let value = serde_json::to_value(readout.read_from(&self.readouts));
             (readout.name.to_owned(), value.unwrap_or(Value::Null))

@@ -36,8 +36,7 @@ pub fn page(writeup: &Writeup) -> Result<String, fmt::Error> {
     let readouts = &writeup.readouts;
     writeln!(page, "# {}\n", escaped(&readouts.title))?;
     let file = &writeup.scenario.file;
-    let look_at = file.viewed_text("look_at");
-    let look_at = look_at.map(sentence);
+    let look_at = file.viewed_text("look_at").map(sentence);
     for text in file.about.iter().chain(&look_at) {
         writeln!(page, "{}\n", escaped(text))?;
     }
@@ -186,8 +185,9 @@ fn write_drawings(page: &mut String, drawings: &[WriteupFigure]) -> fmt::Result 
 }
 
 fn write_again(page: &mut String, beside: Option<&MeasuredComparison>) -> fmt::Result {
-    let measured = beside.map(|beside| format!(" --measured {}", beside.name()));
-    let measured = measured.unwrap_or_default();
+    let measured = beside
+        .map(|beside| format!(" --measured {}", beside.name()))
+        .unwrap_or_default();
     let same = format!("the same bytes as {CSV}");
     let commands = [
         (
@@ -204,8 +204,11 @@ fn write_again(page: &mut String, beside: Option<&MeasuredComparison>) -> fmt::R
             "the run, live in the terminal",
         ),
     ];
-    let width = commands.iter().map(|(command, _)| command.len()).max();
-    let width = width.unwrap_or_default();
+    let width = commands
+        .iter()
+        .map(|(command, _)| command.len())
+        .max()
+        .unwrap_or_default();
     let version = env!("CARGO_PKG_VERSION");
     writeln!(page, "In this folder, with gyrolab {version}:\n\n```sh")?;
     for (command, what) in commands {

@@ -32,9 +32,13 @@ pub fn rows(readouts: &Readouts, since_s: Option<f64>) -> Vec<QuantityRow> {
         readout.name.starts_with(MEASURED_NAME_PREFIX) && !readout.is_uncertainty()
     });
     let rows = measured.filter_map(|readout| {
-        let predicted = predicted(readout, readouts, since_s);
-        let since_s = since_s.filter(|_| readout.source == ReadoutSource::Measured);
-        row(readout, readouts, predicted, since_s)
+        let counted_since_s = since_s.filter(|_| readout.source == ReadoutSource::Measured);
+        row(
+            readout,
+            readouts,
+            predicted(readout, readouts, since_s),
+            counted_since_s,
+        )
     });
     rows.collect()
 }
@@ -81,8 +85,9 @@ fn row(
     let difference = both.map(|(measured, predicted)| measured - predicted);
     // What the theory of the mean moment leaves out is no error of reading.
     let is_exact = readouts.theory.is_none_or(|theory| theory.asymmetry == 0.0);
-    let in_errors = difference.zip(error.filter(|error| *error > 0.0 && is_exact));
-    let in_errors = in_errors.map(|(difference, error)| difference / error);
+    let in_errors = difference
+        .zip(error.filter(|error| *error > 0.0 && is_exact))
+        .map(|(difference, error)| difference / error);
     let (label, meaning) = words(readout, is_strobed, since_s);
     let none = || NOT_AVAILABLE.to_owned();
     let plain = |number: Option<f64>| number.map_or_else(none, |number| fixed(number, DECIMALS));
@@ -110,13 +115,13 @@ fn row(
 fn words(readout: &Readout, is_strobed: bool, since_s: Option<f64>) -> (String, String) {
     let mut label = bare(readout.name);
     let mut meaning = format!("{label}: {}", readout.meaning);
-    let since_s = since_s.map(|since_s| significant(since_s, 9));
+    let changed_at = since_s.map(|since_s| significant(since_s, 9));
     if is_strobed {
         label += " (strobed)";
     }
-    if let Some(since_s) = since_s {
-        label += &format!(" since {since_s} s");
-        meaning += &format!("; since the forces last changed, at t = {since_s} s");
+    if let Some(time_s) = changed_at {
+        label += &format!(" since {time_s} s");
+        meaning += &format!("; since the forces last changed, at t = {time_s} s");
     }
     if is_strobed {
         meaning += "; strobed: the time step is too long to see the nutation, and the number is what the steps make of it";

@@ -48,10 +48,10 @@ fn logarithmic(axis: ChartAxis) -> ChartAxis {
 
 /// A scheme and the slope of its errors, as markup.
 fn named(scheme: &str, slope: Option<f64>, width_pt: f64) -> String {
-    let slope = slope.map(|slope| format!(", slope {}", significant(slope, 2)));
-    let slope = ticks::with_minus(&slope.unwrap_or_default());
-    let room = longest_name(width_pt) - ink::width(&slope, LABEL_PT);
-    letters::shortened(scheme, LABEL_PT, room) + &slope
+    let said = slope.map(|slope| format!(", slope {}", significant(slope, 2)));
+    let markup = ticks::with_minus(&said.unwrap_or_default());
+    let room = longest_name(width_pt) - ink::width(&markup, LABEL_PT);
+    letters::shortened(scheme, LABEL_PT, room) + &markup
 }
 
 /// The columns that are drawn where `columns` were asked for.

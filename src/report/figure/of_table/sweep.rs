@@ -162,8 +162,11 @@ impl SweepFigure<'_> {
 
     /// The points of `part`, which has these `values`, a series for each curve that has some.
     fn points(&self, part: &QuantityColumn, values: &[f64]) -> Result<Vec<ChartSeries>, String> {
-        let errors = part.uncertainty.as_ref();
-        let errors = errors.map(|name| numbers(self.table, name)).transpose()?;
+        let errors = part
+            .uncertainty
+            .as_ref()
+            .map(|name| numbers(self.table, name))
+            .transpose()?;
         let is_other = part.role == QuantityOwner::Value && self.has_measured;
         let curves = self.curves.iter().map(|curve| {
             let (name, style) = match part.role {
@@ -222,17 +225,19 @@ impl SweepFigure<'_> {
     /// What the legend says of each curve that has no point: the names of those curves whose runs all failed.
     fn failed(&self, quantities: &[QuantityColumns]) -> Result<Vec<ChartSeries>, String> {
         const FAILED: &str = "no run gave a number";
-        let parts = quantities.iter().flatten();
-        let parts = parts.filter(|part| part.role != QuantityOwner::Theory);
-        let columns = parts.map(|part| numbers(self.table, &part.name));
-        let columns = columns.collect::<Result<Vec<_>, _>>()?;
+        let columns = quantities
+            .iter()
+            .flatten()
+            .filter(|part| part.role != QuantityOwner::Theory)
+            .map(|part| numbers(self.table, &part.name))
+            .collect::<Result<Vec<_>, _>>()?;
         let has_point = |curve: &&SweepCurve| {
             let mut rows = curve.rows.iter();
             columns.is_empty()
                 || rows.any(|&row| columns.iter().any(|column| column[row].is_finite()))
         };
-        let failed = self.curves.iter().filter(|curve| !has_point(curve));
-        let failed = failed.map(|curve| {
+        let without = self.curves.iter().filter(|curve| !has_point(curve));
+        let failed = without.map(|curve| {
             let markup = format!("{}: {FAILED}", self.name("", &curve.settings));
             let plain = self.name(FAILED, &curve.settings);
             ChartSeries::named(within_room(markup, &plain, self.room_pt))
@@ -243,8 +248,8 @@ impl SweepFigure<'_> {
 
 /// Whether no value is below 0, and the greatest is at least `times` the least above 0.
 fn spans_decades(values: impl Iterator<Item = f64>, times: f64) -> bool {
-    let extent = extent(values.filter(|value| value.is_finite() && *value != 0.0));
-    extent.is_some_and(|(low, high)| low > 0.0 && high / low >= times)
+    let ends = extent(values.filter(|value| value.is_finite() && *value != 0.0));
+    ends.is_some_and(|(low, high)| low > 0.0 && high / low >= times)
 }
 
 /// Whether a good part of `values`, all above 0, lies far below their greatest: they go by factors and not by steps.

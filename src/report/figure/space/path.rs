@@ -105,13 +105,12 @@ fn by_degree(
     for path in path {
         let mut last = None;
         for pair in path.windows(2) {
-            let degree = degree(pair[0].1);
-            let pieces = &mut pieces[degree];
-            match pieces.last_mut() {
-                Some(piece) if last == Some(degree) => piece.push(pair[1].0),
-                _ => pieces.push(vec![pair[0].0, pair[1].0]),
+            let nearness = degree(pair[0].1);
+            match pieces[nearness].last_mut() {
+                Some(piece) if last == Some(nearness) => piece.push(pair[1].0),
+                _ => pieces[nearness].push(vec![pair[0].0, pair[1].0]),
             }
-            last = Some(degree);
+            last = Some(nearness);
         }
     }
     pieces

@@ -61,13 +61,16 @@ pub(super) fn quantities(
         let numbers = table.numbers(name);
         numbers.is_some_and(|numbers| numbers.iter().any(|number| number.is_finite()))
     };
-    let names = table.names().iter().filter(|name| {
-        !varied.contains(name)
-            && is_asked(name)
-            && is_number(name)
-            && !name.contains(UNCERTAINTY_INFIX)
-    });
-    let names: Vec<&String> = names.collect();
+    let names: Vec<&String> = table
+        .names()
+        .iter()
+        .filter(|name| {
+            !varied.contains(name)
+                && is_asked(name)
+                && is_number(name)
+                && !name.contains(UNCERTAINTY_INFIX)
+        })
+        .collect();
     let mut quantities: Vec<(&str, QuantityColumns)> = Vec::new();
     for name in &names {
         let part = QuantityColumn {
@@ -122,8 +125,8 @@ fn uncertainty_of(table: &TableSource, name: &str) -> Option<String> {
 pub(super) fn axis(parts: &[QuantityColumn]) -> ChartAxis {
     let named = parts
         .iter()
-        .find(|part| !(part.role == QuantityOwner::Theory));
-    let named = named.or_else(|| parts.iter().find(|part| bare(&part.name) != part.name));
+        .find(|part| part.role != QuantityOwner::Theory)
+        .or_else(|| parts.iter().find(|part| bare(&part.name) != part.name));
     let Some(part) = named.or(parts.first()) else {
         return ChartAxis::default();
     };

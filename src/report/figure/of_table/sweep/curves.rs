@@ -37,8 +37,10 @@ pub(super) struct CurveSetting {
 
 /// The curves of a sweep, of whose keys `along` is on the axis below.
 pub(super) fn curves(table: &TableSource, swept: &SweepTable, along: &str) -> Vec<SweepCurve> {
-    let others = swept.varied.iter().filter(|key| *key != along);
-    let others: Vec<(&String, Vec<&str>)> = others
+    let others: Vec<(&String, Vec<&str>)> = swept
+        .varied
+        .iter()
+        .filter(|key| *key != along)
         .filter_map(|key| Some((key, table.texts(key)?)))
         .collect();
     let values = |row: usize| {
