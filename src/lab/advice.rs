@@ -142,10 +142,10 @@ fn offered(advice: &Advice, player: &Player) -> Option<Offer> {
     let motion = player.motion();
     let is_in_force =
         motion.time_step_s == time_step_s && scheme.is_none_or(|name| motion.scheme.name == name);
-    let scheme = scheme.map_or(String::new(), |scheme| format!("{scheme}, "));
+    let scheme_text = scheme.map_or(String::new(), |scheme| format!("{scheme}, "));
     let since = if is_in_force { " from the start" } else { "" };
     Some(Offer {
-        what: format!("{scheme}dt {} s", shortest(time_step_s)),
+        what: format!("{scheme_text}dt {} s", shortest(time_step_s)),
         since,
         scenario: Arc::new(scenario),
     })

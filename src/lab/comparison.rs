@@ -261,8 +261,10 @@ impl Comparison {
         let none = "there are no rows of a program of one's own beside a run of the report's scheme: gyrolab method-1 --measured mine.csv";
         let data = self.data.as_ref().ok_or(none)?;
         let own = data.own.as_ref().ok_or(none)?;
-        let first = own.verdict().and_then(|verdict| verdict.first_step);
-        let first = first.ok_or_else(|| own.told(&data.name))?;
+        let first = own
+            .verdict()
+            .and_then(|verdict| verdict.first_step)
+            .ok_or_else(|| own.told(&data.name))?;
         let step = u64::try_from(first).unwrap_or(0);
         let mut commands = vec![Command::GoTo(SeekTarget::Step(step))];
         if !view.shows(Pane::Step) {
@@ -349,8 +351,10 @@ impl Comparison {
     pub(super) fn data_to_keep(&self, files: &Files) -> Option<String> {
         let name = &self.data.as_ref()?.name;
         let is_whole = find_shipped(name).is_some() || files.confined().is_some();
-        let whole = std::path::absolute(name).ok().filter(|_| !is_whole);
-        let whole = whole.and_then(|path| path.to_str().map(str::to_owned));
+        let whole = std::path::absolute(name)
+            .ok()
+            .filter(|_| !is_whole)
+            .and_then(|path| path.to_str().map(str::to_owned));
         Some(whole.unwrap_or_else(|| name.clone()))
     }
 }

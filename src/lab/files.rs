@@ -75,13 +75,13 @@ impl Files {
     /// Reads the preset or the file called `name`.
     pub(super) fn open_scenario(&self, name: &str) -> Result<Scenario, String> {
         self.admit_reading(Path::new(name))?;
-        let opened = if presets::find(name).is_none() {
-            refuse_waiting(name, "it can be opened at the command line only")
-        } else {
-            Ok(())
+        let checked = match presets::find(name) {
+            Some(_) => Ok(()),
+            None => refuse_waiting(name, "it can be opened at the command line only"),
         };
-        let opened = opened.and_then(|()| Document::open(name)?.scenario());
-        opened.map_err(|problems| format!("{}: {}", problems.origin, problems.in_one_line()))
+        checked
+            .and_then(|()| Document::open(name)?.scenario())
+            .map_err(|problems| format!("{}: {}", problems.origin, problems.in_one_line()))
     }
 
     /// The text of the measured data `name`: those that come with the program, or a file. `may_wait` says whether it may be
@@ -114,12 +114,12 @@ impl Files {
     pub(super) fn export(&mut self, export: &Export, runs: &Runs, player: &Player) -> ActionResult {
         let mut layout = export.layout.clone();
         layout.note.clone_from(&self.note);
-        let layout = layout.check().map_err(|error| error.to_string())?;
-        let scenario = run_up_to(export.to_step, "export", runs, player)?;
-        let scenario = runs.flag_stale_text(&scenario);
+        let checked = layout.check().map_err(|error| error.to_string())?;
+        let run = run_up_to(export.to_step, "export", runs, player)?;
+        let scenario = runs.flag_stale_text(&run);
         let path = self.path_of(&export.path);
         self.may_export_to(&path)?;
-        let begun = Exporting::begin(scenario, &path, layout, export.force);
+        let begun = Exporting::begin(scenario, &path, checked, export.force);
         self.begin(begun, "the export goes on in the background")
     }
 
@@ -250,17 +250,18 @@ impl Files {
     /// A free name for a file: `name` without its folder and extension, then `about`, a number if needed, and
     /// `extension`.
     pub(super) fn free_name(&self, name: &str, about: &str, extension: &str) -> String {
-        let stem = Path::new(name)
+        let whole_stem = Path::new(name)
             .file_stem()
             .map_or("run".into(), |stem| stem.to_string_lossy());
-        let stem = stem.strip_suffix(about).unwrap_or(&stem);
-        let stem = stem.replace(is_steering, "_"); // what is offered can be seen and typed
-        let names = (1_u32..).map(|number| match number {
-            1 => format!("{stem}{about}.{extension}"),
-            _ => format!("{stem}{about}-{number}.{extension}"),
-        });
-        names
-            .take(1000)
+        let stem = whole_stem
+            .strip_suffix(about)
+            .unwrap_or(&whole_stem)
+            .replace(is_steering, "_"); // what is offered can be seen and typed
+        (1..=1000)
+            .map(|number| match number {
+                1 => format!("{stem}{about}.{extension}"),
+                _ => format!("{stem}{about}-{number}.{extension}"),
+            })
             .find(|name| !self.path_of(name).exists())
             .unwrap_or_default()
     }
@@ -300,10 +301,14 @@ fn is_named(path: &Path) -> Result<(), Refusal> {
 
 /// The message about a complete export, and how to copy the file. From the login of a seat no file can be copied.
 fn in_words(written: &Written, is_seat: bool) -> String {
-    let rows = written.rows;
-    let rows = rows.map(|rows| format!("{} rows, ", HumanCount(rows)));
-    let warnings = written.warnings.iter();
-    let warnings: String = warnings.map(|warning| format!(" · {warning}")).collect();
+    let rows = written
+        .rows
+        .map(|rows| format!("{} rows, ", HumanCount(rows)));
+    let warnings: String = written
+        .warnings
+        .iter()
+        .map(|warning| format!(" · {warning}"))
+        .collect();
     let end = match &written.not_finite {
         Some(end) => format!(", as far as the numbers are finite (step {})", end.step - 1),
         None => String::new(),

@@ -37,8 +37,8 @@ pub fn run(
     loop {
         screen.set_mouse(lab.view().mouse)?;
         pacing.set_rate(lab.view().fps);
-        let wait = wait(lab, lessons, pacing.wait(begin.elapsed()));
-        let events = screen.events(wait.min(role.wait(begin.elapsed())))?;
+        let until_frame = idle_time(lab, lessons, pacing.wait(begin.elapsed()));
+        let events = screen.events(until_frame.min(role.wait(begin.elapsed())))?;
         let acted = !events.is_empty();
         for event in events {
             let (screen, pointer) = (&mut screen, &mut pointer);
@@ -109,7 +109,7 @@ fn panic_if_asked(elapsed: Duration) {
 }
 
 /// How long to wait for events, if the next frame is due in `to_frame`.
-fn wait(lab: &Lab, lessons: &Lessons, to_frame: Duration) -> Duration {
+fn idle_time(lab: &Lab, lessons: &Lessons, to_frame: Duration) -> Duration {
     if lab.player().is_flat_out() {
         Duration::ZERO
     } else if lab.player().is_busy() || lab.has_changed() {

@@ -20,9 +20,9 @@ pub fn run(lines: impl Fn(usize) -> Vec<String>) -> io::Result<()> {
     let mut screen = Screen::enter()?;
     let is_ascii = marker(|name| std::env::var(name).ok()) == Marker::Ascii;
     loop {
-        let lines = lines(screen.size()?.width.into());
+        let shown = lines(screen.size()?.width.into());
         screen.draw(|area, buf| {
-            for (line, y) in lines.iter().zip(area.top()..area.bottom()) {
+            for (line, y) in shown.iter().zip(area.top()..area.bottom()) {
                 buf.set_stringn(
                     area.left(),
                     y,

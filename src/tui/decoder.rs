@@ -143,8 +143,9 @@ impl Decoder {
             [ESC, other] if other.is_ascii_graphic() => 2,
             _ => 0,
         };
-        let keys = self.pending[..count].iter();
-        let keys = keys.map(|byte| Typed::Key(key_of(*byte)));
+        let keys = self.pending[..count]
+            .iter()
+            .map(|byte| Typed::Key(key_of(*byte)));
         self.typed.extend(keys);
         self.pending.clear();
     }
@@ -255,10 +256,10 @@ fn control_sequence(rest: &[u8]) -> Decoded {
         [] | [b'['] | [b'M'] | [b'M', _] | [b'M', _, _] => Decoded::Unfinished,
         [b'[', _] | [b'M', ..] => Decoded::Nothing,
         [.., 0x20..0x40] => Decoded::Unfinished,
-        [b'<', parameters @ .., last @ (b'M' | b'm')] => {
-            let mouse = mouse(parameters, *last == b'M').map(Typed::Mouse);
-            mouse.map_or(Decoded::Nothing, Decoded::Typed)
-        }
+        [b'<', parameters @ .., last @ (b'M' | b'm')] => mouse(parameters, *last == b'M')
+            .map_or(Decoded::Nothing, |mouse| {
+                Decoded::Typed(Typed::Mouse(mouse))
+            }),
         [parameters @ .., last @ 0x40..0x7f] => meaning(parameters, *last),
         _ => Decoded::Broken,
     }

@@ -75,7 +75,7 @@ impl ScreenLayout {
             // A message has the last line, over the panes.
             return Self {
                 title,
-                panes: panes(rest, view),
+                panes: place_panes(rest, view),
                 hint: cut_bottom(&mut rest, area.height >= 6),
                 ..Self::default()
             };
@@ -99,7 +99,7 @@ impl ScreenLayout {
         let measured = cut_bottom(&mut rest, view.measured && area.height >= 8);
         Self {
             title,
-            panes: panes(rest, view),
+            panes: place_panes(rest, view),
             timeline,
             measured,
             health,
@@ -129,8 +129,11 @@ impl ScreenLayout {
 /// Lines of the hint on a screen of this `height` that is low, and whether the health of the numbers has a line.
 fn on_low_screen(said: LinesBelow, height: u16, hides_health: bool) -> (u16, bool) {
     let below = height.saturating_sub(2 + ROWS_OF_PANES);
-    let lines = below.saturating_sub(said.warns.into());
-    let lines = lines.min(MOST_STATUS_LINES).min(said.lines).max(1);
+    let lines = below
+        .saturating_sub(said.warns.into())
+        .min(MOST_STATUS_LINES)
+        .min(said.lines)
+        .max(1);
     let has_health = said.warns || lines == 1;
     (lines, height >= 9 && has_health && !hides_health)
 }
@@ -149,7 +152,7 @@ fn cut_bottom(rest: &mut Rect, wanted: bool) -> Rect {
     line
 }
 
-fn panes(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
+fn place_panes(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     if area.is_empty() {
         return Vec::new();
     }
@@ -159,7 +162,7 @@ fn panes(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
             area,
             (share as u16).clamp(LESSON_PAGE_COLUMNS.0, LESSON_PAGE_COLUMNS.1),
         );
-        let mut panes = panes(rest, &beside_page(view));
+        let mut panes = place_panes(rest, &beside_page(view));
         panes.insert(0, (Pane::Lesson, page));
         return panes;
     }
@@ -169,13 +172,13 @@ fn panes(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
             return vec![(Pane::Lesson, area)];
         }
         let [page, rest] = split_rows(area, PAGE_ROWS);
-        let mut view = beside_page(view);
-        view.filled = true;
-        let mut panes = panes(rest, &view);
+        let mut beside = beside_page(view);
+        beside.filled = true;
+        let mut panes = place_panes(rest, &beside);
         panes.insert(0, (Pane::Lesson, page));
         return panes;
     }
-    let joined = joined(area.width);
+    let joined = panes_with_room(area.width);
     if view.filled || area.width < TWO_FROM {
         vec![(view.focus, area)]
     } else if let Some(asked) = asked(view) {
@@ -192,14 +195,16 @@ fn panes(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
 /// The view of the panes beside a lesson's page. If there is room for only one, it is the one that was there before the
 /// page had the focus.
 fn beside_page(view: &View) -> View {
-    let mut view = view.clone();
-    view.sheet = None;
-    if view.focus == Pane::Lesson {
-        let beside = view.beside.filter(|pane| view.may_show(*pane));
-        let first = view.to_show().first().copied();
-        view.focus = beside.or(first).unwrap_or(Pane::Traces);
+    let mut without = View {
+        sheet: None,
+        ..view.clone()
+    };
+    if without.focus == Pane::Lesson {
+        let beside = without.beside.filter(|pane| without.may_show(*pane));
+        let first = without.to_show().first().copied();
+        without.focus = beside.or(first).unwrap_or(Pane::Traces);
     }
-    view
+    without
 }
 
 /// The panes that are shown without being asked for, but for the page of a lesson.
@@ -216,7 +221,7 @@ fn asked(view: &View) -> Option<&'static PaneRow> {
 
 /// The panes that have room beside each other on `width` columns, in the table's order: by their ranks, up to the first
 /// that has none.
-fn joined(width: u16) -> Vec<&'static PaneRow> {
+fn panes_with_room(width: u16) -> Vec<&'static PaneRow> {
     let needed = |row: &PaneRow| -> u16 {
         let before = usual().filter(|other| other.rank <= row.rank);
         before.map(|other| other.least.0).sum()
@@ -239,7 +244,7 @@ fn halves(area: Rect, focus: Pane) -> Vec<(Pane, Rect)> {
 /// The panes that were chosen, side by side: all of them, or two where there is room for no more.
 fn chosen(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     // The panes that would stand side by side if all were shown, on at least the width that the whole lab wants.
-    let joined = joined(area.width.max(FULL_LAB_WIDTH));
+    let joined = panes_with_room(area.width.max(FULL_LAB_WIDTH));
     let mut panes: Vec<_> = usual()
         .filter(|row| {
             view.may_show(row.id)

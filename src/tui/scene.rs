@@ -222,12 +222,12 @@ impl DotScene {
             if matches!(speck.ink, Ink::Strong(_)) {
                 dots.clear_cell(x, y);
             }
-            let at_dot = &mut at_dot[y * width + x];
-            *at_dot = at_dot.min(speck.depth);
+            let depth = &mut at_dot[y * width + x];
+            *depth = depth.min(speck.depth);
             for y in y.saturating_sub(1)..(y + 2).min(height) {
                 for x in x.saturating_sub(1)..(x + 2).min(width) {
-                    let nearest = &mut nearest[y * width + x];
-                    *nearest = nearest.min(speck.depth);
+                    let depth = &mut nearest[y * width + x];
+                    *depth = depth.min(speck.depth);
                 }
             }
         }

@@ -34,8 +34,7 @@ pub fn refit(lab: &mut Lab, size: Rect) {
 
 /// Scrolls the page of the lesson, on a screen of this size.
 pub fn scroll_page(lab: &mut Lab, direction: Direction, size: Rect) {
-    let layout = layout(lab, true, size);
-    if let Some(place) = layout.place_of(Pane::Lesson) {
+    if let Some(place) = layout(lab, true, size).place_of(Pane::Lesson) {
         lesson::scroll(lab, direction, place);
     }
 }
@@ -57,25 +56,25 @@ pub fn layout(lab: &Lab, keys: bool, area: Rect) -> ScreenLayout {
 
 /// Draws `lab` on `area`; `keys` says whether with the line of keys.
 pub fn draw(lab: &Lab, keys: bool, area: Rect, buf: &mut Buffer) {
-    let layout = layout(lab, keys, area);
-    for &(pane, place) in &layout.panes {
+    let places = layout(lab, keys, area);
+    for &(pane, place) in &places.panes {
         draw_pane(lab, pane, place, buf);
         if lab.view().pointed_at == Some(pane) {
             point_at(lab, place, buf);
         }
     }
-    chrome::title(lab, layout.title, buf);
-    timeline::draw(lab, layout.timeline, buf);
-    measured::draw(lab, layout.measured, buf);
-    let place = hint::place(lab, &layout);
-    if !lab.view().hides(HideablePart::Health) && place == layout.hint {
-        chrome::health(lab, layout.health, buf);
+    chrome::title(lab, places.title, buf);
+    timeline::draw(lab, places.timeline, buf);
+    measured::draw(lab, places.measured, buf);
+    let place = hint::place(lab, &places);
+    if !lab.view().hides(HideablePart::Health) && place == places.hint {
+        chrome::health(lab, places.health, buf);
     }
     if !lab.view().look.bare || hint::has_message(lab) {
-        hint::draw(lab, keys && layout.is_cramped, place, buf);
+        hint::draw(lab, keys && places.is_cramped, place, buf);
     }
-    chrome::keys(lab, layout.keys, buf);
-    draw_popup(lab, popup_place(lab, &layout), buf);
+    chrome::keys(lab, places.keys, buf);
+    draw_popup(lab, popup_place(lab, &places), buf);
     if lab.view().marker == Marker::Ascii {
         to_ascii(area, buf);
     }

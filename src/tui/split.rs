@@ -4,13 +4,16 @@ use ratatui::layout::Rect;
 
 /// The first `height` rows of `area`, and the others.
 pub fn split_rows(area: Rect, height: u16) -> [Rect; 2] {
-    let height = height.min(area.height);
-    let below = Rect {
-        y: area.y + height,
-        height: area.height - height,
+    let above = Rect {
+        height: height.min(area.height),
         ..area
     };
-    [Rect { height, ..area }, below]
+    let below = Rect {
+        y: above.bottom(),
+        height: area.height - above.height,
+        ..area
+    };
+    [above, below]
 }
 
 /// The first `width` columns of `area`, and the others.

@@ -103,8 +103,8 @@ pub fn marker(variable: impl Fn(&str) -> Option<String>) -> Marker {
         .filter_map(&variable)
         .find(|value| !value.is_empty());
     let is_utf8 = locale.is_some_and(|locale| {
-        let locale = locale.to_lowercase();
-        locale.contains("utf-8") || locale.contains("utf8")
+        let lower = locale.to_lowercase();
+        lower.contains("utf-8") || lower.contains("utf8")
     });
     match (is_utf8, variable("TERM").as_deref()) {
         (false, _) | (_, Some("dumb")) => Marker::Ascii,

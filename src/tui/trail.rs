@@ -75,9 +75,11 @@ impl Trail {
         to_dot: impl Fn(&Vector3<f64>) -> (f64, f64),
     ) {
         let now = to_dot(now);
-        let all = recording.since(f64::NEG_INFINITY);
-        let all = all.map(|block| (block.end_s, to_dot(&block.end())));
-        let all: Vec<_> = all.inspect(|(_, at)| self.count(*at)).collect();
+        let all: Vec<_> = recording
+            .since(f64::NEG_INFINITY)
+            .map(|block| (block.end_s, to_dot(&block.end())))
+            .inspect(|(_, at)| self.count(*at))
+            .collect();
         let old = all.iter().filter(|(end_s, _)| *end_s <= now_s);
         self.pass(
             old.map(|(_, at)| *at).chain([now]),

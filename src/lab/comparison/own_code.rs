@@ -81,9 +81,9 @@ impl OwnCode {
         let (text, map) = (Arc::clone(&self.text), Arc::clone(&self.map));
         let (name, against) = (name.to_owned(), Arc::clone(scenario));
         let job = BackgroundJob::begin("own code", move |is_wanted| {
-            let rows = rows::read(&text, &map, None, against.motion.time_step_s);
-            let compared = rows.map_err(Unverified::from);
-            match compared.and_then(|rows| own_code::compare(&rows, &name, &against, is_wanted)) {
+            let read = rows::read(&text, &map, None, against.motion.time_step_s);
+            let checked = read.map_err(Unverified::from);
+            match checked.and_then(|rows| own_code::compare(&rows, &name, &against, is_wanted)) {
                 Ok(verdict) => Some(Ok(verdict)),
                 Err(Unverified::Refused(problems)) => Some(Err(problems.in_one_line())),
                 Err(Unverified::Stopped) => None,
@@ -113,8 +113,10 @@ impl OwnCode {
 
     /// The verdict in words.
     pub(super) fn told(&self, name: &str) -> String {
-        let name = Path::new(name).file_name().unwrap_or_default();
-        let name = name.to_string_lossy();
+        let name = Path::new(name)
+            .file_name()
+            .unwrap_or_default()
+            .to_string_lossy();
         let words = match self.outcome() {
             None => format!("{name} is being held against the run"),
             Some(Err(why)) => format!("{name}: {why}"),

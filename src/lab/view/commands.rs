@@ -89,7 +89,7 @@ impl View {
             let found = lookup::turn(run, here, forward);
             found.map(Some).map_err(|missing| missing.to_string())
         };
-        let step = match to {
+        let target = match to {
             CursorTo::Mark => return self.mark_turn(player),
             CursorTo::Nowhere => None,
             CursorTo::Place(SeekTarget::End) => Some(run.furthest()),
@@ -97,7 +97,7 @@ impl View {
             CursorTo::NextTurn => turn(true)?,
             CursorTo::TurnBefore => turn(false)?,
         };
-        let step = step.map(|step| step.min(run.furthest()));
+        let step = target.map(|step| step.min(run.furthest()));
         if let Some(step) = step {
             let sample = lookup::sample(run, step).map_err(|missing| missing.to_string())?;
             let (begin_s, window_s) = (self.begin_s(player), self.look.window_s);

@@ -11,8 +11,10 @@ pub(super) fn in_words(
     readouts: &Readouts,
 ) -> Option<String> {
     let ((begin_s, _), (end_s, _)) = turns.first().zip(turns.last())?;
-    let middles = turns.windows(2).map(|pair| 0.5 * (pair[0].1 + pair[1].1));
-    let middles: Vec<f64> = middles.collect();
+    let middles: Vec<f64> = turns
+        .windows(2)
+        .map(|pair| 0.5 * (pair[0].1 + pair[1].1))
+        .collect();
     let (parts, length_s) = (middles.len() as f64, end_s - begin_s);
     if middles.is_empty() {
         return None;
@@ -28,11 +30,11 @@ pub(super) fn in_words(
     let period_of_theory_s = readouts.number("predicted_nutation_period_s");
     let theory = match (period_of_theory_s, readouts.predicted_tilt_range_deg()) {
         (Some(period_s), Some((low, high))) => {
-            let period = period.to_the_same_digit(period_s);
+            let predicted = period.to_the_same_digit(period_s);
             let asymmetry = readouts.theory.and_then(|theory| theory.of_mean_moment());
             let asymmetry = asymmetry.map_or(String::new(), |it| format!(" (asymmetry {it})"));
             let mean = short(0.5 * (low + high));
-            format!("theory: {period} s, {mean} deg{asymmetry}")
+            format!("theory: {predicted} s, {mean} deg{asymmetry}")
         }
         _ => "no theory of it here".to_owned(),
     };

@@ -124,9 +124,10 @@ fn preview(browser: &Browser, theme: &Theme, area: Rect, buf: &mut Buffer) {
 
 /// `name` without the `folder` in which it is, which the frame names.
 fn below<'a>(name: &'a str, folder: Option<&Path>) -> &'a str {
-    let folder = folder.and_then(Path::to_str);
-    let rest = folder.and_then(|folder| name.strip_prefix(folder));
-    let rest = rest.map(|rest| rest.trim_start_matches('/'));
+    let rest = folder
+        .and_then(Path::to_str)
+        .and_then(|folder| name.strip_prefix(folder))
+        .map(|rest| rest.trim_start_matches('/'));
     rest.filter(|rest| !rest.is_empty()).unwrap_or(name)
 }
 
@@ -156,7 +157,9 @@ fn described(scenario: &Scenario, width: usize) -> Vec<(String, Role)> {
 
 fn refused(problem: &str, width: usize) -> Vec<(String, Role)> {
     let begin = ("cannot be opened".to_owned(), Role::Warning);
-    let lines = problem.lines().flat_map(|line| wrapped(line, width));
-    let lines = lines.map(|line| (line, Role::Text));
+    let lines = problem
+        .lines()
+        .flat_map(|line| wrapped(line, width))
+        .map(|line| (line, Role::Text));
     std::iter::once(begin).chain(lines).collect()
 }

@@ -30,7 +30,7 @@ pub fn title(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
     let motion = lab.player().motion();
     let step = significant(motion.time_step_s, 7);
-    let clock = clock(
+    let clock = clock_text(
         &lab.player().reading,
         lab.player().run().scenario().least_time_step_s(),
         area.width as usize,
@@ -48,17 +48,17 @@ pub fn title(lab: &Lab, area: Rect, buf: &mut Buffer) {
     ];
     let title = &lab.player().run().scenario().file.title;
     let least = columns(title).min(LEAST_TITLE);
-    let fits = |details: &&String| columns(details) + least <= room;
-    if let Some(details) = details.iter().find(fits) {
-        let title = shortened(title, room - columns(details));
-        let x = write(left, (1, 0), &title, theme.style(Role::Heading), buf);
+    let fitting = details.iter().find(|text| columns(text) + least <= room);
+    if let Some(details) = fitting {
+        let short = shortened(title, room - columns(details));
+        let x = write(left, (1, 0), &short, theme.style(Role::Heading), buf);
         write(left, (x, 0), details, theme.style(Role::Quiet), buf);
     }
 }
 
 fn bare_title(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
-    let digits = digits(lab.player().run().scenario().least_time_step_s());
+    let digits = time_decimals(lab.player().run().scenario().least_time_step_s());
     let time_s = lab.player().reading.readouts.sample.time_s;
     let time = format!("t {:>8} s ", fixed(time_s, digits));
     let x = area.width.saturating_sub(time.len() as u16);
@@ -69,13 +69,13 @@ fn bare_title(lab: &Lab, area: Rect, buf: &mut Buffer) {
 }
 
 /// Digits after the point of a time that tell every step from the next, of a run whose shortest step is `time_step_s`.
-fn digits(time_step_s: f64) -> usize {
+fn time_decimals(time_step_s: f64) -> usize {
     (-libm::log10(time_step_s)).ceil().clamp(0.0, 6.0) as usize
 }
 
 /// Time, step and pace in fixed columns, or closer together where `width` is short of them.
-fn clock(reading: &Reading, time_step_s: f64, width: usize) -> String {
-    let digits = digits(time_step_s);
+fn clock_text(reading: &Reading, time_step_s: f64, width: usize) -> String {
+    let digits = time_decimals(time_step_s);
     let (t, step) = (reading.readouts.sample.time_s, reading.readouts.sample.step);
     let (t, pace) = (fixed(t, digits), &reading.pace);
     let moves = pace.split([' ', ',']).next().unwrap_or_default();
@@ -90,19 +90,19 @@ fn clock(reading: &Reading, time_step_s: f64, width: usize) -> String {
 /// What the time step makes of the numbers, in words: at length if all of it fits, else in short, as much as fits.
 pub fn health(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
-    let mut remarks = remarks(&lab.player().reading.readouts.health, None);
+    let mut shown = remarks(&lab.player().reading.readouts.health, None);
     if let Some([long, short]) = lab.adviser().offer(lab.player()) {
         let offer = Remark {
             long,
             short,
             warns: false,
         };
-        remarks.insert(BEFORE_OFFER.min(remarks.len()), offer);
+        shown.insert(BEFORE_OFFER.min(shown.len()), offer);
     }
     let length = |text: &String| columns(text) + columns(SEPARATOR);
-    let whole: usize = remarks.iter().map(|remark| length(&remark.long)).sum();
+    let whole: usize = shown.iter().map(|remark| length(&remark.long)).sum();
     let mut x = 1;
-    for remark in &remarks {
+    for remark in &shown {
         let text = if whole <= area.width as usize {
             &remark.long
         } else {
@@ -125,14 +125,15 @@ pub fn health(lab: &Lab, area: Rect, buf: &mut Buffer) {
 
 /// Whether the line about the numbers' health warns of something.
 pub fn warns(lab: &Lab) -> bool {
-    let remarks = remarks(&lab.player().reading.readouts.health, None);
-    remarks.iter().any(|remark| remark.warns) && !lab.view().hides(HideablePart::Health)
+    let health = &lab.player().reading.readouts.health;
+    !lab.view().hides(HideablePart::Health)
+        && remarks(health, None).iter().any(|remark| remark.warns)
 }
 
 /// The keys of the mode, as many as fit; help and quit always.
 pub fn keys(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
-    for (x, item) in placed(lab, area) {
+    for (x, item) in place_keys(lab, area) {
         let (key, focus) = (item.key.to_string(), theme.style(Role::Focus));
         let x = write(area, (x, 0), &key, focus, buf);
         write(area, (x + 1, 0), item.word, theme.style(Role::Quiet), buf);
@@ -141,9 +142,9 @@ pub fn keys(lab: &Lab, area: Rect, buf: &mut Buffer) {
 
 /// The key that the line of keys on `area` names at the column `x` of the screen.
 pub fn key_at(lab: &Lab, area: Rect, x: u16) -> Option<Key> {
-    let x = x.checked_sub(area.x)?;
-    let mut placed = placed(lab, area).into_iter();
-    let found = placed.find(|(at, item)| (*at..at + item.length()).contains(&x));
+    let column = x.checked_sub(area.x)?;
+    let mut placed = place_keys(lab, area).into_iter();
+    let found = placed.find(|(at, item)| (*at..at + item.length()).contains(&column));
     found.map(|(_, item)| item.key)
 }
 
@@ -162,7 +163,7 @@ impl FooterItem {
     }
 }
 
-fn placed(lab: &Lab, area: Rect) -> Vec<(u16, FooterItem)> {
+fn place_keys(lab: &Lab, area: Rect) -> Vec<(u16, FooterItem)> {
     let screen = Rect::new(0, 0, area.width, area.bottom());
     let (items, gap) = fitted(footer(lab, page_goes_on(lab, screen)), area.width);
     let mut x = 1;
@@ -213,25 +214,25 @@ fn footer(lab: &Lab, goes_on: bool) -> Vec<FooterItem> {
     let of_touched = of_pane.filter(|_| lab.view().is_touched || always);
     let of_lab = BINDINGS
         .iter()
-        .filter(|row| of_mode.clone().all(|other| other.keys[0] != row.keys[0]));
-    let of_lab = of_lab.map(|row| (row, row.worth));
+        .filter(|row| of_mode.clone().all(|other| other.keys[0] != row.keys[0]))
+        .map(|row| (row, row.worth));
     let rows = of_touched
         .map(|row| (row, FooterPriority::Own))
-        .chain(of_lab);
-    let rows = rows.filter(|(row, _)| row.modes.contains(&mode) && !row.footer.is_empty());
+        .chain(of_lab)
+        .filter(|(row, _)| row.modes.contains(&mode) && !row.footer.is_empty());
     let items = rows.filter_map(|(row, worth)| {
-        let word = word(lab, goes_on, row)?;
+        let word = footer_word(lab, goes_on, row)?;
         let key = row.keys[0];
         Some(FooterItem { key, word, worth })
     });
-    let esc = match mode {
+    let esc_word = match mode {
         Mode::Lab if lab.view().filled && lab.view().sheet.is_some() => Some("to the page"),
         Mode::Lab => None,
         Mode::Help if lab.popups().help.text.is_empty() => Some("close"),
         Mode::Help | Mode::Filter | Mode::Find => Some("clear"),
         Mode::Browser | Mode::Dialog => Some("close"),
     };
-    let esc = esc.map(|word| FooterItem {
+    let esc = esc_word.map(|word| FooterItem {
         key: Key::Esc,
         word,
         worth: FooterPriority::Own,
@@ -240,7 +241,7 @@ fn footer(lab: &Lab, goes_on: bool) -> Vec<FooterItem> {
 }
 
 /// What the footer says of a key now; `None` where the key does nothing.
-fn word(lab: &Lab, goes_on: bool, row: &Binding) -> Option<&'static str> {
+fn footer_word(lab: &Lab, goes_on: bool, row: &Binding) -> Option<&'static str> {
     let is_why = lab.view().look.phase == StepPageChoice::Why;
     let sheet = lab.view().sheet.as_ref();
     let enter = sheet.map_or("", |sheet| sheet.enter);

@@ -70,15 +70,20 @@ impl FormPane<'_> {
         room -= reserved;
         let fields = taken(&mut room, form.fields.len());
         room += reserved;
-        let complaint = form.complaint.iter();
         let most = room.min(MOST_COMPLAINT);
-        let complaint = complaint.flat_map(|text| wrapped_to(text, width, most));
-        let complaint: Vec<_> = complaint.collect();
+        let complaint: Vec<_> = form
+            .complaint
+            .iter()
+            .flat_map(|text| wrapped_to(text, width, most))
+            .collect();
         room -= complaint.len();
         let keys = wrapped(form.keys, width).len();
         let keys = wrapped_to(form.keys, width, taken(&mut room, keys));
-        let info = form.info.iter().flat_map(|text| wrapped(text, width));
-        let mut info: Vec<_> = info.collect();
+        let mut info: Vec<_> = form
+            .info
+            .iter()
+            .flat_map(|text| wrapped(text, width))
+            .collect();
         info.truncate(taken(&mut room, info.len()));
         // The selected field is among those that are shown.
         let first = (form.selected + 1).saturating_sub(fields);
@@ -159,10 +164,9 @@ fn taken(room: &mut usize, wanted: usize) -> usize {
 
 /// The first of `chars` that is shown on `width` columns, so that the one at `cursor` is visible.
 fn first_shown(chars: &[char], cursor: usize, width: usize) -> usize {
-    let cursor = cursor.min(chars.len());
-    let at_cursor = chars.get(cursor).map_or(1, |&c| wide(c).max(1));
+    let mut first = cursor.min(chars.len());
+    let at_cursor = chars.get(first).map_or(1, |&c| wide(c).max(1));
     let mut room = width.saturating_sub(at_cursor);
-    let mut first = cursor;
     while first > 0 && wide(chars[first - 1]) <= room {
         first -= 1;
         room -= wide(chars[first]);

@@ -76,7 +76,7 @@ impl Widget for FromAbove<'_> {
         let without = |lines: usize| split_rows(inside, inside.height - lines as u16);
         let most = (inside.height / ROWS_A_LINE).clamp(1, MOST_LEGEND_LINES) as usize;
         let (plane, _) = self.plane(without(1)[0]);
-        let lines = self.legend(&plane, inside.width, most).len();
+        let lines = self.legend(&plane, inside.width.into(), most).len();
         let [picture, legend] = without(lines);
         let (plane, radius_m) = self.plane(picture);
         self.path(&plane, picture, buf);
@@ -261,8 +261,7 @@ impl FromAbove<'_> {
         let mut dots = Dots::new(picture, self.0.view.marker);
         let mut signs = Vec::new();
         for push in simulation.loads().pushes.iter().take(MOST_SHOWN_PUSHES) {
-            let at = simulation.state().orientation * points[push.point].at;
-            let at = at.xy();
+            let at = (simulation.state().orientation * points[push.point].at).xy();
             match push
                 .force
                 .xy()
@@ -313,8 +312,7 @@ impl FromAbove<'_> {
 impl FromAbove<'_> {
     /// The lines of the legend on `width` columns; the last has room for the scale of `plane` beside it. Where `most` lines
     /// are too few for every mark and line of the picture, those named last are left out.
-    fn legend(&self, plane: &Plane, width: u16, most: usize) -> Vec<String> {
-        let width = width as usize;
+    fn legend(&self, plane: &Plane, width: usize, most: usize) -> Vec<String> {
         let room = width.saturating_sub(columns(&self.bar(plane, width)) + 1);
         let words = self.words();
         let legend = Self::in_fewest_lines(&words, width, room, most);
@@ -332,10 +330,14 @@ impl FromAbove<'_> {
 
     fn in_fewest_lines(words: &[[&str; 2]], width: usize, room: usize, most: usize) -> Vec<String> {
         let fits = |legend: &Vec<String>| legend.len() <= most;
-        let whole = [0, 1].map(|form| in_lines(words, form, width, room));
-        let whole = whole.into_iter().min_by_key(Vec::len).filter(fits);
-        let fewer = (1..words.len()).rev();
-        let mut fewer = fewer.map(|count| in_lines(&words[..count], 1, width, room));
+        let whole = [0, 1]
+            .map(|form| in_lines(words, form, width, room))
+            .into_iter()
+            .min_by_key(Vec::len)
+            .filter(fits);
+        let mut fewer = (1..words.len())
+            .rev()
+            .map(|count| in_lines(&words[..count], 1, width, room));
         let legend = whole.or_else(|| fewer.find(fits));
         legend.unwrap_or_else(|| vec![String::new()])
     }
@@ -346,7 +348,7 @@ impl FromAbove<'_> {
         let last = area.height.saturating_sub(1);
         let bar = self.bar(plane, area.width as usize);
         write(area, (0, last), &bar, style, buf);
-        let lines = self.legend(plane, area.width, area.height as usize);
+        let lines = self.legend(plane, area.width.into(), area.height.into());
         for (line, y) in lines.iter().zip(0..) {
             let x = if y == last {
                 area.width.saturating_sub(columns(line) as u16)
@@ -395,8 +397,10 @@ impl FromAbove<'_> {
 /// `words` in lines of at most `width` columns, the last of at most `room`.
 fn in_lines(words: &[[&str; 2]], form: usize, width: usize, room: usize) -> Vec<String> {
     let (between, words) = (LEGEND_SEPARATORS[form], words.iter().map(|word| word[form]));
-    let lines = super::in_lines(words, |word| word, between.len(), width);
-    let mut lines: Vec<_> = lines.iter().map(|line| line.join(between)).collect();
+    let mut lines: Vec<_> = super::in_lines(words, |word| word, between.len(), width)
+        .iter()
+        .map(|line| line.join(between))
+        .collect();
     if lines.last().is_some_and(|line| columns(line) > room) {
         lines.push(String::new());
     }

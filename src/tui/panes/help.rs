@@ -20,14 +20,14 @@ const LEAST_TEXT: usize = 40;
 const SELECTED: &str = "►";
 
 fn selected(lab: &Lab) -> Option<HelpEntry> {
-    let found = found(&lab.popups().help.text);
+    let found = find_entries(&lab.popups().help.text);
     found.get(lab.popups().help.selected).copied()
 }
 
 /// Keeps the selection of the help among the entries that are found.
 pub fn limit(lab: &mut Lab) {
     if lab.popups().mode == Mode::Help {
-        let entries = found(&lab.popups().help.text).len();
+        let entries = find_entries(&lab.popups().help.text).len();
         lab.popups_mut().help.limit(entries);
     }
 }
@@ -64,7 +64,7 @@ pub fn do_entry(lab: &mut Lab) -> Option<LabRequest> {
 pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
     let search = lab.popups().help.text.as_str();
-    let found = found(search);
+    let found = find_entries(search);
     let title = match search {
         "" => "help: type to search, Enter does it".to_owned(),
         search => format!("help: {search}_ ({})", found.len()),
@@ -74,9 +74,12 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
         let text = "nothing has that in it: Esc clears the search";
         write(inside, (1, 0), text, theme.style(Role::Text), buf);
     }
-    let selected = lab.popups().help.selected;
-    let selected = selected.min(found.len().saturating_sub(1));
-    let lines = lines(&found, search.is_empty(), inside.width as usize);
+    let selected = lab
+        .popups()
+        .help
+        .selected
+        .min(found.len().saturating_sub(1));
+    let lines = help_lines(&found, search.is_empty(), inside.width as usize);
     let first = first_shown(&lines, selected, inside.height as usize);
     for (line, place) in lines.iter().skip(first).zip(inside.rows()) {
         for (x, text, role) in &line.pieces {
@@ -112,7 +115,7 @@ fn first_shown(lines: &[HelpLine], selected: usize, height: usize) -> usize {
 }
 
 /// `entries` in lines of `width` columns; `grouped` says whether under the headings of their groups.
-fn lines(entries: &[HelpEntry], grouped: bool, width: usize) -> Vec<HelpLine> {
+fn help_lines(entries: &[HelpEntry], grouped: bool, width: usize) -> Vec<HelpLine> {
     let longest = entries.iter().map(|entry| columns(&entry.name())).max();
     let column = NAMES_COLUMN + longest.unwrap_or(0) + COLUMN_GAP;
     let column = Some(column).filter(|column| width >= column + LEAST_TEXT);
@@ -167,8 +170,9 @@ fn text_of(entry: &HelpEntry, grouped: bool) -> String {
 
 /// The name of `entry`, and its `text` in lines that begin in `column`.
 fn beside(entry: &HelpEntry, text: &str, column: usize, width: usize) -> Vec<HelpPieces> {
-    let text = wrapped(text, width.saturating_sub(column)).into_iter();
-    let text = text.map(|text| vec![(column, text, Role::Text)]);
+    let text = wrapped(text, width.saturating_sub(column))
+        .into_iter()
+        .map(|text| vec![(column, text, Role::Text)]);
     let mut lines: Vec<HelpPieces> = text.collect();
     if let Some(first) = lines.first_mut() {
         first.push((NAMES_COLUMN, entry.name(), Role::Focus));
@@ -179,8 +183,9 @@ fn beside(entry: &HelpEntry, text: &str, column: usize, width: usize) -> Vec<Hel
 /// The name of `entry`, and its `text` below it.
 fn below(entry: &HelpEntry, text: &str, width: usize) -> Vec<HelpPieces> {
     const HELP_INDENT: usize = NAMES_COLUMN + COLUMN_GAP - 1;
-    let text = wrapped(text, width.saturating_sub(HELP_INDENT)).into_iter();
-    let text = text.map(|text| vec![(HELP_INDENT, text, Role::Text)]);
+    let text = wrapped(text, width.saturating_sub(HELP_INDENT))
+        .into_iter()
+        .map(|text| vec![(HELP_INDENT, text, Role::Text)]);
     let name = vec![(NAMES_COLUMN, entry.name(), Role::Focus)];
     std::iter::once(name).chain(text).collect()
 }
@@ -254,8 +259,10 @@ fn glossary() -> impl Iterator<Item = (&'static str, &'static str)> {
 
 pub fn entries() -> Vec<HelpEntry> {
     let of_mode = |(mode, group)| {
-        let rows = BINDINGS.iter().filter(move |row| row.modes[0] == mode);
-        let rows = rows.filter(move |row| mode != Mode::Lab || row.purpose == group);
+        let rows = BINDINGS
+            .iter()
+            .filter(move |row| row.modes[0] == mode)
+            .filter(move |row| mode != Mode::Lab || row.purpose == group);
         rows.map(move |row| key(group, None, row))
     };
     let of_lab = PURPOSES.map(|group| (Mode::Lab, group)).into_iter();
@@ -277,7 +284,7 @@ pub fn entries() -> Vec<HelpEntry> {
 }
 
 /// The entries that match `search`, the best match first; if it is empty, all entries, group by group.
-pub fn found(search: &str) -> Vec<HelpEntry> {
+pub fn find_entries(search: &str) -> Vec<HelpEntry> {
     let (search, mut found) = (search.trim(), entries());
     if search.is_empty() {
         return found;

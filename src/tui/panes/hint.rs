@@ -44,8 +44,10 @@ pub fn place(lab: &Lab, layout: &ScreenLayout) -> Rect {
         (false, true) => own.max(MOST_HINT_LINES),
         (false, false) => own,
     };
-    let most = most.min(place.bottom().saturating_sub(2));
-    let height = needed.min(most).max(place.height);
+    let height = needed
+        .min(most)
+        .min(place.bottom().saturating_sub(2))
+        .max(place.height);
     Rect {
         y: place.bottom() - height,
         height,

@@ -221,10 +221,10 @@ fn lines_of(paragraph: &Paragraph, width: u16, theme: &Theme) -> Vec<LessonLine>
         SheetLineKind::Code => text.lines().flat_map(|line| in_room(line, room)).collect(),
         _ => wrapped(&text, room),
     };
-    let mut letters = letters(paragraph).peekable();
+    let mut letters = letters_of(paragraph).peekable();
     let mut lines = Vec::with_capacity(texts.len());
     for (index, text) in texts.iter().enumerate() {
-        let mut pieces = pieces(text, &mut letters, style, theme);
+        let mut pieces = styled_pieces(text, &mut letters, style, theme);
         let is_marked = index == 0 || paragraph.kind == SheetLineKind::Note;
         if is_marked && !mark.is_empty() {
             pieces.insert(0, (mark.clone(), style));
@@ -238,7 +238,7 @@ fn lines_of(paragraph: &Paragraph, width: u16, theme: &Theme) -> Vec<LessonLine>
 }
 
 /// `text` in pieces of one style each. Its letters are the next of `letters`, but for the blanks between words.
-fn pieces(
+fn styled_pieces(
     text: &str,
     letters: &mut Peekable<impl Iterator<Item = (char, Emphasis)>>,
     style: Style,
@@ -254,10 +254,10 @@ fn pieces(
             ' ' => letters.peek().map(|(_, emphasis)| *emphasis),
             _ => letters.next().map(|(_, emphasis)| emphasis),
         };
-        let style = style.patch(styled(emphasis.unwrap_or_default(), theme));
+        let patched = style.patch(styled(emphasis.unwrap_or_default(), theme));
         match pieces.last_mut() {
-            Some((piece, last)) if *last == style => piece.push(letter),
-            _ => pieces.push((letter.to_string(), style)),
+            Some((piece, last)) if *last == patched => piece.push(letter),
+            _ => pieces.push((letter.to_string(), patched)),
         }
     }
     pieces
@@ -273,7 +273,7 @@ fn in_room(line: &str, room: usize) -> Vec<String> {
 }
 
 /// The letters of a paragraph with their emphasis.
-fn letters(paragraph: &Paragraph) -> impl Iterator<Item = (char, Emphasis)> {
+fn letters_of(paragraph: &Paragraph) -> impl Iterator<Item = (char, Emphasis)> {
     let pieces = paragraph.words.iter();
     pieces.flat_map(|words| words.text.chars().map(|letter| (letter, words.emphasis)))
 }

@@ -28,8 +28,8 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     } else {
         " measured: "
     };
-    let room = area.width.saturating_sub(1) as usize;
-    let room = room.saturating_sub(columns(&mark) + columns(what) + 1);
+    let before = columns(&mark) + columns(what) + 2;
+    let room = (area.width as usize).saturating_sub(before);
     let end_s = lab.player().end_s;
     let (name, counts, parts) = fitting(beside, end_s, room);
     let quiet = theme.style(Role::Quiet);
@@ -55,13 +55,14 @@ fn fitting(beside: &DataComparison, end_s: f64, room: usize) -> (String, String,
     let fewer = (0..=in_short.len()).rev();
     forms.extend(fewer.map(|count| (short.clone(), in_short[..count].to_vec())));
     let length = |(counts, parts): &(String, Vec<String>)| {
-        let parts = parts.iter().map(|part| columns(SEPARATOR) + columns(part));
-        columns(counts) + parts.sum::<usize>()
+        let lengths = parts.iter().map(|part| columns(SEPARATOR) + columns(part));
+        columns(counts) + lengths.sum::<usize>()
     };
     let (whole, least) = (columns(&name), columns(&name).min(LEAST_NAME));
     let mut first = forms.iter().take(3);
-    let found = first.position(|form| length(form) + whole <= room);
-    let found = found.or_else(|| forms.iter().position(|form| length(form) + least <= room));
+    let found = first
+        .position(|form| length(form) + whole <= room)
+        .or_else(|| forms.iter().position(|form| length(form) + least <= room));
     let form = forms.swap_remove(found.unwrap_or(forms.len() - 1));
     let rest = room.saturating_sub(length(&form)).max(least);
     (shortened(&name, rest).into_owned(), form.0, form.1)
@@ -69,8 +70,9 @@ fn fitting(beside: &DataComparison, end_s: f64, room: usize) -> (String, String,
 
 /// The name of data, or of a file without its folders.
 fn file_name(name: &str) -> String {
-    let last = Path::new(name).file_name();
-    let last = last.map_or(name.into(), |last| last.to_string_lossy());
+    let last = Path::new(name)
+        .file_name()
+        .map_or(name.into(), |last| last.to_string_lossy());
     printable(&last).into_owned()
 }
 
@@ -103,8 +105,11 @@ fn reached(beside: &DataComparison, sum: &Sum, end_s: f64) -> [String; 2] {
 /// What is found out about rows of an own program: at length and in short.
 fn verdict(beside: &DataComparison) -> Option<[String; 2]> {
     let verdict = beside.own.as_ref()?.verdict()?;
-    let slip = verdict.slips.first().map(|names| names.join(" + "));
-    let slip = slip.map_or_else(String::new, |slip| format!(", {slip}"));
+    let slip = verdict
+        .slips
+        .first()
+        .map(|names| names.join(" + "))
+        .map_or_else(String::new, |slip| format!(", {slip}"));
     Some(match verdict.first_step {
         Some(step) => [
             format!("differs at step {step}{slip}: M"),

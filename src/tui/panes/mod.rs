@@ -247,12 +247,12 @@ pub(super) fn write(
         return x;
     }
     let room = (area.width - x) as usize;
-    let text = printable(text);
-    let text = shortened(&text, room);
+    let printed = printable(text);
+    let short = shortened(&printed, room);
     // Bold and faint are reset: the text before may have been either.
     let weight = (Modifier::BOLD | Modifier::DIM).difference(style.add_modifier);
-    let style = style.remove_modifier(weight);
-    let (end, _) = buf.set_stringn(area.x + x, area.y + y, text, room, style);
+    let reset = style.remove_modifier(weight);
+    let (end, _) = buf.set_stringn(area.x + x, area.y + y, short, room, reset);
     end - area.x
 }
 
@@ -264,8 +264,9 @@ const MOST_SHOWN_PUSHES: usize = 20;
 /// Takes the last of the highest rank out of `items`, but none of rank 0; whether there was one.
 fn leave_one_out<T>(items: &mut Vec<T>, rank: impl Fn(&T) -> u8) -> bool {
     let ranks = items.iter().map(rank).enumerate();
-    let last = ranks.max_by_key(|&(_, rank)| rank);
-    let last = last.filter(|&(_, rank)| rank > 0);
+    let last = ranks
+        .max_by_key(|&(_, rank)| rank)
+        .filter(|&(_, rank)| rank > 0);
     last.map(|(index, _)| items.remove(index)).is_some()
 }
 

@@ -77,7 +77,7 @@ impl Widget for Parameters<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
         let focus = self.view.focus == PARAMETERS_ROW.id;
         let list = Some(self.list).filter(|_| focus);
-        let title = title(list, self.is_searched);
+        let title = pane_title(list, self.is_searched);
         let inside = frame(&title, area, focus, &self.view.theme, buf);
         if inside.is_empty() {
             return;
@@ -158,8 +158,12 @@ impl Parameters<'_> {
         let grouped = by_group(&edited, height).map_or(usize::MAX, |columns| columns.len());
         let count = grouped.min(count as usize) as u16;
         let most = (area.width - COLUMN) / count;
-        let wide = edited.iter().map(needed).max().unwrap_or(COLUMN);
-        let wide = wide.clamp(COLUMN, most.max(COLUMN));
+        let wide = edited
+            .iter()
+            .map(needed)
+            .max()
+            .unwrap_or(COLUMN)
+            .clamp(COLUMN, most.max(COLUMN));
         let [left, right] = split_columns(area, wide * count);
         self.edited(&edited, list, left, (count, wide), buf);
         let lines = fitting(read, right.height as usize);
@@ -285,14 +289,15 @@ impl Parameters<'_> {
 }
 
 /// The pane's title, which says where in the list the selected value is, and what is searched for.
-fn title(list: Option<&ValueList>, is_searched: bool) -> String {
+fn pane_title(list: Option<&ValueList>, is_searched: bool) -> String {
     let Some(list) = list else {
         return PARAMETERS_ROW.title.to_owned();
     };
     let shown = list.shown();
     let mut indices = shown.iter().map(|(index, _)| *index);
-    let at = indices.position(|index| index == list.selected_index());
-    let at = at.map_or(0, |at| at + 1);
+    let at = indices
+        .position(|index| index == list.selected_index())
+        .map_or(0, |at| at + 1);
     match (list.name.as_str(), is_searched, shown.len()) {
         (name, true, count) => format!("/{name}_ {at} of {count}"),
         ("", false, 0) => PARAMETERS_ROW.title.to_owned(),

@@ -63,7 +63,7 @@ const STEP_PANE_KEYS: &[Binding] = &[
 
 fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let view = lab.view();
-    let title = title(lab);
+    let title = pane_title(lab);
     let inside = frame(&title, area, view.focus == STEP_ROW.id, &view.theme, buf);
     if inside.is_empty() {
         return;
@@ -89,7 +89,7 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     }
 }
 
-fn title(lab: &Lab) -> String {
+fn pane_title(lab: &Lab) -> String {
     let Some(explained) = lab.step_pane().shown() else {
         return STEP_ROW.title.to_owned();
     };

@@ -141,9 +141,11 @@ impl<'a> SceneSubject<'a> {
         labels.extend(self.draw_arrows(&mut scene));
         let way = self.way(&scene);
         let signs = self.signs(&way, &scene);
-        let labels = labels.iter().rev();
-        let labels = labels.map(|(name, role, at)| (*name, *role, scene.cell(at)));
-        let labels: Vec<_> = labels.collect();
+        let labels: Vec<_> = labels
+            .iter()
+            .rev()
+            .map(|(name, role, at)| (*name, *role, scene.cell(at)))
+            .collect();
         scene.draw(&mut dots);
         way.join(&mut dots);
         dots.render(theme, buf);
@@ -167,8 +169,8 @@ impl<'a> SceneSubject<'a> {
             ("+", Role::Heading, Vector3::zeros()),
             ("*", Role::Focus, self.position),
         ];
-        let marks = marks.iter().filter(|(_, _, at)| scene.shows(at));
-        signs.extend(marks.map(|(sign, role, at)| (*sign, *role, scene.cell(at))));
+        let shown = marks.iter().filter(|(_, _, at)| scene.shows(at));
+        signs.extend(shown.map(|(sign, role, at)| (*sign, *role, scene.cell(at))));
         signs
     }
 
@@ -197,11 +199,15 @@ impl<'a> SceneSubject<'a> {
 
     /// Circles about the vertical around all that is drawn, radius and height.
     fn circles(&self) -> Vec<(f64, f64)> {
-        let tilts = self.seen.run.recording().whole();
-        let tilts = tilts.map_or((0.0, 0.0), |whole| {
-            let tilt = whole.extent(RecordedCurve::Tilt);
-            (tilt.min, tilt.max)
-        });
+        let tilts = self
+            .seen
+            .run
+            .recording()
+            .whole()
+            .map_or((0.0, 0.0), |whole| {
+                let tilt = whole.extent(RecordedCurve::Tilt);
+                (tilt.min, tilt.max)
+            });
         let (first, last) = ((tilts.0 / TILT_DEG).floor(), (tilts.1 / TILT_DEG).ceil());
         let ground = GROUND * self.reach;
         let mut circles = if self.stands() {
@@ -355,9 +361,13 @@ impl SceneSubject<'_> {
     pub(super) fn way(&self, scene: &DotScene) -> ScreenPath {
         let until = self.state.time_s;
         let [turn, recent] = [Age::Turn, Age::Recent].map(|age| self.ages.since(age, until));
-        let blocks = self.seen.run.recording().since(turn);
-        let blocks = blocks.filter(|block| block.end_s >= turn && block.end_s <= until);
-        let blocks: Vec<_> = blocks.collect();
+        let blocks: Vec<_> = self
+            .seen
+            .run
+            .recording()
+            .since(turn)
+            .filter(|block| block.end_s >= turn && block.end_s <= until)
+            .collect();
         let now = scene.dot(&self.position);
         let (across, down) = (
             scene.plane.in_cell.0 as f64,
@@ -381,8 +391,10 @@ impl SceneSubject<'_> {
             if columns(now, at) < PATH_HEAD_DOTS {
                 continue;
             }
-            let mut newer = way.iter().rev();
-            let newer = newer.find(|place| columns(at, **place) >= STRETCH);
+            let newer = way
+                .iter()
+                .rev()
+                .find(|place| columns(at, **place) >= STRETCH);
             let to = newer.unwrap_or(&now);
             let direction = ((to.0 - at.0) / across, (to.1 - at.1) / down);
             let cell = scene.plane.cell_of(at);

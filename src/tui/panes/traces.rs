@@ -96,10 +96,10 @@ impl Widget for Traces<'_> {
             let beside = self.beside(inside);
             (beside, self.groups(inside, beside))
         };
-        let plots = groups
+        let plots: Vec<_> = groups
             .iter()
-            .flat_map(|group| self.plots(group, beside, &marks));
-        let plots: Vec<_> = plots.collect();
+            .flat_map(|group| self.plots(group, beside, &marks))
+            .collect();
         let has_band = plots.iter().any(|plot| plot.has_band);
         let title = self.title(has_band, area.width.saturating_sub(4) as usize);
         let theme = &self.0.view.theme;
@@ -120,8 +120,10 @@ impl Widget for Traces<'_> {
             }
         }
         if let Some(last) = groups.last() {
-            let zoomed = groups.iter().find(|group| group.is_zoom);
-            let zoomed = zoomed.map(|group| &group.strip);
+            let zoomed = groups
+                .iter()
+                .find(|group| group.is_zoom)
+                .map(|group| &group.strip);
             self.below(&marks, zoomed, &last.strip, line(area.bottom() - 1), buf);
         }
     }
@@ -232,8 +234,11 @@ impl Traces<'_> {
             (false, _) if plot.has_band => &BAND_TEXTS,
             (false, _) => &[],
         };
-        let words = words.iter().chain(&[""]);
-        longest(words.map(|word| format!("{range} {word}")), room)
+        let forms = words
+            .iter()
+            .chain(&[""])
+            .map(|word| format!("{range} {word}"));
+        longest(forms, room)
     }
 
     fn draw_zero(&self, plot: &Plot, dots: &mut Dots) {

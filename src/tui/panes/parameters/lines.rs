@@ -269,10 +269,10 @@ fn readout_lines(group: PaneGroup, readouts: &Readouts) -> Vec<ParameterLine> {
         },
     ) in shown
     {
-        let unit = unit.unwrap_or(row.unit);
+        let shown_unit = unit.unwrap_or(row.unit);
         let is_lost = row.is_of_body() && !readouts.health.is_a_rotation;
         let known = row.read_from(readouts).number().filter(|_| !is_lost);
-        lines.push(number(rank, label, known, decimals, unit));
+        lines.push(number(rank, label, known, decimals, shown_unit));
         if let Some(predicted) = row.predicted() {
             let number_of_theory = predicted.read_from(readouts).number();
             lines.push(number(
@@ -280,7 +280,7 @@ fn readout_lines(group: PaneGroup, readouts: &Readouts) -> Vec<ParameterLine> {
                 PREDICTED_LABEL,
                 number_of_theory,
                 decimals,
-                unit,
+                shown_unit,
             ));
         }
     }

@@ -38,8 +38,9 @@ pub struct CellFormat {
 impl CellFormat {
     /// For `count` numbers side by side on `width` columns.
     pub fn new(width: usize, count: usize) -> Self {
-        let digits = (width / count.max(1)).saturating_sub(COLUMNS_BESIDE_DIGITS);
-        let digits = digits.clamp(*CELL_DIGITS.start(), *CELL_DIGITS.end());
+        let digits = (width / count.max(1))
+            .saturating_sub(COLUMNS_BESIDE_DIGITS)
+            .clamp(*CELL_DIGITS.start(), *CELL_DIGITS.end());
         Self {
             cell: digits + COLUMNS_BESIDE_DIGITS,
             digits,
@@ -279,8 +280,10 @@ impl TableView<'_> {
         for group in groups {
             let cell = self.format(group).cell;
             let columns = &self.table.columns[group.clone()];
-            let symbols = columns.iter().map(|(symbol, _)| format!("{symbol:>cell$}"));
-            let symbols = symbols.collect::<String>();
+            let symbols = columns
+                .iter()
+                .map(|(symbol, _)| format!("{symbol:>cell$}"))
+                .collect::<String>();
             let mut line = StepPageLine::of(self.begin(group), symbols, Role::Quiet);
             if self.has_mass_aside(group) {
                 let mass = self.table.columns[0].1;
@@ -290,8 +293,10 @@ impl TableView<'_> {
                 let unit = format!("in {}", columns[0].1);
                 lines.push(line.and(0, unit, Role::Quiet));
             } else {
-                let units = columns.iter().map(|(_, unit)| format!("{unit:>cell$}"));
-                let units = units.collect::<String>();
+                let units = columns
+                    .iter()
+                    .map(|(_, unit)| format!("{unit:>cell$}"))
+                    .collect::<String>();
                 lines.extend([
                     line,
                     StepPageLine::of(self.begin(group), units, Role::Quiet),
@@ -318,10 +323,12 @@ impl TableView<'_> {
             [group] if group.contains(&columns.start) => {
                 let format = self.format(group);
                 let blank = " ".repeat((columns.start - group.start) * format.cell);
-                let sums = sums[columns].iter();
-                let sums: String = sums.map(|sum| format.aligned(&[*sum]).concat()).collect();
+                let text: String = sums[columns]
+                    .iter()
+                    .map(|sum| format.aligned(&[*sum]).concat())
+                    .collect();
                 let line = StepPageLine::of(0, "sum", Role::Focus);
-                lines.push(line.and(POINT_NAME_WIDTH, blank + &sums, Role::Heading));
+                lines.push(line.and(POINT_NAME_WIDTH, blank + &text, Role::Heading));
             }
             _ => lines.extend(columns.clone().step_by(FEW).flat_map(|begin| {
                 let group = begin..(begin + FEW).min(columns.end);
@@ -341,8 +348,9 @@ impl TableView<'_> {
             .map(|(symbol, _)| format!("{symbol:>0$}", format.cell));
         let heads = StepPageLine::of(SYMBOL, heads.collect::<String>(), Role::Quiet);
         let unit = SYMBOL + group.len() * format.cell + 1;
-        let both = group.map(|column| format.aligned(&[adds[column], sums[column]]));
-        let both: Vec<_> = both.collect();
+        let both: Vec<_> = group
+            .map(|column| format.aligned(&[adds[column], sums[column]]))
+            .collect();
         let line = |at: usize, name, role| {
             let line =
                 StepPageLine::of(0, name, Role::Focus).and(SYMBOL, side_by_side(&both, at), role);

@@ -48,10 +48,11 @@ impl StepPageSection {
     /// `text` in as many lines of `width` columns as it takes; those after the first begin in the column `indent`.
     pub fn text(rank: u8, text: &str, width: usize, indent: usize, role: Role) -> Self {
         let lines = wrapped(text, width.saturating_sub(indent)).into_iter();
-        let column = |line: usize| if line == 0 { 0 } else { indent };
-        let lines = lines.enumerate();
-        let lines = lines.map(|(at, text)| StepPageLine::of(column(at), text, role));
-        Self::new(rank, lines.collect())
+        let indented = lines.enumerate().map(|(line, text)| {
+            let column = if line == 0 { 0 } else { indent };
+            StepPageLine::of(column, text, role)
+        });
+        Self::new(rank, indented.collect())
     }
 
     /// The same with an empty line before it where there is room.
@@ -74,10 +75,10 @@ pub fn fit(sections: &mut Vec<StepPageSection>, room: usize) {
 
 /// Puts an empty line before each section that wants one, if `room` holds all of them.
 pub fn spread(sections: &mut [StepPageSection], room: usize) {
-    let height = height(sections);
+    let occupied = height(sections);
     let others = sections.iter_mut().skip(1);
     let apart: Vec<_> = others.filter(|section| section.is_apart).collect();
-    if height + apart.len() <= room {
+    if occupied + apart.len() <= room {
         for section in apart {
             section.lines.insert(0, StepPageLine::default());
         }

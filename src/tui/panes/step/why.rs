@@ -227,10 +227,13 @@ fn from_above(explained: &StepWorkings, view: &View, area: Rect, buf: &mut Buffe
     let origin = Vector2::zeros();
     let mut arrows = vec![(origin, momentum_tip, "L", Role::Z)];
     arrows.extend(torque.map(|torque| (tip, torque * (TORQUE * length), "τ", Role::X)));
-    let change = change.map(|change| change * (CHANGE_ARROW_LENGTH * length));
-    arrows.extend(change.map(|change| (momentum_tip, change, "dL", Role::X)));
-    let corners = arrows.iter().map(|(from, along, ..)| from + along);
-    let corners: Vec<_> = corners.chain([tip]).collect();
+    let change_arrow = change.map(|change| change * (CHANGE_ARROW_LENGTH * length));
+    arrows.extend(change_arrow.map(|change| (momentum_tip, change, "dL", Role::X)));
+    let corners: Vec<_> = arrows
+        .iter()
+        .map(|(from, along, ..)| from + along)
+        .chain([tip])
+        .collect();
     let mut picture = ArrowDiagram::new(area, view, around(&corners), |half| {
         1.3 * half + 0.05 * length
     });
@@ -255,8 +258,11 @@ fn dip(explained: &StepWorkings, is_seen: bool, view: &View, area: Rect, buf: &m
     if area.height < 4 || area.width < 8 {
         return;
     }
-    let way = dip.way_m.iter();
-    let way: Vec<_> = way.map(|(side, down)| Vector2::new(*side, -down)).collect();
+    let way: Vec<_> = dip
+        .way_m
+        .iter()
+        .map(|(side, down)| Vector2::new(*side, -down))
+        .collect();
     let far = way.iter().fold(0.0_f64, |far, at| far.max(at.amax()));
     if far <= DISPLACEMENT_ROUNDING * explained.scenario.arm_m() {
         let still = "it has not moved yet: . takes a step";

@@ -96,8 +96,9 @@ impl SceneSubject<'_> {
             // Shorter than L, in which it would vanish where both lie along the axle.
             arrows.push(("Ω", pivot, along * (OMEGA_ARROW_LENGTH * arm)));
         }
-        let momentum = self.direction("L", direction(&state.momentum));
-        let momentum = momentum.map(|along| along * (MOMENTUM_ARROW_LENGTH * arm));
+        let momentum = self
+            .direction("L", direction(&state.momentum))
+            .map(|along| along * (MOMENTUM_ARROW_LENGTH * arm));
         if let Some(torque) = self.direction("τ", self.torque) {
             arrows.push(("τ", pivot, torque * (TORQUE * reach)));
         }
@@ -146,8 +147,8 @@ impl SceneSubject<'_> {
             let named = arrows.iter().map(|(words, role)| (words[arrows_at], *role));
             let signs = signs_at
                 .into_iter()
-                .flat_map(|at| signs.iter().map(move |sign| (sign, at)));
-            let signs = signs.map(|((words, role), at)| (words[at], *role));
+                .flat_map(|at| signs.iter().map(move |sign| (sign, at)))
+                .map(|((words, role), at)| (words[at], *role));
             let words = named.chain(signs).filter(|(word, _)| !word.is_empty());
             in_lines(words, |(word, _)| word, LEGEND_WORD_GAP, width)
         };
@@ -227,12 +228,12 @@ pub struct StepArrows<'a> {
 impl<'a> StepArrows<'a> {
     /// The phase on the page of the step pane of `view`, if that is on the screen.
     pub fn of(explained: Option<&'a StepWorkings>, view: &View) -> Option<Self> {
-        let explained = explained.filter(|_| view.shows(Pane::Step))?;
-        let (phase, ..) = explained.phase(view.look.phase)?;
+        let shown = explained.filter(|_| view.shows(Pane::Step))?;
+        let (phase, ..) = shown.phase(view.look.phase)?;
         let row = view.look.sum_to.and_then(|rows| rows.checked_sub(1));
         let points = table_of(phase).map(|table| &table.points);
         Some(Self {
-            explained,
+            explained: shown,
             phase,
             point: row
                 .zip(points)

@@ -82,9 +82,9 @@ fn ends(strip: &Strip, width: usize) -> (String, String) {
             exponent(time_s, 3)
         }
     });
-    let end = end + SECONDS_SUFFIX;
-    if begin.len() + end.len() < width {
-        return (begin, end);
+    let end_s = end + SECONDS_SUFFIX;
+    if begin.len() + end_s.len() < width {
+        return (begin, end_s);
     }
     let later = format!("+ {} s", decimal(strip.window_s));
     let whole = begin + SECONDS_SUFFIX;

@@ -98,12 +98,12 @@ impl Traces<'_> {
             let end = (x + WORD.len()).min(pushed.len());
             pushed[x..end].fill(true);
         }
-        let zoomed = zoomed.map(|zoomed| strip.shown(zoomed.begin_s, zoomed.end_s()));
-        let Some(zoomed) = zoomed.filter(|zoomed| !zoomed.is_empty()) else {
+        let dots = zoomed.map(|zoomed| strip.shown(zoomed.begin_s, zoomed.end_s()));
+        let Some(dots) = dots.filter(|dots| !dots.is_empty()) else {
             return;
         };
         let across = self.0.view.marker.dots().0;
-        let cells = zoomed.start / across..(zoomed.end - 1) / across + 1;
+        let cells = dots.start / across..(dots.end - 1) / across + 1;
         let role = StripContent::Curve(self.0.detail.curve).role();
         let style = self.0.view.theme.style(role);
         for x in cells.clone() {

@@ -53,13 +53,13 @@ impl Traces<'_> {
         let measured = self.measured_contents();
         let labels = StripContent::of_every_run()
             .into_iter()
-            .chain(measured.clone());
-        let labels = labels.flat_map(|content| {
-            let scale = self.scale(content, None);
-            let few = axis::values(&scale, 2);
-            few.into_iter()
-                .chain(axis::values(&scale, inside.height.into()))
-        });
+            .chain(measured.clone())
+            .flat_map(|content| {
+                let scale = self.scale(content, None);
+                let few = axis::values(&scale, 2);
+                few.into_iter()
+                    .chain(axis::values(&scale, inside.height.into()))
+            });
         let widest = labels.map(|(_, label)| label.len() as u16).max();
         let names = measured
             .into_iter()
@@ -140,7 +140,7 @@ impl Traces<'_> {
         };
         let first = StripContent::Curve(self.0.detail.curve);
         let measured = self.measured_contents();
-        let mut by_worth = by_worth(&measured, self.0.detail.curve);
+        let mut by_worth = rank_by_worth(&measured, self.0.detail.curve);
         let fast = STRIP.min(least(&first));
         let needed: u16 = if measured.contains(&first) {
             by_worth.iter().map(least).sum()
@@ -187,7 +187,7 @@ impl Traces<'_> {
 }
 
 /// All contents, the most important first: what was `measured`, the curve of the fast motion, and the others.
-fn by_worth(measured: &[StripContent], fast: RecordedCurve) -> Vec<StripContent> {
+fn rank_by_worth(measured: &[StripContent], fast: RecordedCurve) -> Vec<StripContent> {
     let mut contents = measured.to_vec();
     let curves = [
         fast,

@@ -187,10 +187,12 @@ impl Traces<'_> {
             .0
             .measured
             .map_or(0, |beside| beside.quantities().count());
-        let others = (0..quantities).map(StripContent::Measured);
-        let others = others.filter(|content| self.recorded(Whose::Run, *content).is_some());
-        let curves = StripContent::of_every_run().into_iter();
-        let curves = curves.filter(|content| self.index(*content).is_some());
+        let others = (0..quantities)
+            .map(StripContent::Measured)
+            .filter(|content| self.recorded(Whose::Run, *content).is_some());
+        let curves = StripContent::of_every_run()
+            .into_iter()
+            .filter(|content| self.index(*content).is_some());
         curves.chain(others).collect()
     }
 
@@ -250,9 +252,10 @@ impl Traces<'_> {
             StripContent::Measured(_) => self.value_at(plot.content, cursor.time_s),
         };
         let unit = self.named(plot.content).1;
-        let measured = self.measured_at(plot.content, cursor.time_s);
-        let measured = measured.map(|value| format!(", data {}", fixed(value, DECIMALS)));
-        let measured = measured.unwrap_or_default();
+        let measured = self
+            .measured_at(plot.content, cursor.time_s)
+            .map(|value| format!(", data {}", fixed(value, DECIMALS)))
+            .unwrap_or_default();
         let words = value.map(|value| format!("{} {unit}{measured}", fixed(value, DECIMALS)));
         Some((column as u16, words.unwrap_or_default()))
     }
@@ -303,21 +306,21 @@ impl Traces<'_> {
         let recordings = ALL
             .into_iter()
             .filter_map(|whose| self.recorded(whose, content));
-        let extents = recordings.filter_map(|(recording, curve)| match strip {
-            Some(strip) => recording.extent_between(strip.begin_s, strip.end_s(), curve),
-            None => recording.whole().map(|block| block.extent(curve)),
-        });
-        let extents = extents.chain(extent_of(self.points(content), strip));
+        let extents = recordings
+            .filter_map(|(recording, curve)| match strip {
+                Some(strip) => recording.extent_between(strip.begin_s, strip.end_s(), curve),
+                None => recording.whole().map(|block| block.extent(curve)),
+            })
+            .chain(extent_of(self.points(content), strip));
         extents.reduce(Extent::and).unwrap_or(Extent::single(0.0))
     }
 }
 
 /// The range of values that `points` need: those in the time of `strip`, or all.
 fn extent_of(points: Option<&[ComparedPoint]>, strip: Option<&Strip>) -> Option<Extent> {
-    let points = points?
+    points?
         .iter()
-        .filter(|point| strip.is_none_or(|strip| strip.column(point.time_s).is_some()));
-    points
+        .filter(|point| strip.is_none_or(|strip| strip.column(point.time_s).is_some()))
         .map(|point| {
             let sigma = point.sigma.unwrap_or(0.0);
             Extent::single(point.value - sigma).and(Extent::single(point.value + sigma))
@@ -326,9 +329,10 @@ fn extent_of(points: Option<&[ComparedPoint]>, strip: Option<&Strip>) -> Option<
 }
 
 fn residual_scale(points: Option<&[ComparedPoint]>) -> StripScale {
-    let points = points.unwrap_or_default().iter();
     StripScale::about_zero(
         points
+            .unwrap_or_default()
+            .iter()
             .map(|point| point.residual().unwrap_or(0.0).abs() + point.sigma.unwrap_or(0.0))
             .fold(RESIDUAL_LEAST, f64::max),
     )
