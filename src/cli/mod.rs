@@ -38,7 +38,6 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use progress::Interrupted;
 use serde::Serialize;
-use std::ffi::OsString;
 use std::fmt::Display;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -264,14 +263,12 @@ fn misspelt_command() -> Option<String> {
 /// Prints what clap has to say instead of going on: help, or why it takes no such arguments. clap repeats the arguments
 /// as they are: where one holds a character that could steer a terminal, the text is printed escaped and without colours.
 fn misused(error: &clap::Error) -> ExitCode {
+    let is_hostile =
+        std::env::args_os().any(|argument| argument.to_string_lossy().contains(is_steering));
     let text = error.render().to_string();
     let plain = printable_lines(&text);
     let is_help = !error.use_stderr();
-    let printed = match (
-        std::env::args_os()
-            .any(|argument: OsString| argument.to_string_lossy().contains(is_steering)),
-        error.use_stderr(),
-    ) {
+    let printed = match (is_hostile, error.use_stderr()) {
         (false, _) => error.print(),
         (true, true) => io::stderr().write_all(plain.as_bytes()),
         (true, false) => io::stdout().write_all(plain.as_bytes()),

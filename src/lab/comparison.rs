@@ -93,8 +93,8 @@ impl Comparison {
             return;
         }
         let left = Ghost::capture(run);
-        let is_short = |before: &Ghost| left.end_s() < SHORT_RUN_SHARE * before.end_s();
-        if left.end_s() > 0.0 && !self.ghost.as_ref().is_some_and(is_short) {
+        let before_s = self.ghost.as_ref().map_or(0.0, Ghost::end_s);
+        if left.end_s() > 0.0 && left.end_s() >= SHORT_RUN_SHARE * before_s {
             self.ghost = Some(left);
         }
     }
@@ -190,17 +190,16 @@ impl Comparison {
         player: &Player,
         files: &Files,
     ) -> Result<(), Problems> {
-        let named = |scenario: &Scenario| scenario.file.viewed_text("measured").map(str::to_owned);
-        let shown = self.data.as_ref().map(|data| data.name.clone());
-        let wanted = named(player.run().scenario());
-        if wanted == shown || (wanted.is_none() && shown != named(before)) {
+        let shown = self.data.as_ref().map(|data| data.name.as_str());
+        let wanted = player.run().scenario().file.viewed_text("measured");
+        if wanted == shown || (wanted.is_none() && shown != before.file.viewed_text("measured")) {
             return Ok(());
         }
         self.data = None;
         let Some(name) = wanted else {
             return Ok(());
         };
-        self.put_beside(&name, &ColumnOptions::default(), player, files, false)
+        self.put_beside(name, &ColumnOptions::default(), player, files, false)
             .map(drop)
     }
 

@@ -4,7 +4,6 @@ use super::command::{Command, PushChoice};
 use super::edits::{Edited, Edits, ScenarioEdit};
 use super::player::RunChange;
 use super::{ActionResult, Cleared, CommandScript, Done, Lab, Player, comparison};
-use crate::engine::scenario::Scenario;
 use crate::engine::text::printable::printable;
 use std::sync::Arc;
 
@@ -121,8 +120,10 @@ impl Lab {
             .change_run(change, scenario, self.edits.runs.present().end_s);
         self.view.keep_cursor(&self.player);
         self.edits.follow(&self.player);
-        let named = |of: &Scenario| of.file.viewed_text("measured").map(str::to_owned);
-        if change == RunChange::Opens || named(&before) != named(self.player.run().scenario()) {
+        let now = self.player.run().scenario();
+        let names_other_data =
+            before.file.viewed_text("measured") != now.file.viewed_text("measured");
+        if change == RunChange::Opens || names_other_data {
             let (player, files) = (&self.player, &self.files);
             let measured = self.comparison.measure_as_opened(&before, player, files);
             if let Err(problems) = measured {

@@ -96,14 +96,14 @@ fn keep(lab: &mut Lab, lessons: &Lessons, role: &dyn ClassRole, session: Option<
 #[expect(clippy::panic, reason = "it is what the tests ask for")]
 fn panic_if_asked(elapsed: Duration) {
     static ASIDE: std::sync::Once = std::sync::Once::new();
-    let is_time = |name: &str| {
+    fn is_time(name: &str, elapsed: Duration) -> bool {
         let after_ms = std::env::var(name).ok().and_then(|ms| ms.parse().ok());
         after_ms.is_some_and(|ms| elapsed >= Duration::from_millis(ms))
-    };
-    if is_time("GYROLAB_PANIC_AFTER_MS") {
+    }
+    if is_time("GYROLAB_PANIC_AFTER_MS", elapsed) {
         panic!("a panic was asked for");
     }
-    if is_time("GYROLAB_PANIC_ASIDE_AFTER_MS") {
+    if is_time("GYROLAB_PANIC_ASIDE_AFTER_MS", elapsed) {
         ASIDE.call_once(|| drop(std::thread::spawn(|| panic!("a panic was asked for aside"))));
     }
 }

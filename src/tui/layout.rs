@@ -222,11 +222,12 @@ fn asked(view: &View) -> Option<&'static PaneRow> {
 /// The panes that have room beside each other on `width` columns, in the table's order: by their ranks, up to the first
 /// that has none.
 fn panes_with_room(width: u16) -> Vec<&'static PaneRow> {
-    let needed = |row: &PaneRow| -> u16 {
-        let before = usual().filter(|other| other.rank <= row.rank);
-        before.map(|other| other.least.0).sum()
-    };
-    usual().filter(|row| needed(row) <= width).collect()
+    usual()
+        .filter(|row| {
+            let before = usual().filter(|other| other.rank <= row.rank);
+            before.map(|other| other.least.0).sum::<u16>() <= width
+        })
+        .collect()
 }
 
 /// The pane of the first rank, and beside it the pane in focus, or else the pane of the second rank.
@@ -310,14 +311,16 @@ fn side_by_side(area: Rect, panes: &[&PaneRow], share: u16, rest: usize) -> Vec<
 
 /// All of `rows` side by side. Where the screen is high enough, two round ones stand one above the other.
 fn columns(area: Rect, rows: &[&PaneRow]) -> Vec<(Pane, Rect)> {
-    let of = |width| rows.iter().filter(move |row| row.width == width);
-    let (rounds, wides) = (
-        of(Width::Round).count() as u16,
-        of(Width::Wide).count() as u16,
-    );
-    let rest = area.width - of(Width::Fixed).map(|row| row.least.0).sum::<u16>();
-    let is_stacked =
-        rounds == 2 && area.height >= of(Width::Round).map(|row| row.least.1).sum::<u16>();
+    let (mut rounds, mut wides, mut fixed_columns, mut round_rows) = (0, 0, 0, 0);
+    for row in rows {
+        match row.width {
+            Width::Round => (rounds, round_rows) = (rounds + 1, round_rows + row.least.1),
+            Width::Wide => wides += 1,
+            Width::Fixed => fixed_columns += row.least.0,
+        }
+    }
+    let rest = area.width - fixed_columns;
+    let is_stacked = rounds == 2 && area.height >= round_rows;
     let (round_columns, widest) = if is_stacked {
         (1, area.height * 5 / 4)
     } else {
@@ -327,10 +330,12 @@ fn columns(area: Rect, rows: &[&PaneRow]) -> Vec<(Pane, Rect)> {
     let wide = (rest - round * round_columns) / wides.max(1);
     let mut right = area;
     let mut below = None;
-    let place = |row: &&PaneRow| {
+    let mut places = Vec::with_capacity(rows.len());
+    for row in rows {
         let is_round = row.width == Width::Round;
-        if let Some(place) = below.take().filter(|_| is_round) {
-            return (row.id, place);
+        if let Some(place) = below.take_if(|_| is_round) {
+            places.push((row.id, place));
+            continue;
         }
         let width = match row.width {
             Width::Wide => wide,
@@ -339,12 +344,13 @@ fn columns(area: Rect, rows: &[&PaneRow]) -> Vec<(Pane, Rect)> {
         };
         let [column, others] = split_columns(right, width);
         right = others;
-        if !is_round || !is_stacked {
-            return (row.id, column);
+        if is_round && is_stacked {
+            let [upper, lower] = split_rows(column, column.height / 2);
+            below = Some(lower);
+            places.push((row.id, upper));
+        } else {
+            places.push((row.id, column));
         }
-        let [upper, lower] = split_rows(column, column.height / 2);
-        below = Some(lower);
-        (row.id, upper)
-    };
-    rows.iter().map(place).collect()
+    }
+    places
 }

@@ -120,10 +120,10 @@ impl Pointer {
                 }
             }
             Some(Held::Camera(from)) => {
-                let moved = |from: u16, to: u16| f64::from(to) - f64::from(from);
                 let mut camera = lab.view().camera;
-                let yaw_deg = -DEGREES_A_COLUMN * moved(from.x, at.x);
-                camera.turn(yaw_deg, DEGREES_A_ROW * moved(from.y, at.y));
+                let yaw_deg = DEGREES_A_COLUMN * (f64::from(from.x) - f64::from(at.x));
+                let pitch_deg = DEGREES_A_ROW * (f64::from(at.y) - f64::from(from.y));
+                camera.turn(yaw_deg, pitch_deg);
                 self.held = Some(Held::Camera(at));
                 lab.carry_out_now(&Command::look("camera", camera));
             }
@@ -156,9 +156,12 @@ fn press_in_browser(layout: &ScreenLayout, at: Position, lab: &mut Lab) -> Optio
 }
 
 fn wheel(layout: &ScreenLayout, at: Position, up: bool, lab: &mut Lab) -> Option<LabRequest> {
-    let choose = |if_up, if_down| if up { if_up } else { if_down };
-    let lines = choose(Direction::Up, Direction::Down);
-    let lines = KeyEffect::Action(Action::Move(lines, 1));
+    let (line, page) = if up {
+        (Direction::Up, Direction::PageUp)
+    } else {
+        (Direction::Down, Direction::PageDown)
+    };
+    let lines = KeyEffect::Action(Action::Move(line, 1));
     if lab.popups().mode != Mode::Lab {
         for _ in 0..LINES {
             lines.carry_out(lab);
@@ -171,10 +174,7 @@ fn wheel(layout: &ScreenLayout, at: Position, up: bool, lab: &mut Lab) -> Option
         Pane::Traces => KeyEffect::Commands(wider),
         Pane::Above | Pane::ThreeD if up => KeyEffect::Commands(zoomed_in),
         Pane::Above | Pane::ThreeD => KeyEffect::Commands(zoomed_out),
-        Pane::Lesson => {
-            let page = choose(Direction::PageUp, Direction::PageDown);
-            KeyEffect::Action(Action::Lesson(LessonKey::Move(page)))
-        }
+        Pane::Lesson => KeyEffect::Action(Action::Lesson(LessonKey::Move(page))),
         _ if lab.view().focus == pane => lines,
         _ => return None,
     };

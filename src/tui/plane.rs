@@ -62,10 +62,10 @@ impl Plane {
     /// The cell of a place, or the one at the edge that is nearest to it.
     pub fn cell(&self, at: (f64, f64)) -> (u16, u16) {
         let (x, y) = self.dot(at);
-        let inside = |dot: f64, dots: usize| dot.clamp(0.0, dots.saturating_sub(1) as f64);
+        let (width, height) = (self.size.0 as f64, self.size.1 as f64);
         (
-            (inside(x, self.size.0) / self.in_cell.0 as f64) as u16,
-            (inside(y, self.size.1) / self.in_cell.1 as f64) as u16,
+            (x.clamp(0.0, (width - 1.0).max(0.0)) / self.in_cell.0 as f64) as u16,
+            (y.clamp(0.0, (height - 1.0).max(0.0)) / self.in_cell.1 as f64) as u16,
         )
     }
 

@@ -90,13 +90,13 @@ impl Points {
         role: Role,
     ) {
         let (begin, end) = (begin.min(end).floor(), begin.max(end).floor());
-        let inside = |cell: f64| cell.clamp(0.0, f64::from(cells) - 1.0);
+        let last_cell = f64::from(cells) - 1.0;
         let shown = [begin, end, middle.floor()];
         if shown.iter().any(|cell| cell.is_nan()) || end < 0.0 || begin >= f64::from(cells) {
             return;
         }
-        let mut cell = inside(begin);
-        while cell <= inside(end) {
+        let mut cell = begin.clamp(0.0, last_cell);
+        while cell <= end.clamp(0.0, last_cell) {
             let sign = match cell {
                 _ if cell == begin && begin < middle.floor() => CellSign::End(first),
                 _ if cell == end && end > middle.floor() => CellSign::End(last),

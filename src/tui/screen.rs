@@ -147,16 +147,20 @@ pub fn text(lab: &Lab, keys: bool, (width, height): (u16, u16)) -> String {
     let area = Rect::new(0, 0, width, height);
     let mut buf = Buffer::empty(area);
     draw(lab, keys, area, &mut buf);
-    let line = |y: u16| {
-        let (mut line, mut x) = (String::new(), area.left());
-        while let Some(cell) = buf.cell((x, y)).filter(|_| x < area.right()) {
-            line += cell.symbol();
-            // The cell behind a wide character is a part of it.
-            x += columns(cell.symbol()).max(1) as u16;
-        }
-        line.trim_end().to_owned() + "\n"
-    };
-    (area.top()..area.bottom()).map(line).collect()
+    (area.top()..area.bottom())
+        .map(|y| line_of(&buf, y))
+        .collect()
+}
+
+/// The text in the line `y` of `buf`, without blanks at its end.
+fn line_of(buf: &Buffer, y: u16) -> String {
+    let (mut line, mut x) = (String::new(), buf.area.left());
+    while let Some(cell) = buf.cell((x, y)).filter(|_| x < buf.area.right()) {
+        line += cell.symbol();
+        // The cell behind a wide character is a part of it.
+        x += columns(cell.symbol()).max(1) as u16;
+    }
+    line.trim_end().to_owned() + "\n"
 }
 
 /// The lab drawn without a terminal, as the bytes that a terminal would be sent.

@@ -40,14 +40,18 @@ pub fn svg(lab: &Lab, (columns, lines): (u16, u16), background: Background) -> S
         paper[1]
     );
     for y in 0..lines {
-        let cell = |x: u16| Some((u32::from(x) * CELL_WIDTH_PX, buf.cell((x, y))?));
-        let row: Vec<(u32, &Cell)> = (0..columns).filter_map(cell).collect();
-        let look = |cell: &Cell| (mark(cell), cell.fg, cell.bg, cell.modifier);
-        for run in row.chunk_by(|a, b| look(a.1) == look(b.1)) {
+        let row: Vec<(u32, &Cell)> = (0..columns)
+            .filter_map(|x| Some((u32::from(x) * CELL_WIDTH_PX, buf.cell((x, y))?)))
+            .collect();
+        for run in row.chunk_by(|a, b| look_of(a.1) == look_of(b.1)) {
             put(&mut out, run, u32::from(y) * HEIGHT, paper);
         }
     }
     out + "</svg>\n"
+}
+
+fn look_of(cell: &Cell) -> (CellMark, Color, Color, Modifier) {
+    (mark(cell), cell.fg, cell.bg, cell.modifier)
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -80,9 +84,16 @@ fn put(out: &mut String, cells: &[(u32, &Cell)], top: u32, paper: [&'static str;
         *out +=
             &format!("<path fill=\"{ground}\" d=\"M{left} {top}h{width}v{HEIGHT}h-{width}z\"/>\n");
     }
-    let has = |modifier| usize::from(first.modifier.contains(modifier));
-    let dim = ["", " opacity=\".65\""][has(Modifier::DIM)];
-    let bold = ["", " font-weight=\"bold\""][has(Modifier::BOLD)];
+    let dim = if first.modifier.contains(Modifier::DIM) {
+        " opacity=\".65\""
+    } else {
+        ""
+    };
+    let bold = if first.modifier.contains(Modifier::BOLD) {
+        " font-weight=\"bold\""
+    } else {
+        ""
+    };
     match mark(first) {
         CellMark::Blank => {}
         CellMark::Dots => {

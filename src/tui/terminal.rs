@@ -168,7 +168,6 @@ impl Screen {
     pub fn suspend(&mut self, whole_job: bool) -> io::Result<()> {
         let begin = Instant::now();
         at_exit::run_hooks(Release::Suspend);
-        let is_resumed = || LAST_JOB_SIGNAL.load(Ordering::SeqCst) == RESUMED;
         while !is_resumed() && begin.elapsed() < CANCELED_WITHIN {
             thread::sleep(Duration::from_millis(1));
         }
@@ -290,6 +289,11 @@ fn print_panics() {
 }
 
 /// Gives the terminal back, once. Errors are ignored, because there is no place left to report them.
+/// Whether the last signal about the job was SIGCONT.
+fn is_resumed() -> bool {
+    LAST_JOB_SIGNAL.load(Ordering::SeqCst) == RESUMED
+}
+
 fn give_back() {
     if !ENTERED.swap(false, Ordering::SeqCst) {
         return;

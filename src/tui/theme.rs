@@ -70,19 +70,21 @@ fn modifier(role: Role) -> Modifier {
 }
 
 fn colour(role: Role, background: Background) -> Color {
-    let dark = background == Background::Dark;
-    let choose = |on_dark, on_light| if dark { on_dark } else { on_light };
-    match role {
-        Role::X => choose(Color::Cyan, Color::Blue),
-        Role::Y => choose(Color::Yellow, Color::Red),
+    let (on_dark, on_light) = match role {
+        Role::X => (Color::Cyan, Color::Blue),
+        Role::Y => (Color::Yellow, Color::Red),
         // Cyan and green are too pale on a light screen, and the 16 colours have no darker ones.
-        Role::Z => choose(Color::Magenta, Color::Indexed(DARK_CYAN)),
+        Role::Z => (Color::Magenta, Color::Indexed(DARK_CYAN)),
         // No curve, push or warning has the colour of the exact motion.
-        Role::Exact => choose(Color::LightRed, Color::Magenta),
-        Role::Warning => choose(Color::LightYellow, Color::Red),
-        Role::Push => choose(Color::Green, Color::Indexed(DARK_GREEN)),
-        Role::Focus | Role::Track | Role::OldTrack => choose(Color::LightBlue, Color::Blue),
-        _ => Color::Reset,
+        Role::Exact => (Color::LightRed, Color::Magenta),
+        Role::Warning => (Color::LightYellow, Color::Red),
+        Role::Push => (Color::Green, Color::Indexed(DARK_GREEN)),
+        Role::Focus | Role::Track | Role::OldTrack => (Color::LightBlue, Color::Blue),
+        _ => (Color::Reset, Color::Reset),
+    };
+    match background {
+        Background::Dark => on_dark,
+        Background::Light => on_light,
     }
 }
 

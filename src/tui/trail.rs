@@ -137,8 +137,9 @@ impl Trail {
     /// is to be seen through it, on many of the dots near it.
     fn is_covered(&self, x: usize, y: usize) -> bool {
         if self.around == Around::Body {
-            let near = |at: usize| at.saturating_sub(NEAR_DOTS)..=at + NEAR_DOTS;
-            let dots = near(y).flat_map(|y| near(x).map(move |x| (x, y)));
+            let columns = x.saturating_sub(NEAR_DOTS)..=x + NEAR_DOTS;
+            let rows = y.saturating_sub(NEAR_DOTS)..=y + NEAR_DOTS;
+            let dots = rows.flat_map(|y| columns.clone().map(move |x| (x, y)));
             return dots.filter(|&(x, y)| self.age(x, y).is_some()).count() >= CROWD;
         }
         let (left, above) = (x.wrapping_sub(1), y.wrapping_sub(1));
@@ -147,9 +148,13 @@ impl Trail {
     }
 
     fn is_beside_recent(&self, x: usize, y: usize) -> bool {
-        let near = |at: usize| [at.wrapping_sub(1), at, at + 1];
-        let mut around = near(y).into_iter().flat_map(|y| near(x).map(|x| (x, y)));
-        around.any(|(x, y)| self.age(x, y) == Some(Age::Recent))
+        let columns = [x.wrapping_sub(1), x, x + 1];
+        let rows = [y.wrapping_sub(1), y, y + 1];
+        rows.iter().any(|y| {
+            columns
+                .iter()
+                .any(|x| self.age(*x, *y) == Some(Age::Recent))
+        })
     }
 
     pub fn draw(&self, dots: &mut Dots) {

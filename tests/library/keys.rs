@@ -5,7 +5,7 @@ use crate::support::words::has;
 use gyrolab::lab::Mode;
 use gyrolab::tui::keymap::{BINDINGS, Key};
 use gyrolab::tui::panes;
-use gyrolab::tui::panes::help::{HelpEntry, found};
+use gyrolab::tui::panes::help::{HelpEntry, find_entries};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -102,7 +102,7 @@ fn the_help_finds_keys_by_words_that_are_not_theirs() {
         ("kick", "p"),
         ("screenshot", "X"),
     ] {
-        let names: Vec<_> = found(search).iter().map(HelpEntry::name).collect();
+        let names: Vec<_> = find_entries(search).iter().map(HelpEntry::name).collect();
         let is_found = names.iter().any(|name| name.starts_with(key));
         assert!(is_found, "{search}: {names:?}");
     }

@@ -33,16 +33,19 @@ impl View {
     ) -> ActionResult {
         let look = self.look.patched(patch)?;
         let least_s = 2.0 * player.motion().time_step_s;
-        let short = |what| Err(format!("the {what} two time steps at least: {least_s} s").into());
         let mut said = None;
         for key in patch.keys() {
             said = match key.as_str() {
-                "window_s" if look.window_s < least_s => return short("traces show"),
+                "window_s" if look.window_s < least_s => {
+                    return too_short("traces show", least_s);
+                }
                 "window_s" => Some(format!(
                     "the traces show {} s; Home shows the usual time",
                     look.window_s
                 )),
-                "detail_s" if look.detail_s < Some(least_s) => return short("strip shows"),
+                "detail_s" if look.detail_s < Some(least_s) => {
+                    return too_short("strip shows", least_s);
+                }
                 "detail_s" => look
                     .detail_s
                     .map(|detail_s| format!("the strip of the fast motion shows {detail_s} s")),
@@ -85,17 +88,15 @@ impl View {
     pub(in crate::lab) fn set_cursor(&mut self, to: CursorTo, player: &Player) -> ActionResult {
         let run = player.run();
         let here = self.cursor_or_here(player);
-        let turn = |forward| {
-            let found = lookup::turn(run, here, forward);
-            found.map(Some).map_err(|missing| missing.to_string())
-        };
         let target = match to {
             CursorTo::Mark => return self.mark_turn(player),
             CursorTo::Nowhere => None,
             CursorTo::Place(SeekTarget::End) => Some(run.furthest()),
             CursorTo::Place(place) => Some(player.step_of(place)?),
-            CursorTo::NextTurn => turn(true)?,
-            CursorTo::TurnBefore => turn(false)?,
+            CursorTo::NextTurn | CursorTo::TurnBefore => {
+                let turn = lookup::turn(run, here, to == CursorTo::NextTurn);
+                Some(turn.map_err(|missing| missing.to_string())?)
+            }
         };
         let step = target.map(|step| step.min(run.furthest()));
         if let Some(step) = step {
@@ -264,12 +265,16 @@ impl View {
 
     /// The commands that fill the screen with the 3-D view, or show all panes again, with the page or the traces in focus.
     pub fn three_d_toggled(&self) -> Vec<Command> {
-        let fill = |pane| Command::Fill(Some(pane));
         if !self.is_filled_by(Pane::ThreeD) {
-            return vec![fill(Pane::ThreeD)];
+            return vec![Command::Fill(Some(Pane::ThreeD))];
         }
         let has_page = self.may_show(Pane::Lesson);
         let next = if has_page { Pane::Lesson } else { Pane::Traces };
-        vec![fill(next), Command::Fill(None)]
+        vec![Command::Fill(Some(next)), Command::Fill(None)]
     }
+}
+
+/// Refuses a length of time that is less than two time steps.
+fn too_short(what: &str, least_s: f64) -> ActionResult {
+    Err(format!("the {what} two time steps at least: {least_s} s").into())
 }

@@ -38,16 +38,9 @@ impl View {
     /// The panes that can have the focus: those side by side on the screen, or every pane that may be shown where the
     /// screen holds one or two at a time.
     fn focusable(&self) -> Vec<Pane> {
-        let among = |panes: &[Pane]| {
-            panes
-                .iter()
-                .copied()
-                .filter(|pane| self.may_show(*pane) || self.is_filled_by(*pane))
-                .collect()
-        };
         if !self.filled && self.side_by_side.len() > 2 {
             // A pane that was hidden since the screen was last fitted is still in this list.
-            let mut panes: Vec<_> = among(&self.side_by_side);
+            let mut panes = self.shown_among(&self.side_by_side);
             if !panes.is_empty() {
                 // A page that has just been opened is not in the list yet.
                 if self.may_show(Pane::Lesson) && !panes.contains(&Pane::Lesson) {
@@ -56,7 +49,16 @@ impl View {
                 return panes;
             }
         }
-        among(&Pane::ALL)
+        self.shown_among(&Pane::ALL)
+    }
+
+    /// Returns those of `panes` that may be shown, or fill the screen.
+    fn shown_among(&self, panes: &[Pane]) -> Vec<Pane> {
+        panes
+            .iter()
+            .copied()
+            .filter(|pane| self.may_show(*pane) || self.is_filled_by(*pane))
+            .collect()
     }
 
     /// Moves the focus to the next pane that can have it, or to the one before; after the last comes the first.

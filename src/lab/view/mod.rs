@@ -173,10 +173,10 @@ impl View {
             return false;
         }
         let before = self.sheet.take();
-        let is_same = |(before, sheet): (Arc<Sheet>, &Sheet)| {
+        let is_same = before.zip(sheet.as_ref()).is_some_and(|(before, sheet)| {
             before.title == sheet.title && before.seen == sheet.seen
-        };
-        if !before.zip(sheet.as_ref()).is_some_and(is_same) {
+        });
+        if !is_same {
             self.sheet_scrolled = None;
         }
         self.sheet = sheet.map(Arc::new);
@@ -263,12 +263,16 @@ impl View {
     /// The time that the traces show of the run of `scenario` while none is chosen by hand, s.
     pub fn usual_window_s(&self, scenario: &Scenario) -> f64 {
         let file = &scenario.file;
-        let number = |key| file.viewed(key).and_then(Value::as_float);
+        let window_s = file.viewed("window_s").and_then(Value::as_float);
         // The whole run, or what of it is played in two minutes.
-        number("window_s").unwrap_or_else(|| {
-            let speed = number("speed").unwrap_or(keys::DEFAULT_SPEED);
-            let window_s = Clock::end_s(scenario).min(LONGEST_SWEEP_S * speed);
-            window_s.max(2.0 * scenario.motion.time_step_s)
+        window_s.unwrap_or_else(|| {
+            let speed = file
+                .viewed("speed")
+                .and_then(Value::as_float)
+                .unwrap_or(keys::DEFAULT_SPEED);
+            Clock::end_s(scenario)
+                .min(LONGEST_SWEEP_S * speed)
+                .max(2.0 * scenario.motion.time_step_s)
         })
     }
 

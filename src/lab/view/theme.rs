@@ -19,12 +19,15 @@ impl Marker {
 
     /// Whether a terminal can show it that can show `other`: Braille needs most, then half blocks and points, then ASCII.
     pub fn needs_no_more_than(self, other: Self) -> bool {
-        let need = |marker: Self| match marker {
+        self.need() <= other.need()
+    }
+
+    fn need(self) -> u8 {
+        match self {
             Self::Braille => 2,
             Self::HalfBlock | Self::Dot => 1,
             Self::Ascii => 0,
-        };
-        need(self) <= need(other)
+        }
     }
 
     pub fn name(self) -> &'static str {

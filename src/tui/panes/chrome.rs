@@ -99,8 +99,10 @@ pub fn health(lab: &Lab, area: Rect, buf: &mut Buffer) {
         };
         shown.insert(BEFORE_OFFER.min(shown.len()), offer);
     }
-    let length = |text: &String| columns(text) + columns(SEPARATOR);
-    let whole: usize = shown.iter().map(|remark| length(&remark.long)).sum();
+    let whole: usize = shown
+        .iter()
+        .map(|remark| columns(&remark.long) + columns(SEPARATOR))
+        .sum();
     let mut x = 1;
     for remark in &shown {
         let text = if whole <= area.width as usize {
@@ -108,7 +110,7 @@ pub fn health(lab: &Lab, area: Rect, buf: &mut Buffer) {
         } else {
             &remark.short
         };
-        if x > 1 && x as usize + length(text) > area.width as usize {
+        if x > 1 && x as usize + columns(text) + columns(SEPARATOR) > area.width as usize {
             return;
         }
         if x > 1 {
@@ -188,16 +190,16 @@ fn fitted(mut items: Vec<FooterItem>, width: u16) -> (Vec<FooterItem>, u16) {
         }
         let others = &items[..items.len() - 2]; // the last two are help and quit
         let least = others.iter().map(|item| item.worth).min();
-        let last = |is_it: &dyn Fn(&FooterItem) -> bool| others.iter().rposition(is_it);
-        let has_spare_word =
-            |item: &FooterItem| item.worth < FooterPriority::Own && !item.word.is_empty();
-        if gap > 1 && least > Some(FooterPriority::Spare) {
+        let has_spare = least == Some(FooterPriority::Spare);
+        let last_word = others
+            .iter()
+            .rposition(|item| item.worth < FooterPriority::Own && !item.word.is_empty());
+        let last_least = others.iter().rposition(|item| Some(item.worth) == least);
+        if gap > 1 && least.is_some() && !has_spare {
             gap = 1;
-        } else if let Some(word) =
-            last(&has_spare_word).filter(|_| least > Some(FooterPriority::Spare))
-        {
+        } else if let Some(word) = last_word.filter(|_| !has_spare) {
             items[word].word = "";
-        } else if let Some(key) = last(&|item| Some(item.worth) == least) {
+        } else if let Some(key) = last_least {
             items.remove(key);
         }
     }

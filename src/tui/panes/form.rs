@@ -91,14 +91,19 @@ impl FormPane<'_> {
         let mut lines: Vec<_> = fields
             .map(|(at, field)| FormLine::Field(at, field))
             .collect();
-        let quiet = |text: &str| FormLine::Text(text.to_owned(), Role::Quiet);
-        lines.extend(info.iter().map(|text| quiet(text)));
+        lines.extend(
+            info.into_iter()
+                .map(|text| FormLine::Text(text, Role::Quiet)),
+        );
         lines.extend(
             complaint
                 .into_iter()
                 .map(|text| FormLine::Text(text, Role::Warning)),
         );
-        lines.extend(keys.iter().map(|text| quiet(text)));
+        lines.extend(
+            keys.into_iter()
+                .map(|text| FormLine::Text(text, Role::Quiet)),
+        );
         lines
     }
 

@@ -73,11 +73,10 @@ impl Widget for FromAbove<'_> {
         let Some(inside) = round_frame(&FROM_ABOVE_ROW, zoom, &self.0, area, buf) else {
             return;
         };
-        let without = |lines: usize| split_rows(inside, inside.height - lines as u16);
         let most = (inside.height / ROWS_A_LINE).clamp(1, MOST_LEGEND_LINES) as usize;
-        let (plane, _) = self.plane(without(1)[0]);
+        let (plane, _) = self.plane(split_rows(inside, inside.height - 1)[0]);
         let lines = self.legend(&plane, inside.width.into(), most).len();
-        let [picture, legend] = without(lines);
+        let [picture, legend] = split_rows(inside, inside.height - lines as u16);
         let (plane, radius_m) = self.plane(picture);
         self.path(&plane, picture, buf);
         self.points(&plane, picture, buf);

@@ -106,9 +106,14 @@ struct HelpLine {
 /// The first of `lines` that is shown on `height` lines, so that the entry `selected` is in the middle where it can be,
 /// and its first line is always shown.
 fn first_shown(lines: &[HelpLine], selected: usize, height: usize) -> usize {
-    let of_it = |line: &HelpLine| line.entry == Some(selected);
-    let begin = lines.iter().position(of_it).unwrap_or(0);
-    let length = lines.iter().filter(|line| of_it(line)).count();
+    let mut entries = lines.iter().map(|line| line.entry);
+    let length = entries
+        .clone()
+        .filter(|entry| *entry == Some(selected))
+        .count();
+    let begin = entries
+        .position(|entry| entry == Some(selected))
+        .unwrap_or(0);
     let above = height.saturating_sub(length) / 2;
     let most = lines.len().saturating_sub(height);
     begin.saturating_sub(above).min(most)
@@ -290,9 +295,8 @@ pub fn find_entries(search: &str) -> Vec<HelpEntry> {
         return found;
     }
     let lower = search.to_lowercase();
-    let rank = |entry: &HelpEntry| entry.answers(search, &lower);
-    found.retain(|entry| rank(entry).is_some());
-    found.sort_by_key(rank); // stable: among equals the order of the groups
+    found.retain(|entry| entry.answers(search, &lower).is_some());
+    found.sort_by_key(|entry| entry.answers(search, &lower)); // stable: among equals the order of the groups
     found
 }
 

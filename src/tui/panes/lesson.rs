@@ -166,12 +166,12 @@ impl ScrolledPage {
 
 /// Whether an empty line stands between two paragraphs.
 fn are_apart(before: &SheetLineKind, after: &SheetLineKind) -> bool {
-    let is_list = |kind: &SheetLineKind| {
+    fn is_list(kind: &SheetLineKind) -> bool {
         matches!(
             kind,
             SheetLineKind::Item { .. } | SheetLineKind::Choice { .. }
         )
-    };
+    }
     match (before, after) {
         (SheetLineKind::Goal { .. }, SheetLineKind::Goal { .. })
         | (SheetLineKind::Question, SheetLineKind::Choice { .. }) => false,
@@ -181,7 +181,9 @@ fn are_apart(before: &SheetLineKind, after: &SheetLineKind) -> bool {
 
 /// What stands before a paragraph's first line, and the look of its words.
 fn dressed(kind: &SheetLineKind) -> (String, u16, Role) {
-    let plain = |mark: &str, role| (mark.to_owned(), 0, role);
+    fn plain(mark: &str, role: Role) -> (String, u16, Role) {
+        (mark.to_owned(), 0, role)
+    }
     match kind {
         SheetLineKind::Heading => plain("", Role::Heading),
         SheetLineKind::Text => plain("", Role::Text),

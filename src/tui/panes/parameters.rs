@@ -443,10 +443,13 @@ fn without_dashes(mut lines: Vec<ParameterLine>) -> Vec<ParameterLine> {
 
 /// No heading stands alone.
 fn without_empty_groups(lines: Vec<ParameterLine>) -> Vec<ParameterLine> {
-    let alone = |index: usize| {
-        lines[index].is_heading() && lines.get(index + 1).is_none_or(ParameterLine::is_heading)
-    };
-    let keep: Vec<bool> = (0..lines.len()).map(|index| !alone(index)).collect();
-    let kept = lines.into_iter().zip(keep).filter(|&(_, keep)| keep);
-    kept.map(|(line, _)| line).collect()
+    let mut kept: Vec<ParameterLine> = Vec::with_capacity(lines.len());
+    for line in lines {
+        if line.is_heading() {
+            kept.pop_if(|last| last.is_heading());
+        }
+        kept.push(line);
+    }
+    kept.pop_if(|last| last.is_heading());
+    kept
 }

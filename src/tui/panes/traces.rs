@@ -256,7 +256,6 @@ impl Traces<'_> {
         let end = all.partition_point(|point| point.time_s <= strip.end_s());
         let across = self.0.view.marker.dots().0;
         let height = f64::from(sheet.height);
-        let row = |value: f64| plot.scale.from_top(value) * height;
         let mut points = Points::new(sheet, self.0.view.marker);
         for point in &all[begin..end.max(begin)] {
             let value = if plot.is_residual {
@@ -273,15 +272,16 @@ impl Traces<'_> {
                 Role::Quiet
             };
             // The lowest value stands on the last row.
-            let at = row(value);
+            let at = plot.scale.from_top(value) * height;
             let at = if at == height { at - 1.0 } else { at };
             let at = ((column / across) as f64, at);
             points.add(
                 at,
                 None,
-                point
-                    .sigma
-                    .map(|sigma| -> Ends { (row(value + sigma), row(value - sigma)) }),
+                point.sigma.map(|sigma| -> Ends {
+                    let ends = [value + sigma, value - sigma];
+                    ends.map(|end| plot.scale.from_top(end) * height).into()
+                }),
                 role,
             );
         }

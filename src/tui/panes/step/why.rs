@@ -72,10 +72,11 @@ fn reason(explained: &StepWorkings) -> &'static str {
         return NO_TORQUE_TEXT;
     };
     let loads = &part.loads;
-    let is_down = |force: &nalgebra::Vector3<f64>| force.xy() == Vector2::zeros() && force.z <= 0.0;
+    let mut forces = loads.pushes.iter().map(|push| push.force);
+    let are_down = forces.all(|force| force.xy() == Vector2::zeros() && force.z <= 0.0);
     if !loads.friction.is_none() {
         FRICTION_TORQUE_TEXT
-    } else if loads.gravity >= 0.0 && loads.pushes.iter().all(|push| is_down(&push.force)) {
+    } else if loads.gravity >= 0.0 && are_down {
         DOWNWARD_FORCES_TEXT
     } else {
         ANY

@@ -84,7 +84,9 @@ impl SceneSubject<'_> {
         let (state, loads) = (self.state, self.seen.run.simulation().loads());
         let body = &self.seen.run.scenario().body.mechanics;
         let (reach, arm) = (self.reach, self.arm);
-        let direction = |vector: &Vector3<f64>| vector.try_normalize(f64::MIN_POSITIVE);
+        fn direction(vector: &Vector3<f64>) -> Option<Vector3<f64>> {
+            vector.try_normalize(f64::MIN_POSITIVE)
+        }
         let pivot = Vector3::zeros();
         let mut arrows = Vec::new();
         if let Some(down) = direction(&(Vector3::z() * -loads.gravity)) {

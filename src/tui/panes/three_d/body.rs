@@ -52,16 +52,19 @@ impl DrawnBody {
         let after = scenario.file.body.rim_points();
         let count = scenario.file.body.point.len().min(MOST_FREE);
         let free: Vec<_> = points.iter().skip(after).take(count).collect();
-        let corner = |at: &Vector3<f64>| (at.xy().norm(), at.z);
         let of_rim = rim.iter().map(|rim| (rim.radius_m, rim.height_m));
         let mut corners: Vec<_> = of_rim.collect();
-        corners.extend(free.iter().map(|point| corner(&point.at)));
-        corners.push(corner(&points[scenario.trace].at));
+        let traced = &points[scenario.trace];
+        let single = free.iter().copied().chain([traced]);
+        corners.extend(single.map(|point| (point.at.xy().norm(), point.at.z)));
         let parts = scenario.body.parts.iter().take(MOST_PARTS);
         let solids: Vec<_> = parts.map(Solid::of).collect();
         corners.extend(solids.iter().flat_map(Solid::corners));
-        let heights = || corners.iter().map(|(_, height)| *height);
-        let axle = (heights().fold(0.0, f64::min), heights().fold(0.0, f64::max));
+        let heights = corners.iter().map(|(_, height)| *height);
+        let axle = (
+            heights.clone().fold(0.0, f64::min),
+            heights.fold(0.0, f64::max),
+        );
         let has_mass = free.iter().filter(|point| point.mass > 0.0);
         Self {
             rim,
@@ -130,10 +133,11 @@ impl Solid {
 
     /// Distance from the axle and height of the two ends of the cylinder about the axle in which it lies.
     fn corners(&self) -> [(f64, f64); 2] {
-        let points = || self.lines.iter().flat_map(|line| &line.points);
-        let across = points().map(|at| at.xy().norm()).fold(0.0, f64::max);
-        let lowest = points().map(|at| at.z).fold(f64::INFINITY, f64::min);
-        let highest = points().map(|at| at.z).fold(f64::NEG_INFINITY, f64::max);
+        let (mut across, mut lowest, mut highest) = (0.0_f64, f64::INFINITY, f64::NEG_INFINITY);
+        for at in self.lines.iter().flat_map(|line| &line.points) {
+            across = across.max(at.xy().norm());
+            (lowest, highest) = (lowest.min(at.z), highest.max(at.z));
+        }
         [(across, lowest), (across, highest)]
     }
 }

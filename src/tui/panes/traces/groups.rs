@@ -105,15 +105,16 @@ impl Traces<'_> {
         let all: u16 = contents.iter().map(|content| self.weight(*content)).sum();
         let (share, mut spare) = (rows / all.max(1), rows % all.max(1));
         let mut rest = area;
-        let place = |&content: &StripContent| {
+        let mut places = Vec::with_capacity(contents.len());
+        for &content in contents {
             let weight = self.weight(content);
             let more = spare.min(weight);
             spare -= more;
             let [place, below] = split_rows(rest, share * weight + more);
             rest = below;
-            (content, place)
-        };
-        contents.iter().map(place).collect()
+            places.push((content, place));
+        }
+        places
     }
 
     fn weight(&self, content: StripContent) -> u16 {

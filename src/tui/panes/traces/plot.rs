@@ -6,7 +6,6 @@ use crate::engine::data::compared::ComparedPoint;
 use crate::engine::recording::{Extent, RecordedCurve, Recording};
 use crate::engine::text::number::fixed;
 use crate::lab::comparison::DataComparison;
-use crate::lab::playback::ghost::Ghost;
 use crate::lab::playback::marks::Marks;
 use crate::lab::playback::scale::StripScale;
 use crate::lab::playback::strip::{PlacedBins, Strip, StripColumn};
@@ -61,11 +60,12 @@ pub(super) struct Plot {
 impl Traces<'_> {
     /// The strips of `group`, with `beside` columns for their values, or else a line above each.
     pub(super) fn plots(&self, group: &Group, beside: u16, marks: &Marks) -> Vec<Plot> {
-        let plot = |&(content, area): &(StripContent, Rect)| {
+        let mut plots = Vec::with_capacity(group.strips.len());
+        for &(content, area) in &group.strips {
             let is_residual =
                 self.0.view.look.residuals && !group.is_zoom && self.index(content).is_some();
             let above = u16::from(beside == 0);
-            Plot {
+            plots.push(Plot {
                 content,
                 strip: group.strip,
                 is_zoom: group.is_zoom,
@@ -84,9 +84,8 @@ impl Traces<'_> {
                     width: area.width - beside,
                     height: area.height.saturating_sub(above),
                 },
-            }
-        };
-        let mut plots: Vec<_> = group.strips.iter().map(plot).collect();
+            });
+        }
         for whose in ALL {
             self.add_curves(whose, marks, &mut plots);
         }
@@ -134,9 +133,11 @@ impl Traces<'_> {
         let rows = f64::from(plot.area.height) * down as f64;
         // A band of large dots hides the curve as soon as it is one dot high.
         let thinnest = across.min(THINNEST_BAND) as f64;
-        let place = |value| plot.scale.from_top(value) * rows;
         let mut bands = columns.iter().flatten().filter_map(|column| column.band);
-        bands.any(|band| place(band.min) - place(band.max) >= thinnest)
+        bands.any(|band| {
+            let [bottom, top] = [band.min, band.max].map(|value| plot.scale.from_top(value) * rows);
+            bottom - top >= thinnest
+        })
     }
 
     fn look(&self, whose: Whose, content: StripContent) -> (CurveStroke, Ink) {
@@ -172,13 +173,13 @@ impl Traces<'_> {
 
     /// The times that no line of a curve crosses, s.
     fn cuts<'s>(&'s self, whose: Whose, marks: &'s Marks) -> &'s [f64] {
-        let edits = |ghost: Option<&'s Ghost>| ghost.map_or(&[][..], |ghost| &ghost.marks.edits);
-        match whose {
-            Whose::Run => &marks.edits,
-            Whose::Before => edits(self.0.ghost),
-            Whose::Pinned => edits(self.0.pinned),
-            Whose::Exact => &[],
-        }
+        let ghost = match whose {
+            Whose::Run => return &marks.edits,
+            Whose::Before => self.0.ghost,
+            Whose::Pinned => self.0.pinned,
+            Whose::Exact => None,
+        };
+        ghost.map_or(&[], |ghost| &ghost.marks.edits)
     }
 
     /// What was measured, the curves that every run has before the others.
