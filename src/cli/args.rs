@@ -14,7 +14,7 @@ use crate::lab::view::theme::Background;
 use crate::lab::view::theme::Marker;
 use crate::physics::scheme;
 use crate::tui::terminal::MOST_SCREEN_CELLS;
-use crate::tui::theme::ColourChoice;
+use crate::tui::theme::ColorChoice;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
@@ -151,11 +151,11 @@ impl MapArgs {
 
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub(super) struct DisplayArgs {
-    /// Colours: auto honours NO_COLOR [default: as chosen last in the lab, or auto]
+    /// Colors: auto honors NO_COLOR [default: as chosen last in the lab, or auto]
     #[arg(long, alias = "colour", value_enum, value_name = "WHEN")]
-    pub(super) color: Option<ColourChoice>,
+    pub(super) color: Option<ColorChoice>,
 
-    /// What the colours are for [default: as chosen last, or as COLORFGBG says, or dark]
+    /// Background of the terminal [default: as chosen last, or as COLORFGBG says, or dark]
     #[arg(long, value_enum, value_name = "SCREEN")]
     pub(super) background: Option<Background>,
 
@@ -184,12 +184,8 @@ macro_rules! named_values {
 }
 
 named_values! {
-    ColourChoice, &[Self::Auto, Self::Always, Self::Never], |it| match it {
-        Self::Auto => "auto",
-        Self::Always => "always",
-        Self::Never => "never",
-    };
-    Background, &[Self::Dark, Self::Light], Self::name;
+    ColorChoice, &Self::ALL, Self::name;
+    Background, &Self::ALL, Self::name;
     Marker, &Self::ALL, Self::name;
 }
 

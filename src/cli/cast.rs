@@ -12,7 +12,7 @@ use crate::engine::text::printable::{PrintablePath, printable};
 use crate::lab::Lab;
 use crate::lab::command;
 use crate::lab::view::theme::Marker;
-use crate::lab::view::theme::{Background, Theme};
+use crate::lab::view::theme::{Background, Palette, Theme};
 use crate::tui::screen::ScreenRecorder;
 use anyhow::{bail, ensure};
 use clap::Args;
@@ -62,7 +62,7 @@ v2, of which asciinema convert of version 3 makes one.";
 pub(super) fn cast(args: &CastArgs) -> anyhow::Result<ExitCode> {
     let commands = command::open(&args.commands)?;
     let theme = Theme {
-        colour: true,
+        palette: Palette::Xterm256,
         background: Background::Dark,
     };
     let (marker, unchanged) = (Some(Marker::Braille), SetArgs::default());

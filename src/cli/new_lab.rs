@@ -1,4 +1,4 @@
-//! A new lab, with the scenario, the colours and the dots that the command line asks for; one in which a lesson is played
+//! A new lab, with the scenario, the colors and the dots that the command line asks for; one in which a lesson is played
 //! without a terminal, and where what comes of it is written.
 
 use super::args::{DisplayArgs, LessonArgs, SetArgs, WorkbenchArgs, change};
@@ -9,7 +9,7 @@ use crate::engine::scenario::{Document, Problem, Problems};
 use crate::lab::Lab;
 use crate::lab::view::View;
 use crate::lab::view::theme::Marker;
-use crate::lab::view::theme::{Background, Theme};
+use crate::lab::view::theme::Theme;
 use crate::lessons::{Lesson, paper, play};
 use crate::tui::theme;
 use anyhow::{Context, bail};
@@ -48,7 +48,7 @@ pub(super) fn variable(name: &str) -> Option<String> {
     std::env::var(name).ok()
 }
 
-/// The colours that `look` asks for, or that suit the terminal.
+/// The colors that `look` asks for, or that suit the terminal.
 pub(super) fn theme_for(look: DisplayArgs) -> Theme {
     let suited = theme::theme(look.color.unwrap_or_default(), variable);
     Theme {
@@ -74,13 +74,10 @@ pub(super) fn of_workbench(args: &WorkbenchArgs, name: &str) -> anyhow::Result<L
     Ok(lab)
 }
 
-/// A lab without colours.
+/// A lab without colors.
 pub(super) fn new_lab(look: DisplayArgs) -> anyhow::Result<Lab> {
-    let plain = Theme {
-        colour: false,
-        background: Background::Dark,
-    };
-    open_lab(DEFAULT, &SetArgs::default(), look.markers, plain, false)
+    let changes = SetArgs::default();
+    open_lab(DEFAULT, &changes, look.markers, Theme::PLAIN, false)
 }
 
 pub(super) fn refused(lesson: &Lesson, problem: Problem) -> anyhow::Error {

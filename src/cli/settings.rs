@@ -9,7 +9,7 @@ use crate::engine::text::printable::printable_lines;
 use crate::lab::Lab;
 use crate::lab::storage::settings::{self, SettingsFile};
 use crate::lab::view::theme::Marker;
-use crate::tui::theme;
+use crate::tui::theme::{self, ColorChoice};
 use clap::ValueEnum;
 use std::path::Path;
 use toml::{Table, Value};
@@ -39,7 +39,7 @@ impl Chosen {
                 .fps
                 .or_else(|| u32::try_from(value("fps")?.as_integer()?).ok()),
             look: DisplayArgs {
-                color: args.look.color.or_else(|| option(value("colour"))),
+                color: args.look.color.or_else(|| option(value("color"))),
                 background: args.look.background.or_else(|| option(value("background"))),
                 markers: args.look.markers.or_else(|| option(value("marker"))),
                 no_mouse: args.look.no_mouse || value("mouse") == Some(&Value::Boolean(false)),
@@ -80,12 +80,19 @@ fn in_one_line(problems: &Problems) -> String {
 }
 
 /// The remembered `settings` that this terminal can show: dots that were chosen on another terminal may need more, and
-/// NO_COLOR takes away colours that were chosen elsewhere.
+/// NO_COLOR takes away colors that were chosen elsewhere.
 fn shown_here(mut settings: Table) -> Table {
     let usual = theme::marker(variable);
+    let is_shown = |choice: ColorChoice| match choice {
+        ColorChoice::Auto | ColorChoice::Never => true,
+        ColorChoice::Always => !theme::refuses_color(variable),
+        ColorChoice::Palette(palette) => {
+            !theme::refuses_color(variable) && palette <= theme::terminal_palette(variable)
+        }
+    };
     settings.retain(|key, value| match key {
         "marker" => option(Some(value)).is_some_and(|it: Marker| it.needs_no_more_than(usual)),
-        "colour" => value.as_str() != Some("always") || !theme::refuses_colour(variable),
+        "color" => option(Some(value)).is_some_and(is_shown),
         _ => true,
     });
     settings
@@ -101,7 +108,6 @@ mod tests {
     use super::*;
     use crate::engine::scenario::kind::ValueKind;
     use crate::lab::view::theme::Background;
-    use crate::tui::theme::ColourChoice;
 
     fn are_options<T: ValueEnum>(wanted: &str) -> bool {
         let mut rows = settings::SETTINGS_KEYS.iter();
@@ -118,7 +124,7 @@ mod tests {
     #[test]
     fn every_word_of_the_table_is_an_option_and_a_choice_of_the_lab() {
         assert!(are_options::<Marker>("marker"));
-        assert!(are_options::<ColourChoice>("colour"));
+        assert!(are_options::<ColorChoice>("color"));
         assert!(are_options::<Background>("background"));
     }
 }

@@ -5,7 +5,7 @@ use super::new_lab::{self, DEFAULT};
 use super::{print, progress, tell};
 use crate::engine::provenance::{self, File, Origin, Payload, SCREEN};
 use crate::lab::storage::confined::Confined;
-use crate::lab::view::theme::{Background, Marker, Theme};
+use crate::lab::view::theme::{Background, Marker, Palette, Theme};
 use crate::lab::{Lab, command};
 use crate::tui::screen;
 use crate::tui::svg::svg;
@@ -46,11 +46,11 @@ pub(super) struct ShowArgs {
     #[arg(long, value_enum, value_name = "KIND")]
     pub(super) markers: Option<Marker>,
 
-    /// Give the picture as SVG, in colour, for a slide; the file carries the run, and gyrolab opens it
+    /// Give the picture as SVG, in color, for a slide; the file carries the run, and gyrolab opens it
     #[arg(long)]
     pub(super) svg: bool,
 
-    /// What the colours are for [default: dark]
+    /// What background the colors are for [default: dark]
     #[arg(long, value_enum, value_name = "SCREEN", requires = "svg")]
     pub(super) background: Option<Background>,
 
@@ -90,7 +90,11 @@ pub(super) fn print_picture(
 ) -> anyhow::Result<ExitCode> {
     let name = args.scenario.as_deref().unwrap_or(DEFAULT);
     let theme = Theme {
-        colour: args.svg,
+        palette: if args.svg {
+            Palette::TrueColor
+        } else {
+            Palette::Plain
+        },
         background: args.background.unwrap_or(Background::Dark),
     };
     let usual = args.svg.then_some(Marker::Braille); // whatever the terminal is

@@ -14,7 +14,7 @@ use crate::lab::storage::exporting;
 use crate::lab::view::FPS;
 use crate::lessons::{Lesson, LessonPage, Lessons};
 use crate::tui::app;
-use crate::tui::theme::{self, ColourChoice};
+use crate::tui::theme::{self, ColorChoice};
 use anyhow::Context;
 use std::fs;
 use std::io::{self, IsTerminal, Write};
@@ -144,7 +144,7 @@ fn furnish(lab: &mut Lab, args: &WorkbenchArgs, confined: Option<Confined>) -> a
     }
     lab.view_mut().mouse = !args.look.no_mouse;
     lab.view_mut().fps = args.fps.unwrap_or(FPS);
-    lab.settings.usual_colour = Some(theme::theme(ColourChoice::Auto, variable).colour);
+    lab.settings.usual_palette = Some(theme::theme(ColorChoice::Auto, variable).palette);
     Ok(())
 }
 

@@ -1,7 +1,7 @@
 //! What the tests of several files of the lab begin with.
 
 use super::view::View;
-use super::view::theme::{Background, Marker, Theme};
+use super::view::theme::{Background, Marker, Palette, Theme};
 use crate::engine::scenario::{Document, Scenario};
 use std::sync::Arc;
 
@@ -23,7 +23,7 @@ pub(in crate::lab) fn preset_with(name: &str, sets: &[&str]) -> Arc<Scenario> {
 
 pub(in crate::lab) fn view() -> View {
     let theme = Theme {
-        colour: false,
+        palette: Palette::Plain,
         background: Background::Dark,
     };
     View::new(&scenario(), Marker::Braille, theme)

@@ -1,8 +1,8 @@
-//! The settings: what is shown, and how. One dialog lists them with their present values. Choices of dots, colours, frames
+//! The settings: what is shown, and how. One dialog lists them with their present values. Choices of markers, colors, frames
 //! and the mouse are remembered for the next time.
 
 use super::command::Command;
-use super::view::theme::{Background, Marker};
+use super::view::theme::{Background, Marker, Palette};
 use super::view::{HideablePart, View};
 use crate::lab::storage::settings::remember;
 use std::path::PathBuf;
@@ -15,8 +15,8 @@ const FRAME_RATES: [u32; 5] = [2, 5, 10, 15, 30];
 pub struct Settings {
     /// The folder in which the settings that the user chooses are remembered; `None` where nothing is.
     pub folder: Option<PathBuf>,
-    /// Whether there are colours where nobody chooses; `None` where that is not known.
-    pub usual_colour: Option<bool>,
+    /// The palette where nobody chooses; `None` where that is not known.
+    pub usual_palette: Option<Palette>,
 }
 
 /// A setting: its label, its present value, and the change to its next value (`true`) or the one before.
@@ -32,7 +32,7 @@ enum Changed {
     By(Command),
     /// The view has changed: this value is remembered.
     Remembered(&'static str, toml::Value),
-    Colour,
+    Palette,
 }
 
 const fn row(
@@ -59,13 +59,12 @@ pub(super) const SETTINGS: [LabSetting; 8] = [
         view.marker = next(&Marker::ALL, view.marker, forward);
         Changed::Remembered("marker", view.marker.name().into())
     }),
-    row("colours", |view| if view.theme.colour { "on" } else { "off" }.to_owned(), |view, _| {
-        view.theme.colour = !view.theme.colour;
-        Changed::Colour
+    row("colors", |view| if view.theme.palette == Palette::Plain { "off" } else { view.theme.palette.name() }.to_owned(), |view, forward| {
+        view.theme.palette = next(&Palette::ALL, view.theme.palette, forward);
+        Changed::Palette
     }),
-    row("colours for a screen", |view| view.theme.background.name().to_owned(), |view, forward| {
-        let all = [Background::Dark, Background::Light];
-        view.theme.background = next(&all, view.theme.background, forward);
+    row("background", |view| view.theme.background.name().to_owned(), |view, forward| {
+        view.theme.background = next(&Background::ALL, view.theme.background, forward);
         Changed::Remembered("background", view.theme.background.name().into())
     }),
     row("frames a second", |view| format!("{} at most", view.fps), |view, forward| {
@@ -101,7 +100,7 @@ impl Settings {
         let (key, value) = match (setting.change)(view, forward) {
             Changed::By(command) => return Ok(Some(command)),
             Changed::Remembered(key, value) => (key, value),
-            Changed::Colour => ("colour", self.colour_choice(view.theme.colour).into()),
+            Changed::Palette => ("color", self.color_choice(view.theme.palette).into()),
         };
         match &self.folder {
             Some(folder) => remember(folder, key, value).map(|()| None),
@@ -109,13 +108,11 @@ impl Settings {
         }
     }
 
-    fn colour_choice(&self, colour: bool) -> &'static str {
-        if self.usual_colour == Some(colour) {
+    fn color_choice(&self, palette: Palette) -> &'static str {
+        if self.usual_palette == Some(palette) {
             "auto"
-        } else if colour {
-            "always"
         } else {
-            "never"
+            palette.name()
         }
     }
 }

@@ -191,7 +191,7 @@ impl Dots {
             Ink::Strong(role) => (0, role),
             Ink::Faint(role) => (1, role),
             Ink::Under(role) => (2, role),
-            Ink::Ghost => (3, Role::Ghost),
+            Ink::Ghost => (3, Role::Previous),
         };
         let place = on_sheet((x, y), (self.width(), self.height()));
         if let Some((cell, bit)) = place.and_then(|(x, y)| self.cell(x, y)) {

@@ -1,7 +1,6 @@
-//! The picture of the lab as SVG, in colour, for a slide: dots of Braille are drawn, everything else is text.
+//! The picture of the lab as SVG, in color, for a slide: dots of Braille are drawn, everything else is text.
 
 use super::screen;
-use super::theme::{DARK_CYAN, DARK_GREEN};
 use crate::engine::text::printable::xml;
 use crate::lab::Lab;
 use crate::lab::view::theme::Background;
@@ -25,8 +24,8 @@ pub fn svg(lab: &Lab, (columns, lines): (u16, u16), background: Background) -> S
     let mut buf = Buffer::empty(area);
     screen::draw(lab, false, area, &mut buf);
     let paper = match background {
-        Background::Dark => ["#e5e5e5", "#1e1e1e"],
-        Background::Light => ["#1e1e1e", "#ffffff"],
+        Background::Dark => ["#e4e4e4", "#1b1d21"],
+        Background::Light => ["#1d1f23", "#ffffff"],
     };
     let [width, height] = [
         u32::from(columns) * CELL_WIDTH_PX,
@@ -74,11 +73,11 @@ fn put(out: &mut String, cells: &[(u32, &Cell)], top: u32, paper: [&'static str;
     let Some((left, first)) = cells.first() else {
         return;
     };
-    let mut colours = [colour(first.fg, paper[0]), colour(first.bg, paper[1])];
+    let mut colors = [hex(first.fg, paper[0]), hex(first.bg, paper[1])];
     if first.modifier.contains(Modifier::REVERSED) {
-        colours.reverse();
+        colors.reverse();
     }
-    let [ink, ground] = colours;
+    let [ink, ground] = colors;
     if ground != paper[1] {
         let width = cells.len() as u32 * CELL_WIDTH_PX;
         *out +=
@@ -128,20 +127,10 @@ fn dots(cell: &Cell, left: u32, top: u32) -> String {
     dots.collect()
 }
 
-/// A colour of the theme as most terminals show it; `otherwise` where the terminal's own is meant.
-fn colour(colour: Color, otherwise: &'static str) -> &'static str {
-    match colour {
-        Color::Red => "#cd3131",
-        Color::Green => "#0dbc79",
-        Color::Yellow => "#e5e510",
-        Color::Blue => "#2472c8",
-        Color::Magenta => "#bc3fbc",
-        Color::Cyan => "#11a8cd",
-        Color::LightRed => "#f14c4c",
-        Color::LightYellow => "#f5f543",
-        Color::LightBlue => "#3b8eea",
-        Color::Indexed(DARK_CYAN) => "#008787",
-        Color::Indexed(DARK_GREEN) => "#008700",
-        _ => otherwise,
+/// The color of a cell, #rrggbb; `otherwise` if it is the terminal's own.
+fn hex(color: Color, otherwise: &str) -> String {
+    match color {
+        Color::Rgb(r, g, b) => format!("#{r:02x}{g:02x}{b:02x}"),
+        _ => otherwise.to_owned(),
     }
 }

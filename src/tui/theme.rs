@@ -1,100 +1,239 @@
-//! The colour of each role, from the 16 colours that every terminal has, and two of the 256 for a light screen.
+//! The style of each role on the screen, in four palettes and for two backgrounds.
 //!
-//! People with any kind of colour vision can tell x, y and z apart: cyan, yellow and magenta differ in brightness as well as
-//! in hue, and so do blue, red and dark cyan on a light screen. No meaning depends on colour alone: each curve has its
-//! letter, and without colours the roles differ by bold, dim and reversed. What the environment variables say of colours
-//! and dots is read here.
+//! The run is blue and the exact motion is orange in every pane. Text and axes have no hue, so that curves stand out.
+//! No meaning depends on the hue alone: the exact motion is dashed, arrows have letters, a value that is off is bold, and
+//! the verdict has words. What the environment variables say about colors and markers is read here.
 
 use crate::lab::view::theme::Marker;
-use crate::lab::view::theme::{Background, Theme};
+use crate::lab::view::theme::{Background, Palette, Theme};
 use ratatui::style::{Color, Modifier, Style};
 
-/// #008787 and #008700 of the 256 colours.
-pub(super) const DARK_CYAN: u8 = 30;
-pub(super) const DARK_GREEN: u8 = 28;
-
-/// The role of a piece of the screen, which decides its style.
+/// The role of a part of the screen, which decides its style.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Role {
     #[default]
     Text,
-    /// Units, labels and borders, less prominent than values.
-    Quiet,
+    /// Units, ticks, and words less prominent than values.
+    Label,
+    /// The line above a pane, and axes.
+    Rule,
+    /// Titles and keys.
     Heading,
-    X,
-    Y,
-    Z,
-    /// Tilt, and the path of the last turn.
-    Path,
-    /// The path of the last swings.
-    Recent,
-    /// The path before the last turn.
-    Old,
-    /// The path of the last turn in space, where it must be told from the body.
-    Track,
-    /// The path before that in space.
-    OldTrack,
+    /// The run, in the window of the traces.
+    Run,
+    /// The run before that window.
+    RunEarlier,
+    /// Between the least and the greatest of swings that are too fast to be drawn one by one.
+    Fill,
+    /// The background of the window in the overview.
+    WindowTint,
     Exact,
-    Ghost,
-    Pinned,
+    /// The previous run, and the pinned one.
+    Previous,
     Measured,
+    /// The first word of the verdict, where the run needs attention.
+    Badge,
+    /// A value that disagrees with the exact motion, and warnings.
+    Off,
+    AngularMomentum,
+    AngularVelocity,
+    Torque,
+    RimNear,
+    RimFar,
+    Floor,
+    /// The cursor, and the shown moment.
+    Cursor,
     Push,
-    Focus,
+    /// A value that can be edited.
+    Editable,
+    /// The chosen row, and the title of the pane in focus.
     Selected,
-    Warning,
 }
 
-impl Theme {
-    pub fn style(&self, role: Role) -> Style {
-        let style = Style::new().add_modifier(modifier(role));
-        if self.colour {
-            style.fg(colour(role, self.background))
-        } else {
-            style
+/// A color in each palette.
+struct Shades {
+    ansi: Color,
+    xterm: u8,
+    rgb: u32,
+}
+
+const fn shades(ansi: Color, xterm: u8, rgb: u32) -> Shades {
+    Shades { ansi, xterm, rgb }
+}
+
+impl Shades {
+    fn color(&self, palette: Palette) -> Color {
+        match palette {
+            Palette::Plain => Color::Reset,
+            Palette::Ansi16 => self.ansi,
+            Palette::Xterm256 => Color::Indexed(self.xterm),
+            Palette::TrueColor => Color::from_u32(self.rgb),
         }
     }
 }
 
-fn modifier(role: Role) -> Modifier {
-    match role {
-        Role::Heading
-        | Role::Focus
-        | Role::Push
-        | Role::Warning
-        | Role::Recent
-        | Role::Measured => Modifier::BOLD,
-        Role::Quiet | Role::Ghost | Role::Old | Role::OldTrack => Modifier::DIM,
-        Role::Selected => Modifier::REVERSED,
-        _ => Modifier::empty(),
+impl Theme {
+    pub fn style(&self, role: Role) -> Style {
+        let style = Style::new().add_modifier(self.modifier(role));
+        if self.palette == Palette::Plain {
+            return style;
+        }
+        let ink = ink(role, self.background).map(|shades| shades.color(self.palette));
+        let ground = ground(role, self.background).map(|shades| shades.color(self.palette));
+        Style {
+            // Text has the terminal's own color: it is legible even if the background is not the one that was expected.
+            fg: (role != Role::WindowTint).then_some(ink.unwrap_or_default()),
+            bg: ground,
+            ..style
+        }
+    }
+
+    fn modifier(&self, role: Role) -> Modifier {
+        let is_plain = self.palette == Palette::Plain;
+        match role {
+            Role::Heading | Role::Off | Role::Push => Modifier::BOLD,
+            Role::Badge if is_plain => Modifier::BOLD | Modifier::REVERSED,
+            Role::Badge => Modifier::BOLD,
+            Role::Cursor | Role::Measured if is_plain => Modifier::BOLD,
+            Role::Selected => Modifier::BOLD | Modifier::REVERSED,
+            Role::Editable => Modifier::UNDERLINED,
+            // The 16 colors have one gray, for rules.
+            Role::Label if is_plain || self.palette == Palette::Ansi16 => Modifier::DIM,
+            Role::Rule
+            | Role::RunEarlier
+            | Role::Fill
+            | Role::Previous
+            | Role::RimFar
+            | Role::Floor
+                if is_plain =>
+            {
+                Modifier::DIM
+            }
+            _ => Modifier::empty(),
+        }
     }
 }
 
-fn colour(role: Role, background: Background) -> Color {
+/// The color of letters, lines and dots of `role`; `None`: the terminal's own.
+fn ink(role: Role, background: Background) -> Option<Shades> {
     let (on_dark, on_light) = match role {
-        Role::X => (Color::Cyan, Color::Blue),
-        Role::Y => (Color::Yellow, Color::Red),
-        // Cyan and green are too pale on a light screen, and the 16 colours have no darker ones.
-        Role::Z => (Color::Magenta, Color::Indexed(DARK_CYAN)),
-        // No curve, push or warning has the colour of the exact motion.
-        Role::Exact => (Color::LightRed, Color::Magenta),
-        Role::Warning => (Color::LightYellow, Color::Red),
-        Role::Push => (Color::Green, Color::Indexed(DARK_GREEN)),
-        Role::Focus | Role::Track | Role::OldTrack => (Color::LightBlue, Color::Blue),
-        _ => (Color::Reset, Color::Reset),
+        Role::Text
+        | Role::Heading
+        | Role::Push
+        | Role::Editable
+        | Role::Selected
+        | Role::WindowTint => return None,
+        Role::Label => (
+            shades(Color::Reset, 246, 0x969aa2),
+            shades(Color::Reset, 241, 0x63676e),
+        ),
+        Role::Rule => (
+            shades(Color::DarkGray, 240, 0x555b66),
+            shades(Color::Gray, 250, 0xb4b8bf),
+        ),
+        Role::Run => (
+            shades(Color::LightBlue, 75, 0x6cb6ff),
+            shades(Color::Blue, 25, 0x0b62b8),
+        ),
+        Role::RunEarlier => (
+            shades(Color::Blue, 24, 0x34618f),
+            shades(Color::LightBlue, 110, 0x93c0ea),
+        ),
+        Role::Fill => (
+            shades(Color::Blue, 23, 0x2a4767),
+            shades(Color::LightBlue, 189, 0xcfe3f6),
+        ),
+        Role::Exact => (
+            shades(Color::LightRed, 209, 0xff8f5a),
+            shades(Color::Red, 166, 0xcf4a06),
+        ),
+        Role::Previous => (
+            shades(Color::DarkGray, 245, 0x8d9096),
+            shades(Color::DarkGray, 246, 0x94979c),
+        ),
+        Role::Badge => (
+            shades(Color::Black, 16, 0x17181a),
+            shades(Color::Black, 16, 0x17181a),
+        ),
+        Role::Off => (
+            shades(Color::LightYellow, 221, 0xf2c94c),
+            shades(Color::Black, 16, 0x000000),
+        ),
+        Role::AngularMomentum => (
+            shades(Color::LightMagenta, 169, 0xe765cf),
+            shades(Color::Magenta, 90, 0x861493),
+        ),
+        Role::AngularVelocity => (
+            shades(Color::LightGreen, 156, 0xa5f194),
+            shades(Color::Green, 65, 0x4d7f34),
+        ),
+        Role::Torque => (
+            shades(Color::LightCyan, 81, 0x58e9fe),
+            shades(Color::Cyan, 23, 0x2a5c66),
+        ),
+        Role::RimNear => (
+            shades(Color::Gray, 250, 0xb4b8c0),
+            shades(Color::Black, 240, 0x55585e),
+        ),
+        Role::RimFar => (
+            shades(Color::DarkGray, 243, 0x6f747e),
+            shades(Color::DarkGray, 248, 0xa4a8af),
+        ),
+        Role::Floor => (
+            shades(Color::DarkGray, 241, 0x5a606b),
+            shades(Color::Gray, 249, 0xb0b4bb),
+        ),
+        Role::Cursor | Role::Measured => (
+            shades(Color::White, 231, 0xffffff),
+            shades(Color::Black, 16, 0x000000),
+        ),
     };
-    match background {
+    Some(match background {
         Background::Dark => on_dark,
         Background::Light => on_light,
+    })
+}
+
+/// The background of `role`, where it has its own.
+fn ground(role: Role, background: Background) -> Option<Shades> {
+    match (role, background) {
+        (Role::Badge, _) => Some(shades(Color::Yellow, 221, 0xf2c94c)),
+        (Role::Off, Background::Light) => Some(shades(Color::Yellow, 223, 0xfbe6a0)),
+        // The 16 colors have no tint: there the edges mark the window.
+        (Role::WindowTint, Background::Dark) => Some(shades(Color::Reset, 236, 0x262b33)),
+        (Role::WindowTint, Background::Light) => Some(shades(Color::Reset, 255, 0xeaf1fa)),
+        _ => None,
     }
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum ColourChoice {
+pub enum ColorChoice {
     /// Unless NO_COLOR is set or the terminal has none.
     #[default]
     Auto,
     Always,
     Never,
+    Palette(Palette),
+}
+
+impl ColorChoice {
+    pub const ALL: [Self; 6] = [
+        Self::Auto,
+        Self::Always,
+        Self::Never,
+        Self::Palette(Palette::Ansi16),
+        Self::Palette(Palette::Xterm256),
+        Self::Palette(Palette::TrueColor),
+    ];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Always => "always",
+            Self::Never => Palette::Plain.name(),
+            Self::Palette(palette) => palette.name(),
+        }
+    }
 }
 
 /// The dots for these environment variables: ASCII where the locale is not UTF-8, half blocks on the Linux console,
@@ -115,69 +254,45 @@ pub fn marker(variable: impl Fn(&str) -> Option<String>) -> Marker {
     }
 }
 
-/// Whether these environment variables refuse colours (<https://no-color.org>).
-pub fn refuses_colour(variable: impl Fn(&str) -> Option<String>) -> bool {
+/// Whether these environment variables refuse colors (<https://no-color.org>).
+pub fn refuses_color(variable: impl Fn(&str) -> Option<String>) -> bool {
     variable("NO_COLOR").is_some_and(|value| !value.is_empty())
 }
 
+/// The palette of the terminal that these environment variables describe, whether or not colors are wanted.
+pub fn terminal_palette(variable: impl Fn(&str) -> Option<String>) -> Palette {
+    let term = variable("TERM").unwrap_or_default();
+    // GNU screen passes COLORTERM on, but not the 24 bits.
+    let is_gnu_screen = term.starts_with("screen") && variable("TMUX").is_none();
+    let has_24_bits =
+        variable("COLORTERM").is_some_and(|value| ["truecolor", "24bit"].contains(&value.as_str()));
+    if term.ends_with("-direct") || has_24_bits && !is_gnu_screen && term != "linux" {
+        Palette::TrueColor
+    } else if term.contains("256color") {
+        Palette::Xterm256
+    } else {
+        Palette::Ansi16
+    }
+}
+
 /// The theme for `choice` and these environment variables (<https://no-color.org>; COLORFGBG as rxvt sets it).
-pub fn theme(choice: ColourChoice, variable: impl Fn(&str) -> Option<String>) -> Theme {
-    let refused = refuses_colour(&variable);
+pub fn theme(choice: ColorChoice, variable: impl Fn(&str) -> Option<String>) -> Theme {
+    let refused = refuses_color(&variable);
     let has_none = variable("TERM").is_none_or(|term| term == "dumb" || term.starts_with("vt"));
-    let colour = match choice {
-        ColourChoice::Auto => !refused && !has_none,
-        ColourChoice::Always => true,
-        ColourChoice::Never => false,
+    let palette = match choice {
+        ColorChoice::Auto if refused || has_none => Palette::Plain,
+        ColorChoice::Auto | ColorChoice::Always => terminal_palette(&variable),
+        ColorChoice::Never => Palette::Plain,
+        ColorChoice::Palette(palette) => palette,
     };
     let light = variable("COLORFGBG")
         .is_some_and(|value| matches!(value.rsplit(';').next(), Some("7" | "15")));
     Theme {
-        colour,
+        palette,
         background: if light {
             Background::Light
         } else {
             Background::Dark
         },
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use Role::*;
-
-    #[test]
-    fn every_colour_is_seen_on_white() {
-        /// What xterm has for the colours that are used, and the two that every terminal has.
-        fn rgb(colour: Color) -> Option<[u8; 3]> {
-            match colour {
-                Color::Reset => None,
-                Color::Red => Some([205, 0, 0]),
-                Color::Green => Some([0, 205, 0]),
-                Color::Blue => Some([0, 0, 238]),
-                Color::Magenta => Some([205, 0, 205]),
-                Color::Cyan => Some([0, 205, 205]),
-                Color::Indexed(DARK_CYAN) => Some([0, 135, 135]),
-                Color::Indexed(DARK_GREEN) => Some([0, 135, 0]),
-                other => panic!("{other:?} is not known here"),
-            }
-        }
-        // Contrast as WCAG 2 defines it, from the luminance of sRGB.
-        let contrast = |rgb: [u8; 3]| {
-            let linear = rgb.map(|part| {
-                let part = f64::from(part) / 255.0;
-                if part <= 0.04045 {
-                    part / 12.92
-                } else {
-                    libm::pow((part + 0.055) / 1.055, 2.4)
-                }
-            });
-            1.05 / (0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2] + 0.05)
-        };
-        for role in [X, Y, Z, Exact, Warning, Push, Focus, Track, OldTrack] {
-            let colour = colour(role, Background::Light);
-            let contrast = rgb(colour).map_or(21.0, contrast);
-            assert!(contrast >= 3.0, "{role:?}: {contrast}");
-        }
     }
 }

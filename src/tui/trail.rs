@@ -184,8 +184,8 @@ impl Trail {
 
     fn ink(&self, age: Age, is_area: bool) -> Ink {
         let [recent, turn, old] = match self.around {
-            Around::Nothing => [Role::Recent, Role::Path, Role::Old],
-            Around::Body => [Role::Focus, Role::Track, Role::OldTrack],
+            Around::Nothing => [Role::Run, Role::Run, Role::RunEarlier],
+            Around::Body => [Role::Heading, Role::Run, Role::RunEarlier],
         };
         match age {
             Age::Recent => Ink::Strong(recent),

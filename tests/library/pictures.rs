@@ -16,7 +16,7 @@ use gyrolab::lab::playback::strip::Strip;
 use gyrolab::lab::values::list::ListedValue;
 use gyrolab::lab::values::list::ValueList;
 use gyrolab::lab::view::theme::Marker;
-use gyrolab::lab::view::theme::{Background, Theme};
+use gyrolab::lab::view::theme::{Background, Palette, Theme};
 use gyrolab::lab::view::{Pane, View};
 use gyrolab::tui::panes::PlotInputs;
 use gyrolab::tui::panes::form::FormPane;
@@ -32,7 +32,7 @@ use ratatui::widgets::Widget;
 use std::sync::Arc;
 
 const COLOURS: Theme = Theme {
-    colour: true,
+    palette: Palette::TrueColor,
     background: Background::Dark,
 };
 /// Size of the traces pane on an 80x24 screen.

@@ -7,7 +7,7 @@ use gyrolab::lab::Lab;
 use gyrolab::lab::storage::session::SessionContent;
 use gyrolab::lab::view::View;
 use gyrolab::lab::view::theme::Marker;
-use gyrolab::lab::view::theme::{Background, Theme};
+use gyrolab::lab::view::theme::{Background, Palette, Theme};
 use gyrolab::physics::SchemeInfo;
 use toml::{Table, Value};
 
@@ -46,10 +46,14 @@ pub fn resumed(content: &SessionContent) -> Lab {
     .unwrap()
 }
 
-/// A dark screen on which `scenario` is looked at, with colours or without.
-pub fn view(scenario: &Scenario, marker: Marker, colour: bool) -> View {
+/// A dark screen on which `scenario` is looked at, in true color or without colors.
+pub fn view(scenario: &Scenario, marker: Marker, has_color: bool) -> View {
     let theme = Theme {
-        colour,
+        palette: if has_color {
+            Palette::TrueColor
+        } else {
+            Palette::Plain
+        },
         background: Background::Dark,
     };
     View::new(scenario, marker, theme)

@@ -1,4 +1,4 @@
-//! Settings of the lab that hold for every run: what dots are made of, colours, frames a second, the mouse.
+//! Settings of the lab that hold for every run: what dots are made of, colors, frames a second, the mouse.
 //!
 //! Two files hold them. `settings.toml` beside the sessions is the program's: it is written when the user chooses a setting
 //! in the lab. `config.toml` in the configuration folder is the user's: it wins, and is never written. Both are checked as a
@@ -24,8 +24,8 @@ const SETTINGS_HEADER: &str = "# What was chosen in the lab. gyrolab writes this
 #[rustfmt::skip]
 pub const SETTINGS_KEYS: &[SchemaRow] = &[
     may("marker", OneOf(&["braille", "half-block", "dot", "ascii"]), "what dots are made of"),
-    may("colour", OneOf(&["auto", "always", "never"]), "whether there are colours"),
-    may("background", OneOf(&["dark", "light"]), "what screen the colours are for"),
+    may("color", OneOf(&["auto", "always", "never", "16", "256", "truecolor"]), "how many colors the lab uses"),
+    may("background", OneOf(&["dark", "light"]), "the background of the terminal"),
     may("fps", Whole(1, 60), "frames a second at most"),
     may("mouse", Flag, "whether the lab takes the mouse"),
 ];
@@ -74,7 +74,7 @@ fn sifted(table: &Table) -> (Table, Problems) {
     let (mut good, mut problems) = (Table::new(), Problems::default());
     for (key, value) in table {
         let name = match key.as_str() {
-            "color" if !table.contains_key("colour") => "colour",
+            "colour" if !table.contains_key("color") => "color",
             other => other,
         };
         let setting = Table::from_iter([(name.to_owned(), value.clone())]);

@@ -1,4 +1,4 @@
-//! The user's choice of dots and colours. `tui` has the dots and colours themselves.
+//! The user's choice of dots and colors. `tui` has the dots and colors themselves.
 
 /// The kinds of dots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,13 +46,9 @@ pub enum Background {
     Light,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Theme {
-    pub colour: bool,
-    pub background: Background,
-}
-
 impl Background {
+    pub const ALL: [Self; 2] = [Self::Dark, Self::Light];
+
     pub fn name(self) -> &'static str {
         match self {
             Self::Dark => "dark",
@@ -61,9 +57,43 @@ impl Background {
     }
 }
 
+/// How many colors a screen has, from the fewest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Palette {
+    /// No color: roles differ by bold, faint, underlined and reversed.
+    Plain,
+    /// The 16 colors that every color terminal has.
+    Ansi16,
+    /// The 256 colors of xterm.
+    Xterm256,
+    /// 24 bits.
+    TrueColor,
+}
+
+impl Palette {
+    pub const ALL: [Self; 4] = [Self::Plain, Self::Ansi16, Self::Xterm256, Self::TrueColor];
+
+    /// Its word in `--color` and in the settings.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Plain => "never",
+            Self::Ansi16 => "16",
+            Self::Xterm256 => "256",
+            Self::TrueColor => "truecolor",
+        }
+    }
+}
+
+/// The colors of the lab.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Theme {
+    pub palette: Palette,
+    pub background: Background,
+}
+
 impl Theme {
     pub const PLAIN: Self = Self {
-        colour: false,
+        palette: Palette::Plain,
         background: Background::Dark,
     };
 }

@@ -1,6 +1,6 @@
 //! The list of presets and files, with a preview of what is selected.
 
-use super::{longest, popup_frame, write};
+use super::{below_rule, longest, popup_rule, write};
 use crate::engine::scenario::Scenario;
 use crate::engine::text::printable::printable;
 use crate::engine::text::wrap::wrapped;
@@ -11,7 +11,7 @@ use crate::tui::keymap::Mode;
 use crate::tui::split::{split_columns, split_rows};
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
-use ratatui::layout::{Margin, Position, Rect};
+use ratatui::layout::{Position, Rect};
 use std::path::Path;
 
 const TITLE: &str = "open a preset or a file";
@@ -25,7 +25,7 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
         None => TITLE.to_owned(),
         Some(folder) => format!("{TITLE} of {}", folder.display()),
     };
-    let inside = popup_frame(&title, area, theme, buf);
+    let inside = popup_rule(&title, area, theme, buf);
     if inside.is_empty() {
         return;
     }
@@ -49,7 +49,7 @@ fn first_shown(browser: &Browser, height: usize) -> usize {
 
 /// The number of the entry at the cell `at` of the screen where `browser` is drawn on `area`.
 pub fn row_at(browser: &Browser, area: Rect, at: Position) -> Option<usize> {
-    let inside = area.inner(Margin::new(1, 1));
+    let inside = below_rule(area);
     let line = at.y.checked_sub(inside.y + 1)?;
     let is_in_list = inside.contains(at) && at.x - inside.x < LIST;
     let height = inside.height.saturating_sub(1) as usize;
@@ -67,11 +67,11 @@ fn keys(files: usize, others: usize, width: usize) -> String {
 fn filter_line(browser: &Browser, is_typed: bool, theme: &Theme, area: Rect, buf: &mut Buffer) {
     let shown = browser.shown().len();
     let (text, role) = match (is_typed, browser.filter.as_str()) {
-        (true, filter) => (format!("/{filter}_  ({shown})"), Role::Focus),
+        (true, filter) => (format!("/{filter}_  ({shown})"), Role::Heading),
         (_, "") => {
             let (files, others) = (browser.files(), browser.others);
             let room = area.width.saturating_sub(2) as usize;
-            (keys(files, others, room), Role::Quiet)
+            (keys(files, others, room), Role::Label)
         }
         (_, filter) => (format!("/{filter}  ({shown})"), Role::Text),
     };
@@ -109,7 +109,7 @@ fn preview(browser: &Browser, theme: &Theme, area: Rect, buf: &mut Buffer) {
         Some(Ok(scenario)) => described(scenario, width),
         Some(Err(problem)) => refused(problem, width),
         None if browser.choice().is_some_and(|entry| entry.is_folder) => {
-            vec![("a folder: Enter lists its files".to_owned(), Role::Quiet)]
+            vec![("a folder: Enter lists its files".to_owned(), Role::Label)]
         }
         None => Vec::new(),
     };
@@ -143,8 +143,8 @@ fn described(scenario: &Scenario, width: usize) -> Vec<(String, Role)> {
         (file.title.as_str(), Role::Heading),
         (file.about.as_deref().unwrap_or_default(), Role::Text),
         (look_at.unwrap_or_default(), Role::Text),
-        (run.as_str(), Role::Quiet),
-        (file.source.as_deref().unwrap_or_default(), Role::Quiet),
+        (run.as_str(), Role::Label),
+        (file.source.as_deref().unwrap_or_default(), Role::Label),
     ];
     let mut lines = Vec::new();
     for (text, role) in paragraphs.into_iter().filter(|(text, _)| !text.is_empty()) {
@@ -156,7 +156,7 @@ fn described(scenario: &Scenario, width: usize) -> Vec<(String, Role)> {
 }
 
 fn refused(problem: &str, width: usize) -> Vec<(String, Role)> {
-    let begin = ("cannot be opened".to_owned(), Role::Warning);
+    let begin = ("cannot be opened".to_owned(), Role::Off);
     let lines = problem
         .lines()
         .flat_map(|line| wrapped(line, width))

@@ -52,7 +52,7 @@ pub fn title(lab: &Lab, area: Rect, buf: &mut Buffer) {
     if let Some(details) = fitting {
         let short = shortened(title, room - columns(details));
         let x = write(left, (1, 0), &short, theme.style(Role::Heading), buf);
-        write(left, (x, 0), details, theme.style(Role::Quiet), buf);
+        write(left, (x, 0), details, theme.style(Role::Label), buf);
     }
 }
 
@@ -114,13 +114,9 @@ pub fn health(lab: &Lab, area: Rect, buf: &mut Buffer) {
             return;
         }
         if x > 1 {
-            x = write(area, (x, 0), SEPARATOR, theme.style(Role::Quiet), buf);
+            x = write(area, (x, 0), SEPARATOR, theme.style(Role::Label), buf);
         }
-        let role = if remark.warns {
-            Role::Warning
-        } else {
-            Role::Text
-        };
+        let role = if remark.warns { Role::Off } else { Role::Text };
         x = write(area, (x, 0), text, theme.style(role), buf);
     }
 }
@@ -136,9 +132,9 @@ pub fn warns(lab: &Lab) -> bool {
 pub fn keys(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
     for (x, item) in place_keys(lab, area) {
-        let (key, focus) = (item.key.to_string(), theme.style(Role::Focus));
+        let (key, focus) = (item.key.to_string(), theme.style(Role::Heading));
         let x = write(area, (x, 0), &key, focus, buf);
-        write(area, (x + 1, 0), item.word, theme.style(Role::Quiet), buf);
+        write(area, (x + 1, 0), item.word, theme.style(Role::Label), buf);
     }
 }
 

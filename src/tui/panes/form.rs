@@ -1,6 +1,6 @@
 //! A form, over the bottom of the panes.
 
-use super::{popup_frame, wrapped_to, write};
+use super::{popup_rule, wrapped_to, write};
 use crate::engine::text::wrap::{columns, wrapped};
 use crate::lab::form::{InputField, InputForm};
 use crate::lab::view::theme::Theme;
@@ -38,11 +38,11 @@ impl Widget for FormPane<'_> {
             return;
         }
         let is_framed = area.height >= LEAST_FRAMED && width >= LEAST_FRAMED;
-        let border = if is_framed { 2 } else { 0 };
-        let lines = self.lines(width - border, (area.height - border) as usize);
+        let border = if is_framed { 1 } else { 0 };
+        let lines = self.lines(width, (area.height - border) as usize);
         let [_, place] = split_rows(area, area.height - lines.len() as u16 - border);
         let inside = if is_framed {
-            popup_frame(&self.form.title, place, self.theme, buf)
+            popup_rule(&self.form.title, place, self.theme, buf)
         } else {
             Clear.render(place, buf);
             place
@@ -93,16 +93,16 @@ impl FormPane<'_> {
             .collect();
         lines.extend(
             info.into_iter()
-                .map(|text| FormLine::Text(text, Role::Quiet)),
+                .map(|text| FormLine::Text(text, Role::Label)),
         );
         lines.extend(
             complaint
                 .into_iter()
-                .map(|text| FormLine::Text(text, Role::Warning)),
+                .map(|text| FormLine::Text(text, Role::Off)),
         );
         lines.extend(
             keys.into_iter()
-                .map(|text| FormLine::Text(text, Role::Quiet)),
+                .map(|text| FormLine::Text(text, Role::Label)),
         );
         lines
     }
@@ -114,9 +114,9 @@ impl FormPane<'_> {
         let [label, room] = split_columns(area, widest.min(area.width / 2));
         let [label, _] = split_columns(label, label.width.saturating_sub(1));
         let role = if is_selected {
-            Role::Focus
+            Role::Heading
         } else {
-            Role::Quiet
+            Role::Label
         };
         write(label, (0, 0), &field.label, self.theme.style(role), buf);
         self.text(is_selected, field, room, buf);
@@ -154,7 +154,7 @@ impl FormPane<'_> {
                 buf.set_style(cell, self.theme.style(Role::Selected));
             }
             None => {
-                buf.set_stringn(at, area.y, "_", 1, self.theme.style(Role::Focus));
+                buf.set_stringn(at, area.y, "_", 1, self.theme.style(Role::Heading));
             }
         }
     }

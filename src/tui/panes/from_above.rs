@@ -3,7 +3,7 @@
 //! It shows where the point is, and the shape of its last swings behind it, as a line. The turn before them and all
 //! that came before are dotted, more and more sparsely; dots are denser where the point stayed longer.
 
-use super::{MOST_SHOWN_PUSHES, PaneRow, PlotInputs, ROWS_A_LINE, Width, round_frame, write};
+use super::{MOST_SHOWN_PUSHES, PaneRow, PlotInputs, ROWS_A_LINE, Width, round_rule, write};
 use crate::engine::data::MeasuredPlace;
 use crate::engine::recording::RecordedSample;
 use crate::engine::run::Clock;
@@ -70,7 +70,7 @@ pub struct FromAbove<'a>(pub PlotInputs<'a>);
 impl Widget for FromAbove<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
         let zoom = self.0.view.look.zoom.above;
-        let Some(inside) = round_frame(&FROM_ABOVE_ROW, zoom, &self.0, area, buf) else {
+        let Some(inside) = round_rule(&FROM_ABOVE_ROW, zoom, &self.0, area, buf) else {
             return;
         };
         let most = (inside.height / ROWS_A_LINE).clamp(1, MOST_LEGEND_LINES) as usize;
@@ -184,7 +184,7 @@ impl FromAbove<'_> {
     fn path(&self, plane: &Plane, picture: Rect, buf: &mut Buffer) {
         let mut dots = Dots::new(picture, self.0.view.marker);
         let before = dots::of_run_before(self.0.view.marker);
-        let pinned = Ink::Faint(Role::Pinned);
+        let pinned = Ink::Faint(Role::Previous);
         for (ghost, dashes, ink) in [
             (self.0.ghost, before, Ink::Ghost),
             (self.0.pinned, dots::PINNED_DASHES, pinned),
@@ -233,7 +233,7 @@ impl FromAbove<'_> {
             let role = if place.time_s <= now_s {
                 Role::Measured
             } else {
-                Role::Quiet
+                Role::Label
             };
             let [of_x, of_y] = place.sigmas;
             points.add(
@@ -288,10 +288,10 @@ impl FromAbove<'_> {
             places.take(cell);
         };
         let (right, middle) = (picture.width - 1, picture.height / 2);
-        mark((right, middle), "x", Role::X);
-        mark((picture.width / 2, 0), "y", Role::Y);
+        mark((right, middle), "x", Role::Run);
+        mark((picture.width / 2, 0), "y", Role::Run);
         if plane.shows((0.0, 0.0)) {
-            mark(plane.cell((0.0, 0.0)), "+", Role::Quiet);
+            mark(plane.cell((0.0, 0.0)), "+", Role::Label);
         }
         let now = self.now(plane.scale.0);
         let here = plane.cell((now.position.x, now.position.y));
@@ -303,7 +303,7 @@ impl FromAbove<'_> {
             }
             sign = if plane.cell(at) == here { "*" } else { sign };
         }
-        mark(here, sign, Role::Focus);
+        mark(here, sign, Role::Heading);
         places
     }
 }
@@ -343,7 +343,7 @@ impl FromAbove<'_> {
 
     /// The legend and the scale on `area`, which has as many rows as the legend has lines.
     fn write_legend(&self, plane: &Plane, area: Rect, buf: &mut Buffer) {
-        let style = self.0.view.theme.style(Role::Quiet);
+        let style = self.0.view.theme.style(Role::Label);
         let last = area.height.saturating_sub(1);
         let bar = self.bar(plane, area.width as usize);
         write(area, (0, last), &bar, style, buf);

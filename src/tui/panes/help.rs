@@ -1,7 +1,7 @@
 //! The help: keys and words, searched by typing; Enter does the key that is selected. Keys are grouped by their
 //! purpose, and the words are those of the glossary.
 
-use super::{popup_frame, rows, write};
+use super::{popup_rule, rows, write};
 use crate::engine::text::wrap::{columns, wrapped};
 use crate::lab::action::Action;
 use crate::lab::values::list::Match;
@@ -69,7 +69,7 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
         "" => "help: type to search, Enter does it".to_owned(),
         search => format!("help: {search}_ ({})", found.len()),
     };
-    let inside = popup_frame(&title, area, theme, buf);
+    let inside = popup_rule(&title, area, theme, buf);
     if found.is_empty() {
         let text = "nothing has that in it: Esc clears the search";
         write(inside, (1, 0), text, theme.style(Role::Text), buf);
@@ -88,7 +88,7 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
         if line.entry == Some(selected) {
             buf.set_style(place, theme.style(Role::Selected));
             if line.is_first {
-                write(place, (0, 0), SELECTED, theme.style(Role::Focus), buf);
+                write(place, (0, 0), SELECTED, theme.style(Role::Heading), buf);
             }
         }
     }
@@ -180,7 +180,7 @@ fn beside(entry: &HelpEntry, text: &str, column: usize, width: usize) -> Vec<Hel
         .map(|text| vec![(column, text, Role::Text)]);
     let mut lines: Vec<HelpPieces> = text.collect();
     if let Some(first) = lines.first_mut() {
-        first.push((NAMES_COLUMN, entry.name(), Role::Focus));
+        first.push((NAMES_COLUMN, entry.name(), Role::Heading));
     }
     lines
 }
@@ -191,7 +191,7 @@ fn below(entry: &HelpEntry, text: &str, width: usize) -> Vec<HelpPieces> {
     let text = wrapped(text, width.saturating_sub(HELP_INDENT))
         .into_iter()
         .map(|text| vec![(HELP_INDENT, text, Role::Text)]);
-    let name = vec![(NAMES_COLUMN, entry.name(), Role::Focus)];
+    let name = vec![(NAMES_COLUMN, entry.name(), Role::Heading)];
     std::iter::once(name).chain(text).collect()
 }
 

@@ -74,7 +74,7 @@ pub fn draw(lab: &Lab, is_cramped: bool, area: Rect, buf: &mut Buffer) {
     }
     let x = area.width.saturating_sub(CRAMPED.len() as u16 + 1);
     if is_cramped && x >= end + 2 {
-        write(area, (x, last), CRAMPED, theme.style(Role::Quiet), buf);
+        write(area, (x, last), CRAMPED, theme.style(Role::Label), buf);
     }
 }
 
@@ -99,9 +99,9 @@ fn said(lab: &Lab) -> (String, Role) {
         None => lab.notice(),
     };
     match (message, messages.trouble()) {
-        (Some(text), Some(_)) => (format!("{NOT_KEPT}{SEPARATOR}{text}"), Role::Focus),
-        (Some(text), None) => (text, Role::Focus),
-        (None, Some(trouble)) => (trouble.to_owned(), Role::Warning),
+        (Some(text), Some(_)) => (format!("{NOT_KEPT}{SEPARATOR}{text}"), Role::Heading),
+        (Some(text), None) => (text, Role::Heading),
+        (None, Some(trouble)) => (trouble.to_owned(), Role::Off),
         (None, None) => (lab.note().into_owned(), Role::Text),
     }
 }

@@ -1,6 +1,6 @@
 //! The page of a lesson beside the run: its text, the question with its answers, what is to be reached, and the keys.
 
-use super::{PaneRow, Width, frame, longest, write};
+use super::{PaneRow, Width, below_rule, longest, rule, write};
 use crate::engine::text::wrap::{columns, wrapped};
 use crate::lab::Lab;
 use crate::lab::action::{Action, Direction, LessonKey};
@@ -63,7 +63,14 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     } else {
         &framed
     };
-    let inside = frame(title, area, view.focus == LESSON_ROW.id, &view.theme, buf);
+    let inside = rule(
+        title,
+        None,
+        view.focus == LESSON_ROW.id,
+        area,
+        &view.theme,
+        buf,
+    );
     if inside.is_empty() {
         return;
     }
@@ -75,7 +82,7 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
             x = write(inside, (x, y), text, *style, buf);
         }
     }
-    let quiet = view.theme.style(Role::Quiet);
+    let quiet = view.theme.style(Role::Label);
     let below = page.lines.len() > page.first + inside.height as usize;
     let has_focus = view.focus == LESSON_ROW.id;
     let more = match (page.first > 0, below, has_focus) {
@@ -107,7 +114,7 @@ pub fn scroll(lab: &mut Lab, direction: Direction, place: Rect) {
     let Some(sheet) = lab.view().sheet.clone() else {
         return;
     };
-    let inside = place.inner(ratatui::layout::Margin::new(1, 1));
+    let inside = below_rule(place);
     let shown = inside.height as usize;
     let page = ScrolledPage::new(&sheet, inside, lab.view());
     let (first, all) = (page.first, page.lines.len());
@@ -118,7 +125,7 @@ pub fn scroll(lab: &mut Lab, direction: Direction, place: Rect) {
 
 /// Whether the page of `lab`, whose pane has the area `place`, goes on below what is shown.
 pub fn has_more(lab: &Lab, place: Rect) -> bool {
-    let inside = place.inner(ratatui::layout::Margin::new(1, 1));
+    let inside = below_rule(place);
     lab.view().sheet.as_ref().is_some_and(|sheet| {
         let page = ScrolledPage::new(sheet, inside, lab.view());
         page.lines.len() > page.first + inside.height as usize
@@ -199,7 +206,7 @@ fn dressed(kind: &SheetLineKind) -> (String, u16, Role) {
             let pointer = if *is_selected { "> " } else { "  " };
             let mark = if *is_given { "[x] " } else { "[ ] " };
             let role = if *is_selected {
-                Role::Focus
+                Role::Heading
             } else {
                 Role::Text
             };
@@ -208,7 +215,7 @@ fn dressed(kind: &SheetLineKind) -> (String, u16, Role) {
         SheetLineKind::Result => plain("= ", Role::Heading),
         SheetLineKind::Goal { is_reached: true } => plain("[x] ", Role::Text),
         SheetLineKind::Goal { is_reached: false } => plain("[ ] ", Role::Text),
-        SheetLineKind::Hint => plain("", Role::Quiet),
+        SheetLineKind::Hint => plain("", Role::Label),
         SheetLineKind::Note => plain("| ", Role::Text),
     }
 }
@@ -284,7 +291,7 @@ fn styled(emphasis: Emphasis, theme: &Theme) -> Style {
     match emphasis {
         Emphasis::Plain => Style::new(),
         Emphasis::Strong => Style::new().add_modifier(Modifier::BOLD),
-        Emphasis::Code => theme.style(Role::Focus),
+        Emphasis::Code => theme.style(Role::Heading),
     }
 }
 

@@ -32,7 +32,7 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let room = (area.width as usize).saturating_sub(before);
     let end_s = lab.player().end_s;
     let (name, counts, parts) = fitting(beside, end_s, room);
-    let quiet = theme.style(Role::Quiet);
+    let quiet = theme.style(Role::Label);
     let mut x = write(area, (1, 0), &mark, theme.style(Role::Measured), buf);
     x = write(area, (x, 0), what, quiet, buf);
     x = write(area, (x, 0), &name, theme.style(Role::Text), buf);

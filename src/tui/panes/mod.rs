@@ -30,18 +30,19 @@ use crate::lab::view::theme::Theme;
 use crate::lab::view::{Pane, View};
 use crate::lab::{KeyCommands, Lab};
 use crate::tui::keymap::Binding;
+use crate::tui::split::split_rows;
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
-use ratatui::widgets::{Block, Clear, Widget};
+use ratatui::widgets::{Clear, Widget};
 use std::borrow::Cow;
 
 /// A row of the table of panes: what the layout, the focus, the footer and the help need to know.
 #[derive(Debug)]
 pub struct PaneRow {
     pub id: Pane,
-    /// Its title, in its frame and over its keys in the help; the pane may add words to it.
+    /// Its title, on its rule and over its keys in the help; the pane may add words to it.
     pub title: &'static str,
     /// How wide it is where panes stand side by side.
     pub width: Width,
@@ -144,26 +145,44 @@ impl<'a> PlotInputs<'a> {
     }
 }
 
-/// Draws a frame with a title, marked where the pane has the focus; returns the area inside.
-pub(super) fn frame(title: &str, area: Rect, focus: bool, theme: &Theme, buf: &mut Buffer) -> Rect {
-    let (border, text) = if focus {
-        (Role::Focus, Role::Focus)
-    } else {
-        (Role::Quiet, Role::Heading)
-    };
-    let title = printable(title);
-    let title = shortened(&title, area.width.saturating_sub(4) as usize);
-    let block = Block::bordered()
-        .border_style(theme.style(border))
-        .title(format!(" {title} "))
-        .title_style(theme.style(text));
-    let inside = block.inner(area);
-    block.render(area, buf);
-    inside
+/// Draws the rule above a pane: `title` at its left, reversed where the pane has the focus, and `right` at its end.
+/// Returns the area below.
+pub(super) fn rule(
+    title: &str,
+    right: Option<(&str, Role)>,
+    focus: bool,
+    area: Rect,
+    theme: &Theme,
+    buf: &mut Buffer,
+) -> Rect {
+    let line = "─".repeat(area.width.into());
+    write(area, (0, 0), &line, theme.style(Role::Rule), buf);
+    let printed = printable(title);
+    let short = shortened(&printed, area.width.saturating_sub(3).into());
+    if focus && !title.is_empty() {
+        let title = format!(" {short} ");
+        write(area, (0, 0), &title, theme.style(Role::Selected), buf);
+    } else if !title.is_empty() {
+        let title = format!("{short} ");
+        write(area, (0, 0), &title, theme.style(Role::Heading), buf);
+    }
+    if let Some((text, role)) = right {
+        let x = area.width.saturating_sub(columns(text) as u16 + 1);
+        if usize::from(x) > columns(&short) + 3 {
+            write(area, (x, 0), " ", theme.style(Role::Rule), buf);
+            write(area, (x + 1, 0), text, theme.style(role), buf);
+        }
+    }
+    below_rule(area)
 }
 
-/// Draws the frame of the round pane `row`, magnified by `zoom`; returns the area inside, where it has room for a picture.
-fn round_frame(
+/// The area below the rule of a pane on `area`.
+pub(super) fn below_rule(area: Rect) -> Rect {
+    split_rows(area, 1)[1]
+}
+
+/// Draws the rule of the round pane `row`, magnified by `zoom`; returns the area below, where it has room for a picture.
+fn round_rule(
     row: &PaneRow,
     zoom: f64,
     seen: &PlotInputs<'_>,
@@ -172,7 +191,7 @@ fn round_frame(
 ) -> Option<Rect> {
     let title = round_title(row.title, zoom, seen.reading, area.width);
     let has_focus = seen.view.focus == row.id;
-    let inside = frame(&title, area, has_focus, &seen.view.theme, buf);
+    let inside = rule(&title, None, has_focus, area, &seen.view.theme, buf);
     (inside.height >= 2 && inside.width > 0).then_some(inside)
 }
 
@@ -229,10 +248,10 @@ fn in_lines<T>(
     lines
 }
 
-/// As [`frame`], on top of whatever is there.
-pub(super) fn popup_frame(title: &str, area: Rect, theme: &Theme, buf: &mut Buffer) -> Rect {
+/// As [`rule`], on top of whatever is there.
+pub(super) fn popup_rule(title: &str, area: Rect, theme: &Theme, buf: &mut Buffer) -> Rect {
     Clear.render(area, buf);
-    frame(title, area, true, theme, buf)
+    rule(title, None, true, area, theme, buf)
 }
 
 /// Writes `text`, made printable, at `x`, `y` relative to `area`, [`shortened`] at its right edge; gives the column after it.

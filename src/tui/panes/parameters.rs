@@ -5,7 +5,7 @@
 
 mod lines;
 
-use super::{PaneRow, Width, frame, leave_one_out, shortened, write};
+use super::{PaneRow, Width, leave_one_out, rule, shortened, write};
 use crate::engine::scenario::{Motion, Scenario};
 use crate::engine::text::printable::printable;
 use crate::engine::text::wrap::columns;
@@ -78,7 +78,7 @@ impl Widget for Parameters<'_> {
         let focus = self.view.focus == PARAMETERS_ROW.id;
         let list = Some(self.list).filter(|_| focus);
         let title = pane_title(list, self.is_searched);
-        let inside = frame(&title, area, focus, &self.view.theme, buf);
+        let inside = rule(&title, None, focus, area, &self.view.theme, buf);
         if inside.is_empty() {
             return;
         }
@@ -239,12 +239,12 @@ impl Parameters<'_> {
     fn hint(&self, goes_on: bool, place: (u16, u16), sign: &str, buf: &mut Buffer) {
         if let Some(cell) = buf.cell_mut(place).filter(|_| goes_on) {
             cell.set_symbol(sign)
-                .set_style(self.view.theme.style(Role::Focus));
+                .set_style(self.view.theme.style(Role::Heading));
         }
     }
 
     fn note(&self, text: &str, area: Rect, buf: &mut Buffer) {
-        write(area, (0, 0), text, self.view.theme.style(Role::Quiet), buf);
+        write(area, (0, 0), text, self.view.theme.style(Role::Label), buf);
     }
 
     /// Draws `lines` one below the other, each `wide` columns of the screen.
@@ -272,9 +272,9 @@ impl Parameters<'_> {
             write(area, (begin, 0), &value, style, buf);
         }
         let unit = value_end + UNIT_COLUMN - VALUE_END;
-        write(area, (unit, 0), &line.unit, theme.style(Role::Quiet), buf);
+        write(area, (unit, 0), &line.unit, theme.style(Role::Label), buf);
         if line.is_selected {
-            write(area, (0, 0), SELECTED, theme.style(Role::Focus), buf);
+            write(area, (0, 0), SELECTED, theme.style(Role::Heading), buf);
             buf.set_style(area, theme.style(Role::Selected));
         }
     }
@@ -325,7 +325,7 @@ fn edited_lines(list: &ValueList) -> Vec<ParameterLine> {
 
 fn edited_line(value: &ListedValue, is_selected: bool) -> ParameterLine {
     let value_role = if value.is_default {
-        Role::Quiet
+        Role::Label
     } else {
         Role::Text
     };
@@ -335,7 +335,7 @@ fn edited_line(value: &ListedValue, is_selected: bool) -> ParameterLine {
     ParameterLine {
         rank: 0,
         label: on_one_line(&value.label).into(),
-        label_role: Role::Quiet,
+        label_role: Role::Label,
         value: text,
         value_role,
         unit: value.unit.into(),

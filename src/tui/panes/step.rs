@@ -5,7 +5,7 @@ mod numbers;
 mod page;
 mod why;
 
-use super::{PaneRow, Width, frame};
+use super::{PaneRow, Width, rule};
 use crate::engine::scenario::Scenario;
 use crate::engine::text::number::{rounded, shortest, significant};
 use crate::engine::text::wrap::columns;
@@ -64,7 +64,14 @@ const STEP_PANE_KEYS: &[Binding] = &[
 fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let view = lab.view();
     let title = pane_title(lab);
-    let inside = frame(&title, area, view.focus == STEP_ROW.id, &view.theme, buf);
+    let inside = rule(
+        &title,
+        None,
+        view.focus == STEP_ROW.id,
+        area,
+        &view.theme,
+        buf,
+    );
     if inside.is_empty() {
         return;
     }
@@ -152,9 +159,9 @@ impl PhasePage<'_> {
             sections.push(section);
         }
         let part = self.part();
-        sections.push(text(8, &part, 0, Role::Quiet));
+        sections.push(text(8, &part, 0, Role::Label));
         sections.push(text(2, happens, 0, Role::Text).apart());
-        sections.push(text(1, self.phase.formula, 2, Role::Focus).apart());
+        sections.push(text(1, self.phase.formula, 2, Role::Heading).apart());
         sections.extend(self.quantities());
         sections.push(self.labelled(4, "changes", changes).apart());
         sections.push(self.labelled(6, "in 3-D", seen));
@@ -171,9 +178,9 @@ impl PhasePage<'_> {
         let mut at = 0;
         for (phase, number) in self.explained.workings.phases().zip(1..) {
             let (mark, role) = if number == self.number {
-                ("►", Role::Focus)
+                ("►", Role::Heading)
             } else {
-                (" ", Role::Quiet)
+                (" ", Role::Label)
             };
             let text = format!("{mark}{number} {}  ", phase.name);
             let width = columns(&text);
@@ -217,7 +224,7 @@ impl PhasePage<'_> {
             piece.0 = column;
         }
         if let Some(first) = section.lines.first_mut() {
-            first.pieces.push((0, format!("{label}:"), Role::Quiet));
+            first.pieces.push((0, format!("{label}:"), Role::Label));
         }
         section.lines.retain(|_| !text.is_empty());
         section

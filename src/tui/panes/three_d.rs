@@ -6,7 +6,7 @@
 mod arrows;
 mod body;
 
-use super::{PaneRow, PlotInputs, ROWS_A_LINE, Width, round_frame, write};
+use super::{PaneRow, PlotInputs, ROWS_A_LINE, Width, round_rule, write};
 use crate::engine::recording::RecordedCurve;
 use crate::engine::text::wrap::columns;
 use crate::lab::playback::ages::{Age, Ages};
@@ -70,7 +70,7 @@ type SpaceLabel = (&'static str, Role, Vector3<f64>);
 impl Widget for ThreeD<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
         let zoom = self.0.view.look.zoom.three_d;
-        let Some(inside) = round_frame(&THREE_D_ROW, zoom, &self.0, area, buf) else {
+        let Some(inside) = round_rule(&THREE_D_ROW, zoom, &self.0, area, buf) else {
             return;
         };
         let subject = SceneSubject::of(self.0);
@@ -167,7 +167,7 @@ impl<'a> SceneSubject<'a> {
         signs.extend(self.masses(scene));
         let marks = [
             ("+", Role::Heading, Vector3::zeros()),
-            ("*", Role::Focus, self.position),
+            ("*", Role::Heading, self.position),
         ];
         let shown = marks.iter().filter(|(_, _, at)| scene.shows(at));
         signs.extend(shown.map(|(sign, role, at)| (*sign, *role, scene.cell(at))));
@@ -250,7 +250,7 @@ impl<'a> SceneSubject<'a> {
         let stands = self.stands();
         let floor = Vector3::z() * if stands { -STAND * self.reach } else { 0.0 };
         let radius = self.reach * if stands { FOOT } else { GROUND };
-        let ink = Ink::Faint(Role::Quiet);
+        let ink = Ink::Faint(Role::Label);
         let circle: Vec<_> = (0..CIRCLE_PARTS)
             .map(|part| {
                 let (sin, cos) = libm::sincos(TAU * part as f64 / CIRCLE_PARTS as f64);
@@ -280,7 +280,7 @@ impl<'a> SceneSubject<'a> {
                 let tip = from + axis * length;
                 scene.line(from, &tip, LineStroke::Dotted(3), ink);
                 // The colours of the traces of x, y and z are those of arrows here.
-                (*name, Role::Quiet, tip)
+                (*name, Role::Label, tip)
             })
             .collect()
     }
@@ -311,7 +311,7 @@ impl<'a> SceneSubject<'a> {
     /// The paths of the run before and of the pinned one, and a line from the pivot to where each is at this time.
     fn other_runs(&self, scene: &mut DotScene, dots: &mut Dots) {
         let before = (Ink::Ghost, dots::of_run_before(self.seen.view.marker), 3);
-        let pinned = (Ink::Faint(Role::Pinned), dots::PINNED_DASHES, 2);
+        let pinned = (Ink::Faint(Role::Previous), dots::PINNED_DASHES, 2);
         for (run, (ink, path, axle)) in [(self.seen.ghost, before), (self.seen.pinned, pinned)] {
             let Some(recording) = run.map(|run| &run.recording) else {
                 continue;
@@ -398,7 +398,7 @@ impl SceneSubject<'_> {
             let to = newer.unwrap_or(&now);
             let direction = ((to.0 - at.0) / across, (to.1 - at.1) / down);
             let cell = scene.plane.cell_of(at);
-            head = cell.map(|cell| (sign(direction), Role::Focus, cell));
+            head = cell.map(|cell| (sign(direction), Role::Heading, cell));
             break;
         }
         way.truncate(joined + 1);
@@ -420,7 +420,7 @@ impl ScreenPath {
     pub fn join(&self, dots: &mut Dots) {
         for pair in self.dots.windows(2) {
             if let [from, to] = pair {
-                dots.line(*from, *to, Ink::Strong(Role::Focus));
+                dots.line(*from, *to, Ink::Strong(Role::Heading));
             }
         }
     }

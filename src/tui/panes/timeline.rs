@@ -102,7 +102,7 @@ impl Timeline {
             if column <= reached && self.furthest_s > 0.0 {
                 (REACHED, Role::Text)
             } else {
-                (AHEAD, Role::Quiet)
+                (AHEAD, Role::Label)
             }
         };
         let mut signs: Vec<_> = (0..width).map(way).collect();
@@ -123,9 +123,9 @@ impl Timeline {
             put(self.column(edit_s, width), EDIT, Role::Heading);
         }
         if let Some(pinned_s) = self.pinned_s {
-            put(self.column(pinned_s, width), PINNED_MARK, Role::Pinned);
+            put(self.column(pinned_s, width), PINNED_MARK, Role::Previous);
         }
-        put(self.column(self.now_s, width), NOW_MARK, Role::Focus);
+        put(self.column(self.now_s, width), NOW_MARK, Role::Heading);
         signs
     }
 }
@@ -141,7 +141,7 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     }
     let label = timeline.label(area.width);
     let x = line.right() - area.x + 1;
-    write(area, (x, 0), &label, theme.style(Role::Quiet), buf);
+    write(area, (x, 0), &label, theme.style(Role::Label), buf);
 }
 
 #[cfg(test)]

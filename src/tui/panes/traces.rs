@@ -6,7 +6,7 @@ mod border;
 mod groups;
 mod plot;
 
-use super::{PaneRow, PlotInputs, Width, frame, longest, write};
+use super::{PaneRow, PlotInputs, Width, below_rule, longest, rule, write};
 use crate::lab::action::{Action, Direction, repeated, signed};
 use crate::lab::command::{Command, CursorTo};
 use crate::lab::playback::marks::Marks;
@@ -17,7 +17,7 @@ use crate::tui::points::{Ends, Points};
 use crate::tui::theme::Role;
 use plot::Plot;
 use ratatui::buffer::Buffer;
-use ratatui::layout::{Margin, Rect};
+use ratatui::layout::Rect;
 use ratatui::style::Style;
 use ratatui::widgets::Widget;
 
@@ -88,7 +88,7 @@ pub struct Traces<'a>(pub PlotInputs<'a>);
 
 impl Widget for Traces<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
-        let inside = area.inner(Margin::new(1, 1));
+        let inside = below_rule(area);
         let marks = Marks::new(self.0.run.scenario());
         let (beside, groups) = if inside.is_empty() {
             (0, Vec::new())
@@ -103,7 +103,14 @@ impl Widget for Traces<'_> {
         let has_band = plots.iter().any(|plot| plot.has_band);
         let title = self.title(has_band, area.width.saturating_sub(4) as usize);
         let theme = &self.0.view.theme;
-        frame(&title, area, self.0.view.focus == TRACES_ROW.id, theme, buf);
+        rule(
+            &title,
+            None,
+            self.0.view.focus == TRACES_ROW.id,
+            area,
+            theme,
+            buf,
+        );
         for plot in &plots {
             self.strip(plot, &marks, buf);
         }
@@ -116,7 +123,7 @@ impl Widget for Traces<'_> {
         for group in &groups {
             let axis = line(group.area.bottom().saturating_sub(1));
             for (at, label) in axis::times(&group.strip, axis.width as usize) {
-                write(axis, (at as u16, 0), &label, theme.style(Role::Quiet), buf);
+                write(axis, (at as u16, 0), &label, theme.style(Role::Label), buf);
             }
         }
         if let Some(last) = groups.last() {
@@ -154,7 +161,7 @@ impl Traces<'_> {
         if let Some((column, value)) = at_cursor {
             self.cursor(column, value.as_str(), is_beside, plot.sheet, buf);
         }
-        let quiet = self.0.view.theme.style(Role::Quiet);
+        let quiet = self.0.view.theme.style(Role::Label);
         let across = self.0.view.marker.dots().0;
         let column = |time_s: f64| plot.strip.column(time_s).map(|column| column / across);
         if let Some(now) = column(self.0.run.now().time_s) {
@@ -167,7 +174,7 @@ impl Traces<'_> {
 
     /// What stands beside a strip besides its name: its unit, what it shows, and its values.
     fn label_beside(&self, plot: &Plot, unit: &str, buf: &mut Buffer) {
-        let quiet = self.0.view.theme.style(Role::Quiet);
+        let quiet = self.0.view.theme.style(Role::Label);
         let further = match plot {
             Plot { is_zoom: true, .. } if self.0.detail.is_snapshot => [unit, ZOOM_MARK, HELD[2]],
             Plot { is_zoom: true, .. } => [unit, ZOOM_MARK, ""],
@@ -199,7 +206,7 @@ impl Traces<'_> {
         buf: &mut Buffer,
     ) {
         let theme = &self.0.view.theme;
-        let quiet = theme.style(Role::Quiet);
+        let quiet = theme.style(Role::Label);
         let line = plot.area;
         let less_run = if plot.is_residual { LESS_RUN } else { "" };
         let after = write(line, (after, 0), less_run, quiet, buf);
@@ -213,7 +220,7 @@ impl Traces<'_> {
             line,
             (after, 0),
             &format!(" {value}"),
-            theme.style(Role::Focus),
+            theme.style(Role::Heading),
             buf,
         );
         let rest = room.saturating_sub(value.len() + "  ()".len());
@@ -244,7 +251,7 @@ impl Traces<'_> {
     fn draw_zero(&self, plot: &Plot, dots: &mut Dots) {
         let row = plot.scale.from_top(0.0) * dots.height() as f64;
         for x in (0..dots.width()).step_by(dots.in_a_cell().0) {
-            dots.set(x as f64, row, Ink::Faint(Role::Quiet));
+            dots.set(x as f64, row, Ink::Faint(Role::Label));
         }
     }
 
@@ -269,7 +276,7 @@ impl Traces<'_> {
             let role = if point.model.is_some() {
                 Role::Measured
             } else {
-                Role::Quiet
+                Role::Label
             };
             // The lowest value stands on the last row.
             let at = plot.scale.from_top(value) * height;
@@ -290,7 +297,7 @@ impl Traces<'_> {
 
     /// The cursor: a line, and the value there where that does not stand above the strip.
     fn cursor(&self, column: u16, value: &str, is_beside: bool, sheet: Rect, buf: &mut Buffer) {
-        let style = self.0.view.theme.style(Role::Focus);
+        let style = self.0.view.theme.style(Role::Heading);
         upright(column, CURSOR_MARK, style, sheet, buf);
         if is_beside {
             let width = value.len() as u16;

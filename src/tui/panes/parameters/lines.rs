@@ -58,7 +58,7 @@ pub(super) fn value(
     ParameterLine {
         rank,
         label: label.into(),
-        label_role: Role::Quiet,
+        label_role: Role::Label,
         value,
         value_role: Role::Text,
         unit: unit.into(),
@@ -215,9 +215,9 @@ pub(super) fn now_lines(reading: &Reading) -> Vec<ParameterLine> {
     };
     let mut lines = vec![
         heading("now"),
-        axis("x", Role::X, sample.position.x),
-        axis("y", Role::Y, sample.position.y),
-        axis("z", Role::Z, sample.position.z),
+        axis("x", Role::Run, sample.position.x),
+        axis("y", Role::Run, sample.position.y),
+        axis("z", Role::Run, sample.position.z),
     ];
     lines.extend(watched_lines(reading));
     let after_nutation = lines.len() - 1;

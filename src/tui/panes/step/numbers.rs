@@ -113,9 +113,9 @@ pub fn lines(quantity: &WorkedQuantity, format: CellFormat, is_result: bool) -> 
         .map(|cells| StepPageLine::of(SYMBOL, cells.concat(), role))
         .collect();
     let unit = SYMBOL + across * format.cell + 1;
-    let unit = (unit, unit_of(quantity), Role::Quiet);
+    let unit = (unit, unit_of(quantity), Role::Label);
     lines[0].pieces.push(unit);
-    let symbol = StepPageLine::of(0, quantity.symbol, Role::Focus);
+    let symbol = StepPageLine::of(0, quantity.symbol, Role::Heading);
     if columns(quantity.symbol) < SYMBOL {
         lines[0].pieces.extend(symbol.pieces);
     } else {
@@ -140,7 +140,7 @@ pub fn heads(rank: u8, format: CellFormat) -> StepPageSection {
     let heads = ["x", "y", "z"].map(|head| format!("{head:>0$}", format.cell));
     StepPageSection::new(
         rank,
-        vec![StepPageLine::of(SYMBOL, heads.concat(), Role::Quiet)],
+        vec![StepPageLine::of(SYMBOL, heads.concat(), Role::Label)],
     )
 }
 
@@ -192,7 +192,7 @@ impl TableView<'_> {
                 "Down goes through them"
             };
             let text = format!("... {left} more: {what}");
-            lines.push(StepPageLine::of(0, text, Role::Quiet));
+            lines.push(StepPageLine::of(0, text, Role::Label));
         }
         lines.extend(sum);
         lines
@@ -211,7 +211,7 @@ impl TableView<'_> {
         let mut lines = Vec::with_capacity(shown.len() * groups.len());
         for (at, row) in shown.enumerate() {
             let role = match self.chosen() {
-                Some(last) if row >= last => Role::Quiet,
+                Some(last) if row >= last => Role::Label,
                 _ => Role::Text,
             };
             let name = (self.name)(self.table.points[row]);
@@ -284,14 +284,14 @@ impl TableView<'_> {
                 .iter()
                 .map(|(symbol, _)| format!("{symbol:>cell$}"))
                 .collect::<String>();
-            let mut line = StepPageLine::of(self.begin(group), symbols, Role::Quiet);
+            let mut line = StepPageLine::of(self.begin(group), symbols, Role::Label);
             if self.has_mass_aside(group) {
                 let mass = self.table.columns[0].1;
-                line = line.and(POINT_NAME_WIDTH - 1, format!("{mass:>MASS$}"), Role::Quiet);
+                line = line.and(POINT_NAME_WIDTH - 1, format!("{mass:>MASS$}"), Role::Label);
             }
             if columns.iter().all(|(_, unit)| *unit == columns[0].1) {
                 let unit = format!("in {}", columns[0].1);
-                lines.push(line.and(0, unit, Role::Quiet));
+                lines.push(line.and(0, unit, Role::Label));
             } else {
                 let units = columns
                     .iter()
@@ -299,7 +299,7 @@ impl TableView<'_> {
                     .collect::<String>();
                 lines.extend([
                     line,
-                    StepPageLine::of(self.begin(group), units, Role::Quiet),
+                    StepPageLine::of(self.begin(group), units, Role::Label),
                 ]);
             }
         }
@@ -327,7 +327,7 @@ impl TableView<'_> {
                     .iter()
                     .map(|sum| format.aligned(&[*sum]).concat())
                     .collect();
-                let line = StepPageLine::of(0, "sum", Role::Focus);
+                let line = StepPageLine::of(0, "sum", Role::Heading);
                 lines.push(line.and(POINT_NAME_WIDTH, blank + &text, Role::Heading));
             }
             _ => lines.extend(columns.clone().step_by(FEW).flat_map(|begin| {
@@ -346,15 +346,15 @@ impl TableView<'_> {
         let heads = columns
             .iter()
             .map(|(symbol, _)| format!("{symbol:>0$}", format.cell));
-        let heads = StepPageLine::of(SYMBOL, heads.collect::<String>(), Role::Quiet);
+        let heads = StepPageLine::of(SYMBOL, heads.collect::<String>(), Role::Label);
         let unit = SYMBOL + group.len() * format.cell + 1;
         let both: Vec<_> = group
             .map(|column| format.aligned(&[adds[column], sums[column]]))
             .collect();
         let line = |at: usize, name, role| {
             let line =
-                StepPageLine::of(0, name, Role::Focus).and(SYMBOL, side_by_side(&both, at), role);
-            line.and(unit, columns[0].1, Role::Quiet)
+                StepPageLine::of(0, name, Role::Heading).and(SYMBOL, side_by_side(&both, at), role);
+            line.and(unit, columns[0].1, Role::Label)
         };
         [
             heads,

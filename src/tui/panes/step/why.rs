@@ -175,7 +175,7 @@ impl ArrowDiagram {
 
 fn headed(heading: &str, view: &View, area: Rect, buf: &mut Buffer) -> Rect {
     let [heading_line, below] = split_rows(area, 1);
-    let style = view.theme.style(Role::Quiet);
+    let style = view.theme.style(Role::Label);
     write(heading_line, (0, 0), heading, style, buf);
     below
 }
@@ -226,10 +226,10 @@ fn from_above(explained: &StepWorkings, view: &View, area: Rect, buf: &mut Buffe
     let [torque, change] = torque_and_change(explained);
     let momentum_tip = along * (BEYOND * length);
     let origin = Vector2::zeros();
-    let mut arrows = vec![(origin, momentum_tip, "L", Role::Z)];
-    arrows.extend(torque.map(|torque| (tip, torque * (TORQUE * length), "τ", Role::X)));
+    let mut arrows = vec![(origin, momentum_tip, "L", Role::Run)];
+    arrows.extend(torque.map(|torque| (tip, torque * (TORQUE * length), "τ", Role::Run)));
     let change_arrow = change.map(|change| change * (CHANGE_ARROW_LENGTH * length));
-    arrows.extend(change_arrow.map(|change| (momentum_tip, change, "dL", Role::X)));
+    arrows.extend(change_arrow.map(|change| (momentum_tip, change, "dL", Role::Run)));
     let corners: Vec<_> = arrows
         .iter()
         .map(|(from, along, ..)| from + along)
@@ -244,8 +244,8 @@ fn from_above(explained: &StepWorkings, view: &View, area: Rect, buf: &mut Buffe
             picture.line(origin, tip, Ink::Strong(Role::Text));
         }
     }
-    picture.sign(origin, "+", Role::Quiet);
-    picture.sign(tip, "o", Role::Focus);
+    picture.sign(origin, "+", Role::Label);
+    picture.sign(tip, "o", Role::Heading);
     picture.draw(area, view, buf);
 }
 
@@ -281,14 +281,14 @@ fn dip(explained: &StepWorkings, is_seen: bool, view: &View, area: Rect, buf: &m
     for pair in way.windows(2) {
         // Steps that are too long for the true dip are not joined.
         let from = if is_seen { pair[0] } else { pair[1] };
-        picture.line(from, pair[1], Ink::Strong(Role::Path));
+        picture.line(from, pair[1], Ink::Strong(Role::Run));
     }
-    picture.sign(Vector2::zeros(), "o", Role::Focus);
+    picture.sign(Vector2::zeros(), "o", Role::Heading);
     picture.draw(place, view, buf);
     let [scale, below] = split_rows(below, 1);
     let bar = picture.plane.bar(0.5 * f64::from(area.width));
-    write(scale, (0, 0), &bar, view.theme.style(Role::Quiet), buf);
-    text(note, Role::Warning, view, below, buf);
+    write(scale, (0, 0), &bar, view.theme.style(Role::Label), buf);
+    text(note, Role::Off, view, below, buf);
 }
 
 /// The corners of a rectangle around `places` and the origin.

@@ -35,25 +35,28 @@ fn meaning(letter: &str) -> (LegendText, DepthBias) {
             DepthBias::BehindRod,
         ),
         "Ω" => (
-            (["Ω angular velocity", "Ω", "Ω"], Role::Y),
+            (["Ω angular velocity", "Ω", "Ω"], Role::Run),
             DepthBias::Arrow,
         ),
         "u" => (
-            (["u axis of the turn", "u axis", "u"], Role::Y),
+            (["u axis of the turn", "u axis", "u"], Role::Run),
             DepthBias::Farther,
         ),
         // These are short and cross the rim, which would hide them.
         "τ" => (
-            (["τ torque", "τ torque", "τ"], Role::X),
+            (["τ torque", "τ torque", "τ"], Role::Run),
             DepthBias::Everything,
         ),
-        "dL" => ((["dL = τ dt", "dL", "dL"], Role::X), DepthBias::Everything),
+        "dL" => (
+            (["dL = τ dt", "dL", "dL"], Role::Run),
+            DepthBias::Everything,
+        ),
         "F" => (
             (["F push", "F push", "F"], Role::Push),
             DepthBias::Everything,
         ),
         _ => (
-            (["L angular momentum", "L", "L"], Role::Z),
+            (["L angular momentum", "L", "L"], Role::Run),
             DepthBias::Farther,
         ),
     }
@@ -197,15 +200,15 @@ impl SceneSubject<'_> {
         let is_top = self.seen.run.scenario().traces_top();
         let all = [
             (true, ["+ pivot"; 3], Role::Heading),
-            (true, ["thick: axle", "", ""], Role::Focus),
-            (is_top, ["* axle top", "* top", "* top"], Role::Focus),
-            (!is_top, ["* traced point", "* traced", "* traced"], Role::Focus),
-            (true, ["►▲ its way", "", ""], Role::Focus),
+            (true, ["thick: axle", "", ""], Role::Heading),
+            (is_top, ["* axle top", "* top", "* top"], Role::Heading),
+            (!is_top, ["* traced point", "* traced", "* traced"], Role::Heading),
+            (true, ["►▲ its way", "", ""], Role::Heading),
             (self.shape.rim.is_some(), ["■ hub", "■ hub", ""], Role::Heading),
             (true, ["O o · masses, near to far", "O o · masses", ""], Role::Text),
             (self.seen.run.overlay().is_some(), ["dots: exact motion", "dots: exact", "dots: exact"], Role::Exact),
-            (self.seen.pinned.is_some(), ["long dashes: pinned", "-- pinned", "-- pinned"], Role::Pinned),
-            (self.seen.ghost.is_some(), ["dotted: other run", "dotted: other", "dotted: other"], Role::Ghost),
+            (self.seen.pinned.is_some(), ["long dashes: pinned", "-- pinned", "-- pinned"], Role::Previous),
+            (self.seen.ghost.is_some(), ["dotted: other run", "dotted: other", "dotted: other"], Role::Previous),
         ];
         let drawn = all.into_iter().filter(|(is_drawn, ..)| *is_drawn);
         drawn.map(|(_, words, role)| (words, role)).collect()
@@ -317,8 +320,8 @@ impl SceneSubject<'_> {
         };
         if let Some(axis) = shown.direction("u").filter(|_| self.draws("u")) {
             let end = axis * (AXIS * MOMENTUM_ARROW_LENGTH * self.arm);
-            scene.line(&-end, &end, LineStroke::Thin, Ink::Strong(Role::Y));
-            labels.push(("u", Role::Y, end * 1.04));
+            scene.line(&-end, &end, LineStroke::Thin, Ink::Strong(Role::Run));
+            labels.push(("u", Role::Run, end * 1.04));
         }
         if shown.has_before() {
             self.body_before(shown.before(), scene);
@@ -333,8 +336,8 @@ impl SceneSubject<'_> {
                 PhaseName::Inertia => (Vector3::zeros(), before),
                 _ => (before, self.state.orientation * point.at),
             };
-            scene.line(&from, &to, LineStroke::Thin, Ink::Strong(Role::Focus));
-            labels.push(("@", Role::Focus, to));
+            scene.line(&from, &to, LineStroke::Thin, Ink::Strong(Role::Heading));
+            labels.push(("@", Role::Heading, to));
         }
         labels
     }
@@ -356,10 +359,10 @@ impl SceneSubject<'_> {
     fn phase_legend(&self) -> Option<Vec<LegendText>> {
         let shown = self.shown_phase.as_ref()?;
         let words = |letter: &&str| match *letter {
-            "dL" if shown.is_rubbed() => (["dL, its direction", "dL, direction", "dL"], Role::X),
+            "dL" if shown.is_rubbed() => (["dL, its direction", "dL, direction", "dL"], Role::Run),
             "dL" => (
                 ["dL along τ, its direction", "dL, direction", "dL"],
-                Role::X,
+                Role::Run,
             ),
             letter => meaning(letter).0,
         };
@@ -375,10 +378,10 @@ impl SceneSubject<'_> {
             .map(words)
             .collect();
         if shown.has_before() {
-            words.push((["° dotted: before the step", "° before", "°"], Role::Quiet));
+            words.push((["° dotted: before the step", "° before", "°"], Role::Label));
         }
         if shown.point.is_some() {
-            words.push((["@ the point", "@ point", "@"], Role::Focus));
+            words.push((["@ the point", "@ point", "@"], Role::Heading));
         }
         Some(words)
     }

@@ -27,7 +27,7 @@ const CENTER_ON_AXLE: f64 = 1e-3;
 const CLOSEST: f64 = 2.0;
 
 /// Lines of the body as it stood before.
-const EARLIER_BODY_STROKE: (LineStroke, Ink) = (LineStroke::Dotted(2), Ink::Strong(Role::Ghost));
+const EARLIER_BODY_STROKE: (LineStroke, Ink) = (LineStroke::Dotted(2), Ink::Strong(Role::Previous));
 
 /// A sign, its role and its cell.
 pub type BodySign = (&'static str, Role, (u16, u16));
@@ -149,7 +149,7 @@ impl SceneSubject<'_> {
         let axle = state.axle();
         let (foot, top) = self.shape.axle;
         let text = Ink::Strong(Role::Text);
-        scene.rod(&(axle * foot), &(axle * top), Ink::Strong(Role::Focus));
+        scene.rod(&(axle * foot), &(axle * top), Ink::Strong(Role::Heading));
         for at in &self.shape.free {
             let foot = axle * at.z;
             scene.line(
@@ -168,7 +168,7 @@ impl SceneSubject<'_> {
                 match is_near(depth, middle, rim.radius_m) {
                     Some(true) => (LineStroke::Thick, text),
                     None => (LineStroke::Thin, text),
-                    Some(false) => (LineStroke::Thin, Ink::Faint(Role::Quiet)),
+                    Some(false) => (LineStroke::Thin, Ink::Faint(Role::Label)),
                 }
             });
             // One spoke only: it shows that the wheel turns, and more of them would hide the axle.
@@ -192,7 +192,7 @@ impl SceneSubject<'_> {
                 let (stroke, ink) = match is_near(depth, middle, solid.size) {
                     Some(true) if !line.is_mark => (LineStroke::Thick, ink),
                     Some(false) if !line.is_mark => {
-                        (LineStroke::Dotted(2), Ink::Faint(Role::Quiet))
+                        (LineStroke::Dotted(2), Ink::Faint(Role::Label))
                     }
                     _ => (LineStroke::Thin, ink),
                 };
@@ -235,7 +235,7 @@ impl SceneSubject<'_> {
             let (sign, role) = match is_near(scene.depth(at), middle, radius) {
                 Some(true) => ("O", Role::Heading),
                 None => ("o", Role::Text),
-                Some(false) => ("·", Role::Quiet),
+                Some(false) => ("·", Role::Label),
             };
             (sign, role, scene.cell(at))
         });
@@ -248,7 +248,7 @@ impl SceneSubject<'_> {
         let masses = self.places_of_masses(state, scene);
         masses
             .iter()
-            .map(|at| ("°", Role::Ghost, scene.cell(at)))
+            .map(|at| ("°", Role::Previous, scene.cell(at)))
             .collect()
     }
 

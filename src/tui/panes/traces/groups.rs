@@ -3,9 +3,10 @@
 use super::{STRIP, STRIP_NAME_WIDTH, Traces, WHOLE_TIME_SHARE, axis};
 use crate::engine::recording::RecordedCurve;
 use crate::lab::playback::strip::Strip;
+use crate::tui::panes::below_rule;
 use crate::tui::split::split_rows;
 use crate::tui::theme::Role;
-use ratatui::layout::{Margin, Position, Rect};
+use ratatui::layout::{Position, Rect};
 
 /// From this width on the values stand beside the strips, and not on a line above each.
 const BESIDE_FROM: u16 = 48;
@@ -27,10 +28,10 @@ impl StripContent {
 
     pub fn role(self) -> Role {
         match self {
-            Self::Curve(RecordedCurve::X) => Role::X,
-            Self::Curve(RecordedCurve::Y) => Role::Y,
-            Self::Curve(RecordedCurve::Z) => Role::Z,
-            Self::Curve(RecordedCurve::Tilt) | Self::Measured(_) => Role::Path,
+            Self::Curve(RecordedCurve::X) => Role::Run,
+            Self::Curve(RecordedCurve::Y) => Role::Run,
+            Self::Curve(RecordedCurve::Z) => Role::Run,
+            Self::Curve(RecordedCurve::Tilt) | Self::Measured(_) => Role::Run,
         }
     }
 }
@@ -173,7 +174,7 @@ impl Traces<'_> {
 
     /// The time that the cell `at` of the screen shows where the traces are drawn on `area`, s; `None` beside the strips.
     pub fn time_s(&self, area: Rect, at: Position) -> Option<f64> {
-        let inside = area.inner(Margin::new(1, 1));
+        let inside = below_rule(area);
         if !inside.contains(at) {
             return None;
         }

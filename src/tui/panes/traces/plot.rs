@@ -144,7 +144,7 @@ impl Traces<'_> {
         let (across, down) = self.0.view.marker.dots();
         match whose {
             Whose::Before => (CurveStroke::Dotted, Ink::Ghost),
-            Whose::Pinned => (CurveStroke::LongAndShort, Ink::Faint(Role::Pinned)),
+            Whose::Pinned => (CurveStroke::LongAndShort, Ink::Faint(Role::Previous)),
             Whose::Exact => (CurveStroke::Dashed, Ink::Faint(Role::Exact)),
             // The dots of a filled band and the dashes of the exact motion look different only where dots are small.
             Whose::Run if self.0.run.overlay().is_some() && across * down <= 2 => {
