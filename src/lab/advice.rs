@@ -3,12 +3,13 @@
 use super::command::Command;
 use super::player::Player;
 use crate::engine::analysis::health::{Advice, advise};
-use crate::engine::journal::restart::as_advised;
+use crate::engine::journal::restart::{SCHEME, TIME_STEP, rerun_with};
 use crate::engine::run::Simulation;
 use crate::engine::scenario::Scenario;
 use crate::engine::text::number::shortest;
 use crate::lab::playback::background::{self, BackgroundJob};
 use std::sync::Arc;
+use toml::Table;
 
 /// What would mend the present run, and can be done to it.
 pub(super) struct Offer {
@@ -137,8 +138,9 @@ fn offered(advice: &Advice, player: &Player) -> Option<Offer> {
         } => (time_step_s, Some(name)),
         Advice::Holds | Advice::Nothing | Advice::BoundToItsTimeStep => return None,
     };
-    let end_s = player.end_s;
-    let scenario = as_advised(player.run().scenario(), time_step_s, scheme, end_s).ok()?;
+    let mut set = Table::from_iter([(TIME_STEP.to_owned(), time_step_s.into())]);
+    set.extend(scheme.map(|name| (SCHEME.to_owned(), name.into())));
+    let scenario = rerun_with(player.run().scenario(), &set, player.end_s).ok()?;
     let motion = player.motion();
     let is_in_force =
         motion.time_step_s == time_step_s && scheme.is_none_or(|name| motion.scheme.name == name);

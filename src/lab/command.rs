@@ -34,6 +34,9 @@ pub enum Command {
     Open(String),
     /// Sets dotted keys of the scenario, as one act: one undo takes all of them back.
     Set(Table),
+    /// Sets dotted keys of the scenario in a new run, which is played to the same time.
+    #[serde(skip)]
+    Rerun(Table),
     /// Nudges the value of a dotted key: up, or down where `times` is negative.
     Nudge {
         /// The key, of a single value.
@@ -41,6 +44,9 @@ pub enum Command {
         /// How often; negative: downwards. Not 0.
         #[serde(default = "once")]
         times: i32,
+        /// Whether a new run begins with the value, instead of a change from the next step on.
+        #[serde(default)]
+        rerun: bool,
     },
     /// Pushes from the next step on.
     Push(PushChoice),
@@ -92,6 +98,11 @@ pub enum Command {
     #[serde(skip)]
     Look(Table),
 }
+
+/// The command of a file beside which [`RERUN`] may be.
+pub const SET: &str = "set";
+/// `rerun = true` beside `set` begins a new run.
+pub const RERUN: &str = "rerun";
 
 pub struct CommandRow {
     /// Its name in a `[[do]]` table.
@@ -151,8 +162,8 @@ fn examples(kind: ValueKind) -> String {
 fn own() -> Vec<CommandRow> {
     vec![
         row("open", "\"wobble-push\"", "open a preset or a file, SCENARIO as on the command line; it stands still at step 0", form::OPEN_SCHEMA),
-        row("set", "{ \"motion.time_step_s\" = 0.05 }", "set dotted keys of the scenario, from the next step on; of body or start in a new run", ValueSchema::Keys),
-        row("nudge", "{ key = \"motion.time_step_s\", times = -1 }", "nudge a value up, or down where times is negative", form::NUDGE),
+        row("set", "{ \"motion.time_step_s\" = 0.05 }", "set dotted keys of the scenario, from the next step on; of body or start in a new run; rerun = true beside it begins a new run with any of them", ValueSchema::Keys),
+        row("nudge", "{ key = \"motion.time_step_s\", times = -1 }", "nudge a value up, or down where times is negative; rerun = true in it begins a new run", form::NUDGE),
         row("push", "true, or { point = \"top\", force_N = [0, 0, -50], for_s = 2 }", "give the push to come, or one of one's own, from now on or from_s; force_N can be a size beside toward = \"down\"", form::PUSH_SCHEMA),
         row("next_push", "{ point = \"top\", force_N = 50, toward = \"down\", for_s = 2 }", "choose the push to come, or a part of it", form::NEXT_PUSH_SCHEMA),
         row("step", "10", "take so many time steps, or go so many back", form::STEPS_SCHEMA),
@@ -347,6 +358,20 @@ impl Command {
         Ok(command)
     }
 
+    /// Returns the command `set` as one that begins a new run, if `rerun`, the value of [`RERUN`] beside it, says so.
+    ///
+    /// # Errors
+    /// If `rerun` is no truth value.
+    pub fn with_rerun(self, rerun: Option<&Value>) -> Result<Self, Problems> {
+        match (self, rerun.map(|value| (value, value.as_bool()))) {
+            (Self::Set(keys), Some((_, Some(true)))) => Ok(Self::Rerun(keys)),
+            (_, Some((value, None))) => {
+                Err(Problem::with_value(RERUN, value, "must be true or false").into())
+            }
+            (command, _) => Ok(command),
+        }
+    }
+
     /// The command that shows the run as the key `name` of `[view]` says with `value`.
     pub fn look(name: &str, value: impl Serialize) -> Self {
         let value = Value::try_from(value).ok();
@@ -366,6 +391,10 @@ impl Command {
     pub fn to_table(&self) -> Table {
         match (self, Value::try_from(self)) {
             (Self::Look(table), _) => table.clone(),
+            (Self::Rerun(keys), _) => Table::from_iter([
+                (SET.to_owned(), keys.clone().into()),
+                (RERUN.to_owned(), true.into()),
+            ]),
             (_, Ok(Value::Table(table))) => table,
             _ => Table::new(), // a command holds nothing that TOML cannot write
         }

@@ -9,7 +9,7 @@ use super::form::{InputField, InputForm};
 use super::player::{Player, WHERE};
 use super::settings::SETTINGS;
 use super::values::Values;
-use super::values::list::ValueSource;
+use super::values::list::{ListedValue, ValueSource};
 use super::view::{Pane, View};
 use crate::engine::export::CsvLayout;
 use crate::engine::journal::parameters::Parameter;
@@ -22,10 +22,9 @@ use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-const DIALOG_KEYS: &str = "Enter takes it, typing replaces it, Esc leaves it";
-const KEYS_OF_TWO: &str = "Enter writes it, Up and Down the other line, Esc leaves it";
-
-const KEYS_OF_SETTINGS: &str = "Up and Down choose, Left and Right or Enter change it, Esc closes";
+const DIALOG_KEYS: &str = "Enter: apply   Esc: cancel";
+const KEYS_OF_TWO: &str = "Enter: write the file   Tab: next field   Esc: cancel";
+const KEYS_OF_SETTINGS: &str = "Left, Right or Enter: change   Esc: close";
 
 /// A form on top of the panes, and the question that it asks.
 #[derive(Clone, Debug)]
@@ -39,7 +38,7 @@ pub struct Dialog {
 #[derive(Clone, Debug)]
 pub(super) enum DialogKind {
     /// The value of the selected line of the parameters pane.
-    Value,
+    Value(ValueEffect),
     GoTo,
     /// The CSV file for the rows of this run, and how many of the rows to write.
     Export(Arc<Scenario>),
@@ -54,6 +53,46 @@ pub(super) enum DialogKind {
     Number,
     /// Other values of the settings. Nothing is typed here.
     Settings,
+}
+
+/// When a value that is typed takes effect.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ValueEffect {
+    /// It changes no motion: it is applied at once.
+    AtOnce,
+    /// In a new run, from its start.
+    Rerun,
+    /// As `Rerun`; Tab chooses `FromNowOn`.
+    RerunByChoice,
+    /// From the next step on; Tab chooses `RerunByChoice`.
+    FromNowOn,
+}
+
+impl ValueEffect {
+    fn of(value: &ListedValue) -> Self {
+        match value.key.as_deref().map(Effect::of_key) {
+            None | Some(Effect::None) => Self::AtOnce,
+            Some(Effect::NewRun) => Self::Rerun,
+            Some(Effect::FromHere) => Self::RerunByChoice,
+        }
+    }
+
+    fn other(self) -> Self {
+        match self {
+            Self::RerunByChoice => Self::FromNowOn,
+            Self::FromNowOn => Self::RerunByChoice,
+            only => only,
+        }
+    }
+
+    fn keys(self) -> &'static str {
+        match self {
+            Self::AtOnce => DIALOG_KEYS,
+            Self::Rerun => "Enter: rerun from the start   Esc: cancel",
+            Self::RerunByChoice => "Enter: rerun from the start   Tab: from now on   Esc: cancel",
+            Self::FromNowOn => "Enter: from now on   Tab: rerun from the start   Esc: cancel",
+        }
+    }
 }
 
 impl Dialog {
@@ -82,7 +121,10 @@ impl Dialog {
             ],
         };
         let fields = [(label.as_str(), value.text.clone())];
-        Some(Self::new(DialogKind::Value, &title, &fields, about))
+        let effect = ValueEffect::of(value);
+        let mut dialog = Self::new(DialogKind::Value(effect), &title, &fields, about);
+        dialog.form.keys = effect.keys();
+        Some(dialog)
     }
 
     /// Opens the dialog that asks for what `ask` says.
@@ -243,9 +285,11 @@ impl Dialog {
         let path = self.form.text(0).to_owned();
         let force = self.may_replace(&files.path_of(&path));
         Ok(Some(match &self.question {
-            DialogKind::Value => {
+            DialogKind::Value(effect) => {
                 let time_step_s = player.motion().time_step_s;
-                return values.value_typed(&path, player.run().scenario(), time_step_s);
+                let from_now_on = *effect == ValueEffect::FromNowOn;
+                let scenario = player.run().scenario();
+                return values.value_typed(&path, from_now_on, scenario, time_step_s);
             }
             DialogKind::GoTo => Command::GoTo(SeekTarget::Step(player.step_meant(&path)?)),
             DialogKind::Export(scenario) => Command::Export(Export {
@@ -301,8 +345,12 @@ impl Dialog {
     }
 
     pub(super) fn edit_field(&mut self, edit: FieldEdit) {
-        match edit {
-            FieldEdit::Next | FieldEdit::Previous => self.form.edit_field(edit),
+        match (&mut self.question, edit) {
+            (DialogKind::Value(effect), FieldEdit::Next | FieldEdit::Previous) => {
+                *effect = effect.other();
+                self.form.keys = effect.keys();
+            }
+            (_, FieldEdit::Next | FieldEdit::Previous) => self.form.edit_field(edit),
             _ => self.edit(|form| form.edit_field(edit)),
         }
     }
@@ -344,7 +392,7 @@ impl Dialog {
     }
 }
 
-/// Returns what the dialog says about a parameter: its meaning, its choices, and when a change takes effect.
+/// Returns what the dialog says about a parameter: its meaning and its choices.
 fn about(parameter: &Parameter) -> Vec<String> {
     let mut lines = vec![parameter.spec.about.to_owned()];
     if parameter.value.is_bool() {
@@ -353,12 +401,6 @@ fn about(parameter: &Parameter) -> Vec<String> {
     if !parameter.choices.is_empty() {
         lines.push(format!("one of {}", parameter.choices.join(", ")));
     }
-    let when = match Effect::of_key(&parameter.key) {
-        Effect::NewRun => "a new run begins with it; the one before stays, dotted",
-        Effect::FromHere => "it acts from the next step on",
-        Effect::None => "no number depends on it",
-    };
-    lines.push(when.to_owned());
     lines
 }
 

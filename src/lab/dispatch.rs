@@ -76,8 +76,12 @@ impl Lab {
                 let edit = edits.set(table, false, player)?;
                 Ok(self.apply(edit))
             }
-            Command::Nudge { key, times } => {
-                let edit = edits.nudge(key, *times, player, self.now)?;
+            Command::Rerun(table) => {
+                let edit = edits.rerun(table, false, player)?;
+                Ok(self.apply(edit))
+            }
+            Command::Nudge { key, times, rerun } => {
+                let edit = edits.nudge(key, *times, *rerun, player, self.now)?;
                 Ok(self.apply(edit))
             }
             Command::TakeAdvice => {

@@ -7,7 +7,7 @@ use super::player::{Player, RunChange};
 use super::runs::Runs;
 use super::values::Values;
 use crate::engine::journal::next_push::NextPush;
-use crate::engine::journal::restart::{in_force, replaced};
+use crate::engine::journal::restart::{edited_motion, in_force};
 use crate::engine::journal::{Act, Journal, JournalEntry, number_of_push};
 use crate::engine::run::pushes::acts_s;
 use crate::engine::scenario::Scenario;
@@ -22,7 +22,7 @@ use toml::Table;
 const UNDO: [&str; 4] = [
     "nothing to undo",
     "undone",
-    "the run before",
+    "the previous run",
     "U brings it again",
 ];
 const REDO: [&str; 4] = [
@@ -31,6 +31,9 @@ const REDO: [&str; 4] = [
     "the run after",
     "u takes it back",
 ];
+
+/// Ends the message about an edit with which the run has begun anew.
+const FROM_START: &str = "rerun from the start; u returns to the previous run";
 
 /// The runs, and the values that can be edited.
 pub struct Edits {
@@ -50,6 +53,8 @@ enum EditMessage {
     Text(String),
     /// The value of this key, and from when on it acts.
     Value(String),
+    /// The value of this key, with which the run has begun anew.
+    ValueFromStart(String),
 }
 
 pub(super) type Edited = Result<ScenarioEdit, Refusal>;
@@ -116,10 +121,35 @@ impl Edits {
         self.perform(acts, coalesces, said, player)
     }
 
+    /// Sets all keys of `table` in a new run, the present one from its start, which is played to the same time. Values on
+    /// which no number depends need no new run. With `coalesces` it replaces the present run, which began with another
+    /// value of the same key.
+    pub(super) fn rerun(&mut self, table: &Table, coalesces: bool, player: &Player) -> Edited {
+        if table.keys().all(|key| Effect::of_key(key) == Effect::None) {
+            return self.set(table, coalesces, player);
+        }
+        let said = match table.len() {
+            1 => EditMessage::ValueFromStart(table.keys().cloned().collect()),
+            more => EditMessage::Text(format!("{more} values, {FROM_START}")),
+        };
+        let left_at = player.step_to_leave_at();
+        let scenario = self.leave_at(left_at).rerun_with(table, coalesces)?;
+        self.values.suit(&scenario);
+        Ok(ScenarioEdit {
+            change: RunChange::BeginsAnew {
+                is_act: false,
+                is_again: coalesces,
+            },
+            scenario,
+            said,
+        })
+    }
+
     pub(super) fn nudge(
         &mut self,
         key: &str,
         times: i32,
+        rerun: bool,
         player: &Player,
         now: Duration,
     ) -> Edited {
@@ -131,10 +161,14 @@ impl Edits {
         let value = parameter
             .nudged(times)
             .map_err(|reason| format!("{} {reason}", parameter.label))?;
-        let coalesces = self.values.coalesces_with_last_nudge(key, now);
+        let coalesces = self.values.coalesces_with_last_nudge(key, rerun, now);
         let table = Table::from_iter([(key.to_owned(), value)]);
-        let edited = self.set(&table, coalesces, player)?;
-        self.values.note_nudge(key, now);
+        let edited = if rerun {
+            self.rerun(&table, coalesces, player)?
+        } else {
+            self.set(&table, coalesces, player)?
+        };
+        self.values.note_nudge(key, rerun, now);
         Ok(edited)
     }
 
@@ -197,7 +231,7 @@ impl Edits {
         let left_at = player.step_to_leave_at();
         let scenario = self.leave_at(left_at).begin_with(set, acts, coalesces)?;
         self.values.suit(&scenario);
-        let said = "a new run; the one before is dotted, and u goes back to it".to_owned();
+        let said = format!("a new run, {FROM_START}");
         Ok(ScenarioEdit {
             change: RunChange::BeginsAnew {
                 is_act: false,
@@ -215,12 +249,12 @@ impl Edits {
     /// Begins the run anew as the advice says.
     pub(super) fn take_offer(&mut self, offer: Offer, player: &Player) -> ScenarioEdit {
         let Offer { what, scenario, .. } = offer;
-        let in_place = match replaced(player.run().scenario()) {
+        let in_place = match edited_motion(player.run().scenario()) {
             Some(edits) => format!(", in place of {edits}"),
             None => String::new(),
         };
         let left_at = player.step_to_leave_at();
-        self.leave_at(left_at).begin_as_advised(&scenario);
+        self.leave_at(left_at).begin_again(&scenario);
         self.values.suit(&scenario);
         ScenarioEdit {
             change: RunChange::BeginsAnew {
@@ -228,9 +262,7 @@ impl Edits {
                 is_again: false,
             },
             scenario,
-            said: EditMessage::Text(format!(
-                "{what} from the start{in_place}; the run before is dotted, u goes back to it"
-            )),
+            said: EditMessage::Text(format!("{what}{in_place}, {FROM_START}")),
         }
     }
 
@@ -367,6 +399,9 @@ impl Edits {
             EditMessage::Nothing => None,
             EditMessage::Text(text) => Some(text),
             EditMessage::Value(key) => Some(self.value_in_words(&key, player)),
+            EditMessage::ValueFromStart(key) => {
+                Some(format!("{}, {FROM_START}", self.values.in_words(&key)))
+            }
         };
         let is_going = player.is_replaying()
             || matches!(
@@ -390,7 +425,7 @@ impl Edits {
                     .to_owned()
             }
             _ if player.nudges_at_start() => {
-                format!("{value}, from the start; the run before is dotted, u takes it back")
+                format!("{value}, {FROM_START}")
             }
             _ => format!("{value}, from the next step on; u takes it back"),
         }

@@ -35,8 +35,8 @@ pub struct Values {
     pub next_push: NextPush,
     /// How many entries of the journal were in force when the list was made.
     entries_listed: usize,
-    /// The key that was nudged last, and when; `None` if something else was done since.
-    last_nudged: Option<(String, Duration)>,
+    /// The key that was nudged last, whether the run began anew with it, and when; `None` if something else was done since.
+    last_nudged: Option<(String, bool, Duration)>,
 }
 
 impl Values {
@@ -103,13 +103,14 @@ impl Values {
     }
 
     /// Returns whether a nudge of `key` at `now` and the nudge before it are one act.
-    pub(super) fn coalesces_with_last_nudge(&self, key: &str, now: Duration) -> bool {
-        let last = self.last_nudged.as_ref();
-        last.is_some_and(|(last, at)| *last == key && now.saturating_sub(*at) < NUDGE_PAUSE)
+    pub(super) fn coalesces_with_last_nudge(&self, key: &str, rerun: bool, now: Duration) -> bool {
+        self.last_nudged.as_ref().is_some_and(|(last, reran, at)| {
+            *last == key && *reran == rerun && now.saturating_sub(*at) < NUDGE_PAUSE
+        })
     }
 
-    pub(super) fn note_nudge(&mut self, key: &str, now: Duration) {
-        self.last_nudged = Some((key.to_owned(), now));
+    pub(super) fn note_nudge(&mut self, key: &str, rerun: bool, now: Duration) {
+        self.last_nudged = Some((key.to_owned(), rerun, now));
     }
 
     /// Records that something else was done: the next nudge is an act of its own.
@@ -156,7 +157,8 @@ impl Values {
         Ok(match self.list.selected().map(|value| &value.source) {
             Some(ValueSource::Scenario(parameter)) if times != 0 => {
                 let key = parameter.key.clone();
-                Some(Command::Nudge { key, times })
+                let rerun = true;
+                Some(Command::Nudge { key, times, rerun })
             }
             Some(ValueSource::NextPush(field)) if times != 0 => {
                 let next = self.next_push.nudged(*field, times, scenario)?;
@@ -166,10 +168,12 @@ impl Values {
         })
     }
 
-    /// Returns the command that gives the selected value what `text` says; `None` if it already has that value.
+    /// Returns the command that gives the selected value what `text` says, in a new run or from now on; `None` if it already
+    /// has that value.
     pub(super) fn value_typed(
         &self,
         text: &str,
+        from_now_on: bool,
         scenario: &Scenario,
         time_step_s: f64,
     ) -> Result<Option<Command>, String> {
@@ -181,7 +185,11 @@ impl Values {
                     .map_err(|reason| format!("{} {reason}", parameter.label))?;
                 let is_new = value != parameter.value || parameter.is_default;
                 let table = Table::from_iter([(parameter.key.clone(), value)]);
-                Ok(is_new.then_some(Command::Set(table)))
+                Ok(is_new.then_some(if from_now_on {
+                    Command::Set(table)
+                } else {
+                    Command::Rerun(table)
+                }))
             }
             Some(ValueSource::NextPush(field)) => {
                 let next = self.next_push.typed(*field, text, scenario, time_step_s)?;
@@ -257,12 +265,12 @@ mod tests {
     fn what_is_typed_becomes_a_command_for_the_selected_value() {
         let (mut values, scenario) = listed();
         values.select_next_push();
-        let command = values.value_typed("70", &scenario, 0.1).unwrap();
+        let command = values.value_typed("70", false, &scenario, 0.1).unwrap();
         let size = PushChoice {
             force_N: Some(Force::Size(70.0)),
             ..PushChoice::default()
         };
         assert_eq!(command, Some(Command::NextPush(size)));
-        assert!(values.value_typed("hard", &scenario, 0.1).is_err());
+        assert!(values.value_typed("hard", false, &scenario, 0.1).is_err());
     }
 }

@@ -13,7 +13,7 @@ use crate::engine::scenario::kind::ValueKind::{self, By, Line, Lines, Number, Pa
 use crate::engine::scenario::problem::nearest;
 use crate::engine::scenario::schema::{Schema, UNKNOWN_KEY, may, must};
 use crate::engine::scenario::{Document, Problem, Problems, float};
-use crate::lab::command::{COMMANDS, Command, LocatedCommand};
+use crate::lab::command::{COMMANDS, Command, LocatedCommand, RERUN, SET};
 use crate::lab::view;
 use toml::{Table, Value};
 
@@ -266,7 +266,7 @@ pub(super) fn setup(
         .map(|row| row.name)
         .filter(|name| COMMON.contains(name) || view::is_key(name))
         .chain(LAST_COMMANDS)
-        .chain([RUN_UNTIL, KEEP_KEY])
+        .chain([RUN_UNTIL, KEEP_KEY, RERUN])
         .collect();
     for name in table.keys() {
         if !known.contains(&name.as_str()) {
@@ -275,8 +275,15 @@ pub(super) fn setup(
         }
     }
     let mut commands = Vec::new();
-    for name in known.into_iter().filter(|name| *name != KEEP_KEY) {
-        match table.get(name).map(|value| Command::new(name, value)) {
+    for name in known
+        .into_iter()
+        .filter(|name| ![KEEP_KEY, RERUN].contains(name))
+    {
+        let rerun = table.get(RERUN).filter(|_| name == SET);
+        match table
+            .get(name)
+            .map(|value| Command::new(name, value)?.with_rerun(rerun))
+        {
             Some(Ok(command)) => commands.push(LocatedCommand {
                 command,
                 line: Some(content.line_of(name)),
@@ -284,6 +291,10 @@ pub(super) fn setup(
             Some(Err(problems)) => content.refuse(problems),
             None => {}
         }
+    }
+    if table.contains_key(RERUN) && !table.contains_key(SET) {
+        let rule = "says how set acts, and there is no set in this block";
+        content.refuse(Problem::at(RERUN, rule));
     }
     if table.contains_key("go_to") && table.contains_key(RUN_UNTIL) {
         let rule = "has no place beside go_to: one of the two ends a block";

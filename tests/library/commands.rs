@@ -350,6 +350,7 @@ fn places_conditions_and_refusals() {
     let nobody = Command::Nudge {
         key: "push.4.force_N.0".to_owned(),
         times: 1,
+        rerun: false,
     };
     assert!(
         desk.carry_out(&nobody)

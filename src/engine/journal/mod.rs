@@ -220,10 +220,15 @@ impl Journal {
         self.begin_run(name, scenario, false);
     }
 
-    /// Leaves the present run and begins that of `scenario`, which follows the advice about it. One undo returns to the
-    /// present run, whatever edits the new one has from it.
-    pub fn begin_as_advised(&mut self, scenario: &Scenario) {
-        self.begin_run(&self.present().name.clone(), scenario, true);
+    /// Leaves the present run and begins it again, opened under the same name, as `scenario` has it. One undo returns to
+    /// the present run, whatever edits the new one has from it.
+    pub fn begin_again(&mut self, scenario: &Scenario) {
+        let (name, end_s) = (self.present().name.clone(), self.present().end_s);
+        let is_as_long = self.steps() == scenario.steps.try_into().ok();
+        self.begin_run(&name, scenario, true);
+        if is_as_long {
+            self.set_end(end_s); // a kept edit of the time step does not move it
+        }
     }
 
     fn begin_run(&mut self, name: &str, scenario: &Scenario, joins_edits: bool) {
@@ -309,9 +314,8 @@ impl Journal {
         coalesces: bool,
     ) -> Result<Arc<Scenario>, Problems> {
         let mut changed = self.clone();
-        if let Some(beginning) = self.begun().checked_sub(1).filter(|_| coalesces) {
-            changed.entries.truncate(beginning);
-            changed.undone = 0;
+        if coalesces {
+            changed.forget_present_run();
         }
         let left = changed.present();
         let (name, left_at) = (left.name.clone(), left.left_at);
@@ -322,6 +326,32 @@ impl Journal {
         }
         *self = changed;
         Ok(scenario)
+    }
+
+    /// Begins a new run, opened under the same name: the present run from its start, with the values of `set` throughout;
+    /// see [`rerun_with`](restart::rerun_with). With `coalesces`, one more nudge of the value that began the present run, it
+    /// replaces the present run.
+    ///
+    /// # Errors
+    /// Why a value is refused; nothing has changed then.
+    pub fn rerun_with(&mut self, set: &Table, coalesces: bool) -> Result<Arc<Scenario>, Problems> {
+        let mut changed = self.clone();
+        if coalesces {
+            changed.forget_present_run();
+        }
+        let (run, end_s) = (changed.scenario()?, changed.present().end_s);
+        let scenario = Arc::new(restart::rerun_with(&run, set, end_s)?);
+        changed.begin_again(&scenario);
+        *self = changed;
+        Ok(scenario)
+    }
+
+    /// Drops the present run and its beginning, unless it is the first.
+    fn forget_present_run(&mut self) {
+        if let Some(beginning) = self.begun().checked_sub(1) {
+            self.entries.truncate(beginning);
+            self.undone = 0;
+        }
     }
 
     /// Undoes the last act with those joined to it. Returns them; none where nothing was done.

@@ -1,5 +1,5 @@
-//! New runs from a run: one that starts from its present state, with the settings and pushes in force there, and one that
-//! follows an advice, from its start with another time step or scheme throughout.
+//! New runs from a run: one that starts from its present state, with the settings and pushes in force there, and one from
+//! its start, with other values throughout.
 
 use crate::physics::{State, rotation};
 use crate::run::Clock;
@@ -7,14 +7,14 @@ use crate::scenario::dotted::number_of_push;
 use crate::scenario::file::{EditFile, MotionFile, PushFile, ScenarioFile, StartFile};
 use crate::scenario::problem::{Problem, Problems};
 use crate::scenario::rescale::{MOST_RUN_STEPS_BY_TIME, at_time_step};
-use crate::scenario::{Document, Motion, Push, Pushes, Scenario, Window};
+use crate::scenario::{Document, Motion, Push, Pushes, Scenario, Window, float};
 use crate::text::number;
 use nalgebra::{Matrix3, Vector3};
 use toml::{Table, Value};
 
-const ADVISED: &str = "the run as advised";
-/// The keys of an edit that another time step or scheme throughout replaces.
-const REPLACED: [&str; 2] = ["motion.time_step_s", "motion.scheme"];
+const RERUN: &str = "the run from its start";
+pub const TIME_STEP: &str = "motion.time_step_s";
+pub const SCHEME: &str = "motion.scheme";
 /// The keys of a push that count in steps.
 const COUNTED: [&str; 3] = ["first_step", "steps", "accumulates"];
 /// A push is over if less than this share of a time step remains of it; the rest is rounding.
@@ -191,49 +191,56 @@ impl RestartPoint<'_> {
     }
 }
 
-/// Returns the run of `scenario` with the time step `time_step_s` (s) and, where one is named, `scheme` throughout. It
-/// has the pushes and the edits of gravity and pushes at the same times, and no edits of time step and scheme. It ends
-/// at `end_s` (s).
-pub fn as_advised(
-    scenario: &Scenario,
-    time_step_s: f64,
-    scheme: Option<&str>,
-    end_s: f64,
-) -> Result<Scenario, Problems> {
-    let refused = |problem| Problems::one(ADVISED, problem);
+/// Returns the run of `scenario` from its start with the values of `set`, dotted keys, throughout: its edits of these keys
+/// are left out. Its other edits and its pushes stay, at the same times; so does its end, `end_s` (s).
+pub fn rerun_with(scenario: &Scenario, set: &Table, end_s: f64) -> Result<Scenario, Problems> {
+    let refused = |problem| Problems::one(RERUN, problem);
     let mut file = scenario.file.clone();
     let edits = std::mem::take(&mut file.edit);
+    let typed = set.get(TIME_STEP).and_then(float);
+    let time_step_s = typed.unwrap_or(file.motion.time_step_s);
     let is_other = time_step_s != file.motion.time_step_s;
     if is_other {
         file = at_time_step(&file, time_step_s).map_err(refused)?;
     }
-    if let Some(scheme) = scheme {
-        file.motion.scheme = Some(scheme.to_owned());
+    if typed.is_some() {
+        file.motion.steps = (end_s / time_step_s)
+            .round()
+            .clamp(1.0, MOST_RUN_STEPS_BY_TIME) as u64;
     }
-    file.motion.steps = (end_s / time_step_s)
-        .round()
-        .clamp(1.0, MOST_RUN_STEPS_BY_TIME) as u64;
     for ((time_s, _), edit) in Clock::edits(scenario).zip(edits) {
-        let mut set = edit.set;
-        set.retain(|key, _| !REPLACED.contains(&key));
-        let counted = set.iter().find(|(key, value)| counts(key, value));
+        let mut kept = edit.set;
+        kept.retain(|key, _| !set.keys().any(|new| is_inside(key, new)));
+        let counted = kept.iter().find(|(key, value)| counts(key, value));
         if let Some((key, _)) = counted.filter(|_| is_other) {
             let rule = "is counted in steps, which are others at another time step";
             return Err(refused(Problem::at(key.clone(), rule)));
         }
-        if !set.is_empty() {
-            let step = (time_s / time_step_s).round() as u64;
-            file.edit.push(EditFile { step, set });
+        if !kept.is_empty() {
+            let step = match typed {
+                Some(_) => (time_s / time_step_s).round() as u64,
+                None => edit.step,
+            };
+            file.edit.push(EditFile { step, set: kept });
         }
     }
-    Document::from_file(ADVISED, &file)?.scenario()
+    let mut document = Document::from_file(RERUN, &file)?;
+    for (key, value) in set {
+        document.write(key, value.clone())?;
+    }
+    document.scenario()
 }
 
-/// Returns the edits of `scenario` that a run as advised leaves out, in words: time step, scheme or both. `None` where
-/// it has none.
-pub fn replaced(scenario: &Scenario) -> Option<&'static str> {
+/// Returns whether the dotted `key` is `whole` or a part of it.
+fn is_inside(key: &str, whole: &str) -> bool {
+    let rest = key.strip_prefix(whole);
+    rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+}
+
+/// Returns the edits of `scenario` of time step and scheme, in words: of one, or of both. `None` where it has none.
+pub fn edited_motion(scenario: &Scenario) -> Option<&'static str> {
     let edits = &scenario.file.edit;
-    match REPLACED.map(|key| edits.iter().any(|edit| edit.set.contains_key(key))) {
+    match [TIME_STEP, SCHEME].map(|key| edits.iter().any(|edit| edit.set.contains_key(key))) {
         [true, true] => Some("the edits of dt and scheme"),
         [true, false] => Some("the edits of dt"),
         [false, true] => Some("the edits of the scheme"),
@@ -260,6 +267,10 @@ mod tests {
         document.scenario().unwrap()
     }
 
+    fn one(key: &str, value: impl Into<Value>) -> Table {
+        Table::from_iter([(key.to_owned(), value.into())])
+    }
+
     #[test]
     fn edits_keep_their_seconds_and_those_of_the_time_step_go() {
         let run = run(
@@ -267,7 +278,7 @@ mod tests {
              [[edit]]\nstep = 60\nset = { 'motion.scheme' = 'rk4', 'motion.gravity_m_per_s2' = 1 }\n",
         );
         let step_s = run.motion.time_step_s;
-        let other = as_advised(&run, 0.1 * step_s, None, 30.0).unwrap();
+        let other = rerun_with(&run, &one(TIME_STEP, 0.1 * step_s), 30.0).unwrap();
         let edit = &other.file.edit[..];
         assert_eq!(edit.len(), 1);
         let time_s = 40.0 * step_s + 20.0 * 0.05;
@@ -275,15 +286,31 @@ mod tests {
         assert_eq!(other.motion.scheme.name, run.motion.scheme.name);
         assert_eq!(other.edits[0].motion.gravity, 1.0);
         assert!((Clock::end_s(&other) - 30.0).abs() < 1e-9);
-        assert_eq!(replaced(&run), Some("the edits of dt and scheme"));
-        assert_eq!(replaced(&other), None);
+        assert_eq!(edited_motion(&run), Some("the edits of dt and scheme"));
+        assert_eq!(edited_motion(&other), None);
+    }
+
+    #[test]
+    fn another_gravity_leaves_every_other_edit_at_its_step() {
+        let run = run(
+            "\n[[edit]]\nstep = 40\nset = { 'motion.time_step_s' = 0.05, 'motion.gravity_m_per_s2' = 3 }\n\
+             [[edit]]\nstep = 60\nset = { 'motion.gravity_m_per_s2' = 1 }\n",
+        );
+        let other = rerun_with(&run, &one("motion.gravity_m_per_s2", 5.0), 30.0).unwrap();
+        assert_eq!(other.motion.gravity, 5.0);
+        assert_eq!(other.file.edit.len(), 1);
+        assert_eq!(
+            (other.edits[0].step, other.edits[0].motion.time_step_s),
+            (40, 0.05)
+        );
+        assert_eq!(other.steps, run.steps);
     }
 
     #[test]
     fn what_is_counted_in_steps_is_refused() {
         let run = run("\n[[edit]]\nstep = 40\nset = { 'push.0.steps' = 7 }\n");
         let own = run.motion.time_step_s;
-        assert!(as_advised(&run, 0.5 * own, None, 30.0).is_err());
-        assert!(as_advised(&run, own, Some("strang"), 30.0).is_ok());
+        assert!(rerun_with(&run, &one(TIME_STEP, 0.5 * own), 30.0).is_err());
+        assert!(rerun_with(&run, &one(SCHEME, "strang"), 30.0).is_ok());
     }
 }

@@ -266,7 +266,7 @@ fn undo_takes_the_advice_back_before_the_edits_that_it_kept() {
     let mut journal = self::journal("method-2");
     let edited = set(&mut journal, 40, "motion.gravity_m_per_s2", 5.0);
     leave(&mut journal, 90);
-    journal.begin_as_advised(&edited);
+    journal.begin_again(&edited);
     set(&mut journal, 7, "motion.time_step_s", 0.02);
     assert_eq!(undone(&mut journal), Some(7));
     assert_eq!(undone(&mut journal), None);

@@ -1,6 +1,6 @@
 //! A file of commands: a list of `[[do]]` tables with one command each.
 
-use super::{COMMANDS, Command, CommandRow};
+use super::{COMMANDS, Command, CommandRow, RERUN, SET};
 use crate::engine::scenario::problem::nearest;
 use crate::engine::scenario::schema::quoted;
 use crate::engine::scenario::{Document, Problem, Problems};
@@ -76,13 +76,15 @@ fn one(value: &Value) -> Result<Command, Problems> {
     let beside = COMMANDS.iter().find(|row| table.contains_key(row.name));
     let mut unknown_names = Problems::default();
     for name in table.keys() {
-        if COMMANDS.iter().all(|row| row.name != name) {
+        let is_known = COMMANDS.iter().any(|row| row.name == name);
+        if !is_known && !(name == RERUN && table.contains_key(SET)) {
             unknown_names.add(|| unknown(name, beside));
         }
     }
     unknown_names.or(())?;
-    match table.iter().collect::<Vec<_>>()[..] {
-        [(name, argument)] => Command::new(name, argument),
+    let commands = table.iter().filter(|(name, _)| *name != RERUN);
+    match commands.collect::<Vec<_>>()[..] {
+        [(name, argument)] => Command::new(name, argument)?.with_rerun(table.get(RERUN)),
         [] => {
             let rule = "holds no command: there is gyrolab man for their names";
             Err(Problem::at("", rule).into())

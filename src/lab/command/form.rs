@@ -87,6 +87,7 @@ pub(super) const SAVE: ValueSchema = Fields(Schema(&[OF_FILE, OF_SAVE]), Field("
 const OF_NUDGE: &[SchemaRow] = &[
     must("key", Text(can_be_nudged), "the dotted key that is nudged"),
     may("times", By(|value| not_zero(value, MOST_TIMES)), ""),
+    may("rerun", Flag, ""),
 ];
 const OF_PUSH: &[SchemaRow] = &[
     may("point", Line, ""),
