@@ -148,6 +148,11 @@ impl Lab {
         self.player.is_endless = true;
     }
 
+    /// Chooses the time that the traces show.
+    fn choose_window(&mut self) {
+        self.view.window = self.player.window(self.now, &self.view, &self.comparison);
+    }
+
     /// Reads the numbers of the run, and whatever depends on them.
     fn read_now(&mut self) {
         if let Some(said) = self.player.read(self.now, &self.view) {
@@ -157,6 +162,7 @@ impl Lab {
         self.view.measured = self.comparison.data().is_some();
         self.step_pane.read(&mut self.player, &self.view);
         self.adviser.look(&self.player);
+        self.choose_window();
         self.view.turn_camera(&self.player);
         self.edits.read(&self.player);
         self.changed = true;

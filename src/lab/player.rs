@@ -6,6 +6,7 @@
 mod fast_strip;
 mod replay;
 mod seek;
+mod window;
 
 use super::answer::{ActionResult, Done, PendingAction};
 use super::command::{Command, SeekTarget};
@@ -84,6 +85,8 @@ pub struct Player {
     pub reading: Reading,
     read_at: Duration,
     strip: FastStrip,
+    /// When the window of the traces was held last.
+    window_held_at: Duration,
     /// The numbers at the cursor, and the scenario of their run.
     at_cursor: Option<(Arc<Scenario>, Sample)>,
     /// Whether a single step keeps its intermediate results, until they are read.
@@ -101,6 +104,7 @@ impl Player {
         let reading = Reading::new(&mut run, &pace);
         Self {
             strip: FastStrip::new(&run, &reading),
+            window_held_at: Duration::ZERO,
             run,
             pace,
             goal: None,

@@ -365,6 +365,8 @@ impl Lab {
         self.go_on_with_script(halt);
         if self.changed && self.player.is_due(now, self.view.look.window_s) {
             self.read_now();
+        } else if self.changed {
+            self.choose_window();
         }
     }
 

@@ -10,6 +10,7 @@ pub mod pane;
 pub mod step;
 mod swings;
 pub mod theme;
+pub mod window;
 
 use super::sheet::Sheet;
 use crate::engine::recording::RecordedCurve;
@@ -23,11 +24,14 @@ use std::sync::Arc;
 use step::StepPageChoice;
 use theme::{Marker, Theme};
 use toml::{Table, Value};
+use window::TimeWindow;
 
 /// The longest time that one sweep of the traces may take at first, seconds of wall time.
 const LONGEST_SWEEP_S: f64 = 120.0;
 /// The panes of a bare screen, where none are chosen.
 const BARE: [Pane; 2] = [Pane::Traces, Pane::Above];
+/// How many swings the traces show where they have room for them.
+pub const USUAL_SWINGS: usize = 8;
 /// Frames a second at most, where nothing is chosen.
 pub const FPS: u32 = 15;
 
@@ -107,6 +111,10 @@ pub struct View {
     pub filled: bool,
     pub marker: Marker,
     pub theme: Theme,
+    /// The time that the traces show.
+    pub window: TimeWindow,
+    /// How many swings of the run the traces show, if it has more.
+    pub swings: usize,
     /// Time at the left edge of the traces, s; `None`: they follow the run.
     pub since_s: Option<f64>,
     /// How many times the values of the traces are magnified: about the value at the cursor, or else about the run's
@@ -147,6 +155,8 @@ impl View {
             filled: false,
             marker,
             theme,
+            window: TimeWindow::default(),
+            swings: USUAL_SWINGS,
             since_s: None,
             magnified: 1.0,
             cursor: None,
