@@ -1,111 +1,118 @@
-//! Which panes stand where, at every size of the screen.
+//! Where each part of the screen is, at every size.
 //!
-//! The table of panes says how wide each must be at least, and in which order they join the others: at 80x24 all but the
-//! 3-D view stand side by side, from 120 columns on that too. On smaller screens there are fewer, and the hint line says
-//! so.
+//! There are three arrangements. Narrow screens (80x24) have three columns: the traces, a view of the path, and the values.
+//! From 27 rows of panes on, the path is shown from above and, below that, in 3-D. Large screens (from 160x44 on) have the
+//! values in a band below both views. The panes are one column apart. The overview of the whole run lies below them.
+//! Smaller screens show fewer parts; the verdict and the keys stay to the last.
 
-use super::panes::{PaneRow, Width, rows};
 use super::split::{split_columns, split_rows};
 use crate::lab::view::{HideablePart, Pane, View};
 use ratatui::layout::Rect;
 
-/// The width the whole lab wants.
-const FULL_LAB_WIDTH: u16 = 80;
-/// From this width on two panes stand side by side.
-const TWO_FROM: u16 = 52;
-/// From this width on a hint fits on one line.
-const ONE_LINE_FROM: u16 = 140;
-/// The fewest columns of a pane beside one that is shown on request.
-const BESIDE_ASKED: u16 = 24;
-/// From this width on a page of a lesson stands beside a pane.
-const BESIDE_PAGE_FROM: u16 = 72;
-/// The fewest and the most columns of a page, and its share of the screen, %.
-const LESSON_PAGE_COLUMNS: (u16, u16) = (38, 64);
-const PAGE_SHARE: usize = 48;
-/// The rows of a page above a pane whose run it plays, where they do not stand side by side.
-const PAGE_ROWS: u16 = 8;
-/// The height the whole lab wants.
-const HEIGHT: u16 = 24;
-/// From this height on a hint may have two lines.
-const TWO_LINES_FROM: u16 = 18;
-/// On lower screens the lines below the panes leave at least these rows to the panes, and a hint has at most this many lines.
-const ROWS_OF_PANES: u16 = 6;
-const MOST_STATUS_LINES: u16 = 3;
+/// The size of the whole lab, columns and rows. Below it, parts are left out.
+const FULL_LAB: (u16, u16) = (80, 24);
+/// From this size on the values are a band below the views of the path.
+const LARGE_LAB: (u16, u16) = (160, 44);
+/// From this width on two panes are side by side.
+const TWO_FROM: u16 = 48;
+/// From this height on there is a scrub line, and a row for the note.
+const SCRUB_FROM: u16 = 12;
+/// Rows of the overview: a rule, the curve, and a ruler; and the height of the screen from which they are.
+const OVERVIEW_ROWS: [(u16, u16); 3] = [(44, 6), (36, 5), (24, 4)];
+/// The note has two rows where it needs them and the screen is narrower than this.
+const LONG_NOTE_FROM: u16 = 120;
 
-/// What the lines below the panes have to say: what there is to see, and whether the numbers are to be believed.
+/// The fewest and the most columns of the traces, and their share of the screen at 80 and at 120 columns, per mille.
+const TRACES_COLUMNS: (u16, u16) = (28, 96);
+const TRACES_SHARE: (u32, u32) = (350, 420);
+/// Columns of the values, and from [`WIDE_VALUES_FROM`] columns of the screen on.
+const VALUES_COLUMNS: (u16, u16) = (24, 30);
+const WIDE_VALUES_FROM: u16 = 110;
+/// Rows of the values below the views of the path.
+const VALUES_ROWS: u16 = 13;
+/// The fewest columns of a view of the path beside another one, and the fewest rows of two, one above the other.
+const VIEW_COLUMNS: u16 = 26;
+const STACKED_FROM: u16 = 27;
+/// The fewest columns of a view of the path where two of them were chosen.
+const CHOSEN_VIEW_COLUMNS: u16 = 20;
+
+/// The fewest and the most columns of a lesson's page, its share of the screen in percent, and the width of the screen from
+/// which the page is beside the run.
+const PAGE_COLUMNS: (u16, u16) = (37, 64);
+const PAGE_SHARE: u32 = 39;
+const BESIDE_PAGE_FROM: u16 = 72;
+/// The rows of a page above the run that it plays, on narrower screens.
+const PAGE_ROWS: u16 = 8;
+/// The fewest and the most columns of the step pane, and its share of the screen in percent.
+const STEP_COLUMNS: (u16, u16) = (44, 84);
+const STEP_SHARE: u32 = 62;
+/// The fewest columns of what is beside a page or the step pane, and the fewest rows with which it is two panes.
+const COMPANION_COLUMNS: u16 = 24;
+const COMPANION_ROWS: u16 = 16;
+
+/// What the lab says below the panes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LinesBelow {
-    /// Lines of the hint on a screen of this width.
-    pub lines: u16,
-    pub warns: bool,
+    /// Rows that the note takes on a screen of this width.
+    pub note_rows: u16,
+    /// Whether the traces show a part of the run, and an overview the whole.
+    pub has_overview: bool,
 }
 
-/// Where everything stands; what has no place has an empty area.
+/// The areas of a screen; a part without a place has an empty area.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ScreenLayout {
-    pub title: Rect,
-    /// The panes that have a place, from left to right.
+    /// Title, time step, time and speed: one row.
+    pub header: Rect,
+    /// The panes that have a place, in the order in which Tab goes through them.
     pub panes: Vec<(Pane, Rect)>,
-    pub timeline: Rect,
+    /// The whole run: a rule, its curve and a ruler; or one row, the scrub line.
+    pub overview: Rect,
     pub measured: Rect,
-    pub health: Rect,
-    /// The lines that say what to look at: one, or two where the screen is narrow.
-    pub hint: Rect,
+    /// Whether the run is reliable: one row.
+    pub verdict: Rect,
+    /// What to look at: one row, or two. On low screens it is the row of the verdict, where only messages are shown.
+    pub note: Rect,
     pub keys: Rect,
     /// Whether the screen is too small for the whole lab.
     pub is_cramped: bool,
 }
 
 impl ScreenLayout {
-    /// The layout of `area`; `keys` says whether there is a line of keys.
-    pub fn new(area: Rect, view: &View, keys: bool) -> Self {
-        let said = LinesBelow {
-            lines: 1,
-            warns: true,
-        };
-        Self::saying(said, area, view, keys)
-    }
-
-    /// The same, with room for what is to be said: on a low screen a hint that is too long for one line has more, and the
-    /// line about the numbers' health only where that warns.
-    pub fn saying(said: LinesBelow, area: Rect, view: &View, keys: bool) -> Self {
+    /// Returns the layout of `area`; `keys` says whether there is a row of keys.
+    pub fn new(said: LinesBelow, area: Rect, view: &View, keys: bool) -> Self {
         let mut rest = area;
-        let title = cut_top(&mut rest, area.height >= 3);
+        let header = cut_top(&mut rest, u16::from(area.height >= 3));
         if view.look.bare {
-            // A message has the last line, over the panes.
+            // A message is in the last row, over the panes.
             return Self {
-                title,
-                panes: place_panes(rest, view),
-                hint: cut_bottom(&mut rest, area.height >= 6),
+                header,
+                panes: place_panes(rest, area.height, view),
+                note: cut_bottom(&mut rest, u16::from(area.height >= 6)),
                 ..Self::default()
             };
         }
-        let keys = cut_bottom(&mut rest, keys && area.height >= 7);
-        let hint = cut_bottom(&mut rest, area.height >= 6);
-        let (lines, has_health) = if view.sheet.is_some() && area.height >= TWO_LINES_FROM {
-            // What the lines below have not to say goes to the page.
-            let most = 1 + u16::from(area.width < ONE_LINE_FROM);
-            (said.lines.clamp(1, most), !view.hides(HideablePart::Health))
-        } else if area.height >= TWO_LINES_FROM {
-            (1 + u16::from(area.width < ONE_LINE_FROM), true)
+        let keys = cut_bottom(&mut rest, u16::from(keys && area.height >= 6));
+        let most_note_rows = if area.width < LONG_NOTE_FROM { 2 } else { 1 };
+        let note_rows = if area.height < SCRUB_FROM {
+            0
         } else {
-            on_low_screen(said, area.height, view.hides(HideablePart::Health))
+            said.note_rows.clamp(1, most_note_rows)
         };
-        let hint = (1..lines).fold(hint, |hint, _| hint.union(cut_bottom(&mut rest, true)));
-        let health = cut_bottom(&mut rest, has_health);
-        // The values have all the lines where they fill a screen that has no more than they need.
-        let is_full = area.height == HEIGHT && view.is_filled_by(Pane::Parameters);
-        let timeline = cut_bottom(&mut rest, area.height >= HEIGHT && !is_full);
-        let measured = cut_bottom(&mut rest, view.measured && area.height >= 8);
+        let note = cut_bottom(&mut rest, note_rows);
+        let has_verdict = area.height >= 5 && !(view.hides(HideablePart::Health) && note_rows > 0);
+        let verdict = cut_bottom(&mut rest, has_verdict.into());
+        let overview = cut_bottom(&mut rest, overview_rows(said, area.height, view));
+        let measured = cut_bottom(&mut rest, u16::from(view.measured && area.height >= 8));
         Self {
-            title,
-            panes: place_panes(rest, view),
-            timeline,
+            header,
+            panes: place_panes(rest, area.height, view),
+            overview,
             measured,
-            health,
-            hint,
+            verdict,
+            note: if note.is_empty() { verdict } else { note },
             keys,
-            is_cramped: area.width < FULL_LAB_WIDTH || area.height < HEIGHT,
+            is_cramped: area.width < FULL_LAB.0 || area.height < FULL_LAB.1,
         }
     }
 
@@ -115,242 +122,263 @@ impl ScreenLayout {
             .find_map(|&(other, place)| (other == pane).then_some(place))
     }
 
-    /// The panes that stand side by side on `area`, with the lines of the whole lab around them, while none fills it.
-    pub fn side_by_side(area: Rect, view: &View) -> Vec<Pane> {
+    /// Returns the panes that are side by side while none fills the screen.
+    pub fn side_by_side(said: LinesBelow, area: Rect, view: &View) -> Vec<Pane> {
         let unfilled = View {
             filled: false,
             ..view.clone()
         };
-        let layout = Self::new(area, &unfilled, true);
+        let layout = Self::new(said, area, &unfilled, true);
         layout.panes.iter().map(|(pane, _)| *pane).collect()
     }
 }
 
-/// Lines of the hint on a screen of this `height` that is low, and whether the health of the numbers has a line.
-fn on_low_screen(said: LinesBelow, height: u16, hides_health: bool) -> (u16, bool) {
-    let below = height.saturating_sub(2 + ROWS_OF_PANES);
-    let lines = below
-        .saturating_sub(said.warns.into())
-        .min(MOST_STATUS_LINES)
-        .min(said.lines)
-        .max(1);
-    let has_health = said.warns || lines == 1;
-    (lines, height >= 9 && has_health && !hides_health)
+fn overview_rows(said: LinesBelow, height: u16, view: &View) -> u16 {
+    let full = OVERVIEW_ROWS.iter().find(|(from, _)| height >= *from);
+    match full {
+        Some((_, rows)) if said.has_overview && !view.filled => *rows,
+        _ => u16::from(height >= SCRUB_FROM),
+    }
 }
 
-/// Takes the first line off `rest` if it is `wanted`.
-fn cut_top(rest: &mut Rect, wanted: bool) -> Rect {
-    let [line, below] = split_rows(*rest, wanted.into());
+/// Takes the first `rows` off `rest`.
+fn cut_top(rest: &mut Rect, rows: u16) -> Rect {
+    let [top, below] = split_rows(*rest, rows);
     *rest = below;
-    line
+    top
 }
 
-/// Takes the last line off `rest` if it is `wanted`.
-fn cut_bottom(rest: &mut Rect, wanted: bool) -> Rect {
-    let [above, line] = split_rows(*rest, rest.height.saturating_sub(wanted.into()));
+/// Takes the last `rows` off `rest`.
+fn cut_bottom(rest: &mut Rect, rows: u16) -> Rect {
+    let [above, bottom] = split_rows(*rest, rest.height.saturating_sub(rows));
     *rest = above;
-    line
+    bottom
 }
 
-fn place_panes(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
+/// Splits `area` after `width` columns, with a blank column between the parts.
+fn apart(area: Rect, width: u16) -> [Rect; 2] {
+    let [left, rest] = split_columns(area, width);
+    let [_, right] = split_columns(rest, 1);
+    [left, right]
+}
+
+/// Splits `area` into two columns of equal width, a blank one apart.
+fn halves(area: Rect) -> [Rect; 2] {
+    apart(area, area.width.saturating_sub(1) / 2)
+}
+
+/// Splits `area` after `height` rows, with a blank row between the parts.
+fn stacked(area: Rect, height: u16) -> [Rect; 2] {
+    let [above, rest] = split_rows(area, height);
+    let [_, below] = split_rows(rest, 1);
+    [above, below]
+}
+
+fn percent(width: u16, share: u32, (least, most): (u16, u16)) -> u16 {
+    ((u32::from(width) * share / 100) as u16).clamp(least, most)
+}
+
+/// Places the panes on `area` of a screen of this `height`.
+fn place_panes(area: Rect, height: u16, view: &View) -> Vec<(Pane, Rect)> {
     if area.is_empty() {
-        return Vec::new();
-    }
-    if !view.filled && view.may_show(Pane::Lesson) && area.width >= BESIDE_PAGE_FROM {
-        let share = area.width as usize * PAGE_SHARE / 100;
-        let [page, rest] = split_columns(
-            area,
-            (share as u16).clamp(LESSON_PAGE_COLUMNS.0, LESSON_PAGE_COLUMNS.1),
-        );
-        let mut panes = place_panes(rest, &beside_page(view));
-        panes.insert(0, (Pane::Lesson, page));
-        return panes;
-    }
-    if !view.filled && view.may_show(Pane::Lesson) && view.focus == Pane::Lesson {
-        let plays = view.sheet.as_ref().is_some_and(|sheet| sheet.plays);
-        if !plays || area.height < 2 * PAGE_ROWS {
-            return vec![(Pane::Lesson, area)];
-        }
-        let [page, rest] = split_rows(area, PAGE_ROWS);
-        let mut beside = beside_page(view);
-        beside.filled = true;
-        let mut panes = place_panes(rest, &beside);
-        panes.insert(0, (Pane::Lesson, page));
-        return panes;
-    }
-    let joined = panes_with_room(area.width);
-    if view.filled || area.width < TWO_FROM {
+        Vec::new()
+    } else if view.filled {
         vec![(view.focus, area)]
-    } else if let Some(asked) = asked(view) {
-        with_asked(asked, area, view)
-    } else if !usual().all(|row| view.may_show(row.id)) {
-        chosen(area, view)
-    } else if joined.len() > 2 {
-        columns(area, &joined)
+    } else if view.may_show(Pane::Lesson) {
+        with_page(area, height, view)
+    } else if view.may_show(Pane::Step) {
+        with_step(area, view)
     } else {
-        halves(area, view.focus)
+        arranged(area, height, view)
     }
 }
 
-/// The view of the panes beside a lesson's page. If there is room for only one, it is the one that was there before the
-/// page had the focus.
-fn beside_page(view: &View) -> View {
-    let mut without = View {
+/// A lesson's page, and beside it the run.
+fn with_page(area: Rect, height: u16, view: &View) -> Vec<(Pane, Rect)> {
+    let without = View {
         sheet: None,
+        focus: beside_page(view),
         ..view.clone()
     };
-    if without.focus == Pane::Lesson {
-        let beside = without.beside.filter(|pane| without.may_show(*pane));
-        let first = without.to_show().first().copied();
-        without.focus = beside.or(first).unwrap_or(Pane::Traces);
-    }
-    without
-}
-
-/// The panes that are shown without being asked for, but for the page of a lesson.
-fn usual() -> impl Iterator<Item = &'static PaneRow> {
-    rows().filter(|row| row.id != Pane::Lesson && !row.id.is_on_request())
-}
-
-/// The pane that was asked for; of several the one in focus, or else the first.
-fn asked(view: &View) -> Option<&'static PaneRow> {
-    rows()
-        .filter(|row| row.id.is_on_request() && view.may_show(row.id))
-        .min_by_key(|row| row.id != view.focus)
-}
-
-/// The panes that have room beside each other on `width` columns, in the table's order: by their ranks, up to the first
-/// that has none.
-fn panes_with_room(width: u16) -> Vec<&'static PaneRow> {
-    usual()
-        .filter(|row| {
-            let before = usual().filter(|other| other.rank <= row.rank);
-            before.map(|other| other.least.0).sum::<u16>() <= width
-        })
-        .collect()
-}
-
-/// The pane of the first rank, and beside it the pane in focus, or else the pane of the second rank.
-fn halves(area: Rect, focus: Pane) -> Vec<(Pane, Rect)> {
-    let first = rows().find(|row| row.rank == 0);
-    let second = rows().find(|row| row.rank == 1);
-    let (Some(first), Some(second)) = (first, second) else {
-        return vec![(focus, area)];
-    };
-    let second = if focus == first.id { second.id } else { focus };
-    let [left, right] = split_columns(area, area.width - area.width / 2);
-    vec![(first.id, left), (second, right)]
-}
-
-/// The panes that were chosen, side by side: all of them, or two where there is room for no more.
-fn chosen(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
-    // The panes that would stand side by side if all were shown, on at least the width that the whole lab wants.
-    let joined = panes_with_room(area.width.max(FULL_LAB_WIDTH));
-    let mut panes: Vec<_> = usual()
-        .filter(|row| {
-            view.may_show(row.id)
-                && (view.look.show.contains(&row.id)
-                    || joined.iter().any(|other| other.id == row.id))
-        })
-        .collect();
-    if panes.is_empty() {
-        return Vec::new();
-    }
-    if area.width < FULL_LAB_WIDTH {
-        panes[1..].sort_by_key(|row| row.id != view.focus);
-        panes.truncate(2);
-    }
-    let share = area.width / panes.len() as u16;
-    side_by_side(area, &panes, share, 0)
-}
-
-/// The pane `asked` at the right, as wide as its numbers are, and beside it as many of the other panes that were chosen as
-/// have room; where none has, the one in focus.
-fn with_asked(asked: &'static PaneRow, area: Rect, view: &View) -> Vec<(Pane, Rect)> {
-    let mut panes: Vec<_> = rows()
-        .filter(|row| ![Pane::Lesson, asked.id].contains(&row.id) && view.may_show(row.id))
-        .collect();
-    let least = asked.least.0;
-    let room = area.width.saturating_sub(least) / BESIDE_ASKED;
-    if room == 0 && view.focus != asked.id {
-        return vec![(view.focus, area)];
-    }
-    panes.sort_by_key(|row| row.id != view.focus);
-    panes.truncate(room.into());
-    panes.sort_by_key(|row| row.id as usize);
-    panes.push(asked);
-    let count = panes.len() as u16;
-    let share = (area.width / count).max(least.min(area.width));
-    let each = (area.width - share) / (count - 1).max(1);
-    side_by_side(area, &panes, each, panes.len() - 1)
-}
-
-/// `panes` side by side, each on at most `share` columns; the pane at the index `rest` has what the others leave.
-fn side_by_side(area: Rect, panes: &[&PaneRow], share: u16, rest: usize) -> Vec<(Pane, Rect)> {
-    let mut widths: Vec<_> = panes
-        .iter()
-        .map(|row| match row.width {
-            Width::Fixed => share.min(row.least.0),
-            Width::Wide => share,
-            Width::Round => share.min(2 * area.height),
-        })
-        .collect();
-    widths[rest] = 0;
-    widths[rest] = area.width - widths.iter().sum::<u16>();
-    let mut right = area;
-    panes
-        .iter()
-        .zip(widths)
-        .map(|(row, width)| {
-            let [place, others] = split_columns(right, width);
-            right = others;
-            (row.id, place)
-        })
-        .collect()
-}
-
-/// All of `rows` side by side. Where the screen is high enough, two round ones stand one above the other.
-fn columns(area: Rect, rows: &[&PaneRow]) -> Vec<(Pane, Rect)> {
-    let (mut rounds, mut wides, mut fixed_columns, mut round_rows) = (0, 0, 0, 0);
-    for row in rows {
-        match row.width {
-            Width::Round => (rounds, round_rows) = (rounds + 1, round_rows + row.least.1),
-            Width::Wide => wides += 1,
-            Width::Fixed => fixed_columns += row.least.0,
-        }
-    }
-    let rest = area.width - fixed_columns;
-    let is_stacked = rounds == 2 && area.height >= round_rows;
-    let (round_columns, widest) = if is_stacked {
-        (1, area.height * 5 / 4)
-    } else {
-        (rounds, 2 * area.height)
-    };
-    let round = (rest / (round_columns + wides).max(1)).min(widest);
-    let wide = (rest - round * round_columns) / wides.max(1);
-    let mut right = area;
-    let mut below = None;
-    let mut places = Vec::with_capacity(rows.len());
-    for row in rows {
-        let is_round = row.width == Width::Round;
-        if let Some(place) = below.take_if(|_| is_round) {
-            places.push((row.id, place));
-            continue;
-        }
-        let width = match row.width {
-            Width::Wide => wide,
-            Width::Round => round,
-            Width::Fixed => row.least.0,
-        };
-        let [column, others] = split_columns(right, width);
-        right = others;
-        if is_round && is_stacked {
-            let [upper, lower] = split_rows(column, column.height / 2);
-            below = Some(lower);
-            places.push((row.id, upper));
+    if area.width >= BESIDE_PAGE_FROM {
+        let [page, rest] = apart(area, percent(area.width, PAGE_SHARE, PAGE_COLUMNS));
+        // A second blank column makes the page easier to read.
+        let [_, rest] = split_columns(rest, 1);
+        let mut panes = if rest.width >= FULL_LAB.0 || view.may_show(Pane::Step) {
+            place_panes(rest, height, &without)
         } else {
-            places.push((row.id, column));
-        }
+            companion(rest, &without)
+        };
+        panes.insert(0, (Pane::Lesson, page));
+        return panes;
     }
-    places
+    if view.focus != Pane::Lesson {
+        return place_panes(area, height, &without);
+    }
+    let plays = view.sheet.as_ref().is_some_and(|sheet| sheet.plays);
+    if !plays || area.height < 2 * PAGE_ROWS {
+        return vec![(Pane::Lesson, area)];
+    }
+    let [page, rest] = split_rows(area, PAGE_ROWS);
+    vec![(Pane::Lesson, page), (without.focus, rest)]
+}
+
+/// The pane that is shown beside a page where there is room for only one.
+fn beside_page(view: &View) -> Pane {
+    if view.focus != Pane::Lesson {
+        return view.focus;
+    }
+    let shown = view.to_show();
+    let mut others = shown.iter().filter(|pane| **pane != Pane::Lesson);
+    let first = others.next().copied();
+    let beside = view.beside.filter(|pane| shown.contains(pane));
+    beside.or(first).unwrap_or(Pane::Traces)
+}
+
+/// One time step, and beside it the run.
+fn with_step(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
+    let step_columns = percent(area.width, STEP_SHARE, STEP_COLUMNS);
+    let is_alone = !usual(view).any(|_| true);
+    if is_alone || area.width < step_columns + 1 + COMPANION_COLUMNS {
+        let pane = if is_alone { Pane::Step } else { view.focus };
+        return vec![(pane, area)];
+    }
+    let [step, rest] = apart(area, step_columns);
+    let mut panes = companion(rest, view);
+    panes.insert(0, (Pane::Step, step));
+    panes
+}
+
+/// The panes that are shown without being asked for, of those that may be shown.
+fn usual(view: &View) -> impl Iterator<Item = Pane> {
+    [Pane::Traces, Pane::Above, Pane::ThreeD, Pane::Parameters]
+        .into_iter()
+        .filter(|pane| view.may_show(*pane))
+}
+
+/// The views of the path that may be shown, the one that was looked at last first.
+fn views(view: &View) -> Vec<Pane> {
+    let mut views: Vec<_> = usual(view)
+        .filter(|pane| [Pane::Above, Pane::ThreeD].contains(pane))
+        .collect();
+    let first = match view.focus {
+        Pane::Above | Pane::ThreeD => view.focus,
+        _ => view.path_view,
+    };
+    views.sort_by_key(|pane| *pane != first);
+    views
+}
+
+/// The run beside a page or a step: the traces above; below them the values while they have the focus, else the views of
+/// the path.
+fn companion(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
+    let shown: Vec<_> = usual(view).collect();
+    let (Some(first), Some(last)) = (shown.first(), shown.last()) else {
+        return Vec::new();
+    };
+    if first == last || area.height < COMPANION_ROWS {
+        let focus = shown.iter().find(|pane| **pane == view.focus);
+        return vec![(*focus.unwrap_or(first), area)];
+    }
+    let is_about_values =
+        *last == Pane::Parameters && (view.focus == Pane::Parameters || views(view).is_empty());
+    if !shown.contains(&Pane::Traces) && !is_about_values {
+        return place_views(area, view);
+    }
+    let [above, below] = split_rows(area, area.height * 2 / 5);
+    let lower = match is_about_values {
+        true => vec![(Pane::Parameters, below)],
+        false => place_views(below, view),
+    };
+    let upper = match shown.contains(&Pane::Traces) {
+        true => vec![(Pane::Traces, above)],
+        false => place_views(above, view),
+    };
+    [upper, lower].concat()
+}
+
+/// Two views of the path side by side or one above the other where there is room; else the one that was looked at last.
+fn place_views(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
+    let views = views(view);
+    let is_chosen = views.iter().all(|pane| view.look.show.contains(pane));
+    let least = if is_chosen {
+        CHOSEN_VIEW_COLUMNS
+    } else {
+        VIEW_COLUMNS
+    };
+    match views[..] {
+        [] => Vec::new(),
+        [_, _] if area.width > 2 * least => {
+            let [left, right] = halves(area);
+            vec![(Pane::Above, left), (Pane::ThreeD, right)]
+        }
+        [_, _] if area.height >= STACKED_FROM => {
+            let [above, below] = stacked(area, ((area.height - 1) * 14 + 15) / 30);
+            vec![(Pane::Above, above), (Pane::ThreeD, below)]
+        }
+        [first, ..] => vec![(first, area)],
+    }
+}
+
+/// The traces, the views of the path and the values, as the size of the screen suggests.
+fn arranged(area: Rect, height: u16, view: &View) -> Vec<(Pane, Rect)> {
+    let shown: Vec<_> = usual(view).collect();
+    if area.width < TWO_FROM || shown.len() < 2 {
+        let focus = shown.iter().find(|pane| **pane == view.focus);
+        let pane = focus.or(shown.first());
+        return pane.map(|pane| (*pane, area)).into_iter().collect();
+    }
+    if area.width < FULL_LAB.0 {
+        return two_columns(area, &shown, view);
+    }
+    let has = |pane| shown.contains(&pane);
+    let has_views = has(Pane::Above) || has(Pane::ThreeD);
+    let mut rest = area;
+    let mut panes = Vec::new();
+    if has(Pane::Traces) {
+        let [traces, others] = apart(area, traces_columns(area.width));
+        panes.push((Pane::Traces, traces));
+        rest = others;
+    }
+    if !has(Pane::Parameters) {
+        panes.extend(place_views(rest, view));
+    } else if !has_views {
+        panes.push((Pane::Parameters, rest));
+    } else if area.width >= LARGE_LAB.0 && height >= LARGE_LAB.1 {
+        let [views, values] = stacked(rest, rest.height.saturating_sub(VALUES_ROWS + 1));
+        panes.extend(place_views(views, view));
+        panes.push((Pane::Parameters, values));
+    } else {
+        let values_columns = if area.width < WIDE_VALUES_FROM {
+            VALUES_COLUMNS.0
+        } else {
+            VALUES_COLUMNS.1
+        };
+        let [views, values] = apart(rest, rest.width - values_columns - 1);
+        panes.extend(place_views(views, view));
+        panes.push((Pane::Parameters, values));
+    }
+    panes
+}
+
+/// The first pane of `shown`, and beside it the pane in focus, or else the view that was looked at last.
+fn two_columns(area: Rect, shown: &[Pane], view: &View) -> Vec<(Pane, Rect)> {
+    let first = shown[0];
+    let views = views(view);
+    let second = match shown.iter().find(|pane| **pane == view.focus) {
+        Some(focus) if *focus != first => *focus,
+        _ => *views
+            .iter()
+            .find(|pane| **pane != first)
+            .unwrap_or(&shown[1]),
+    };
+    let [left, right] = apart(area, area.width / 2);
+    vec![(first, left), (second, right)]
+}
+
+fn traces_columns(width: u16) -> u16 {
+    let beyond = u32::from(width.clamp(80, 120)) - 80;
+    let share = TRACES_SHARE.0 + (TRACES_SHARE.1 - TRACES_SHARE.0) * beyond / 40;
+    let columns = (u32::from(width) * share / 1000) as u16;
+    columns.clamp(TRACES_COLUMNS.0, TRACES_COLUMNS.1)
 }

@@ -81,9 +81,9 @@ impl Pointer {
             Mode::Browser | Mode::Filter => return press_in_browser(layout, at, lab),
             Mode::Help | Mode::Find | Mode::Dialog => return None,
         }
-        if layout.timeline.contains(at) {
+        if layout.overview.contains(at) {
             self.held = Some(Held::Place);
-            let time_s = Timeline::of(lab).time_s(layout.timeline, at.x)?;
+            let time_s = Timeline::of(lab).time_s(layout.overview, at.x)?;
             lab.carry_out_now(&Command::GoTo(SeekTarget::Time(time_s)));
             return None;
         }
@@ -113,7 +113,7 @@ impl Pointer {
                 let run = lab.player().run();
                 let furthest = run.furthest();
                 let furthest_s = Clock::at(run.scenario(), furthest).time_s(furthest);
-                let time_s = Timeline::of(lab).time_s(layout.timeline, at.x);
+                let time_s = Timeline::of(lab).time_s(layout.overview, at.x);
                 if let Some(time_s) = time_s {
                     // Time that the run has not reached would take long: a press goes there.
                     lab.carry_out_now(&Command::GoTo(SeekTarget::Time(time_s.min(furthest_s))));

@@ -8,7 +8,7 @@ use gyrolab::lab::Refusal;
 use gyrolab::lab::command::{self, COMMANDS, Command};
 use gyrolab::lab::view::{HideablePart, Pane, ViewSettings};
 use gyrolab::tui::keymap::Key;
-use gyrolab::tui::{layout::ScreenLayout, screen};
+use gyrolab::tui::screen;
 use std::time::Duration;
 use toml::{Table, Value};
 
@@ -571,7 +571,7 @@ fn shown_panes_share_the_screen_at_every_width() {
     desk.commands("show = ['above', '3d']");
     for (width, height) in [(80, 24), (120, 30), (200, 50), (60, 20)] {
         let area = ratatui::layout::Rect::new(0, 0, width, height);
-        let layout = ScreenLayout::new(area, desk.lab.view(), true);
+        let layout = screen::layout(&desk.lab, true, area);
         let panes: Vec<_> = layout.panes.iter().map(|(pane, _)| *pane).collect();
         assert_eq!(panes, [Pane::Above, Pane::ThreeD], "{width}");
         let widths: u16 = layout.panes.iter().map(|(_, place)| place.width).sum();

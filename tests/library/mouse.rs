@@ -5,6 +5,7 @@ use gyrolab::plot::camera::Camera;
 use gyrolab::tui::layout::ScreenLayout;
 use gyrolab::tui::mouse::Pointer;
 use gyrolab::tui::mouse::{Did, Mouse};
+use gyrolab::tui::screen;
 use ratatui::layout::Rect;
 
 /// A stage and its mouse.
@@ -31,7 +32,7 @@ impl Desk {
     }
 
     fn layout(&self) -> ScreenLayout {
-        ScreenLayout::new(self.stage.size, self.stage.lab.view(), true)
+        screen::layout(&self.stage.lab, true, self.stage.size)
     }
 
     fn pane(&self, id: &str) -> Rect {
@@ -108,7 +109,7 @@ fn a_press_selects_a_pane_goes_to_a_place_and_does_a_key() {
         desk.does(Did::Press, (pane.x + 2, pane.y));
         assert_eq!(desk.stage.focus(), id);
     }
-    let timeline = desk.layout().timeline;
+    let timeline = desk.layout().overview;
     desk.does(Did::Press, (timeline.x + 1, timeline.y));
     assert_eq!(desk.stage.step(), 0);
     let end = desk.place("230 s").0;

@@ -4,7 +4,7 @@ use crate::support::stage::{LARGE, SMALL, Stage};
 use gyrolab::lab::view::Pane;
 use gyrolab::plot::camera::Camera;
 use gyrolab::tui::keymap::Key;
-use gyrolab::tui::layout::ScreenLayout;
+use gyrolab::tui::screen;
 use ratatui::layout::Rect;
 
 /// The length of the axle in the picture, of its own.
@@ -110,7 +110,7 @@ fn after_a_scheme_broke_down_the_last_whole_body_is_shown() {
 #[test]
 fn at_120_columns_the_round_pictures_share_a_column() {
     let stage = Stage::open("method-2", &[], Rect::new(0, 0, 120, 40));
-    let layout = ScreenLayout::new(stage.size, stage.lab.view(), true);
+    let layout = screen::layout(&stage.lab, true, stage.size);
     let place = |wanted: Pane| {
         let mut panes = layout.panes.iter();
         panes.find(|(pane, _)| *pane == wanted).unwrap().1
@@ -156,7 +156,7 @@ fn the_wheel_is_as_large_as_its_pane_allows() {
     // The wheel is wide for its axle: arrows along the axle that were longer for that would take the room.
     let mut stage = Stage::open("cusps", &[], Rect::new(0, 0, 120, 40));
     stage.commands("pause = true\ngo_to = 0");
-    let layout = ScreenLayout::new(stage.size, stage.lab.view(), true);
+    let layout = screen::layout(&stage.lab, true, stage.size);
     let mut panes = layout.panes.iter();
     let (_, place) = panes.find(|(pane, _)| *pane == Pane::ThreeD).unwrap();
     let picture = stage.picture();

@@ -289,9 +289,8 @@ fn no_size_is_too_small() {
 
 #[test]
 fn its_place_is_as_wide_as_its_numbers() {
-    use gyrolab::tui::layout::ScreenLayout;
     let widths = |stage: &Stage| -> Vec<(&'static str, u16)> {
-        let panes = ScreenLayout::new(stage.size, stage.lab.view(), true).panes;
+        let panes = screen::layout(&stage.lab, true, stage.size).panes;
         let widths = panes.iter().map(|(pane, place)| (pane.id(), place.width));
         widths.collect()
     };

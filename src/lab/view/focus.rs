@@ -27,7 +27,7 @@ impl View {
     /// Fills the screen with `pane` and moves the focus there; with `None` shows all panes again.
     pub fn fill(&mut self, pane: Option<Pane>) {
         self.filled = pane.is_some();
-        self.focus = pane.unwrap_or(self.focus);
+        self.focus_on(pane.unwrap_or(self.focus));
         self.is_touched |= self.filled;
     }
 
@@ -35,30 +35,20 @@ impl View {
         self.filled && self.focus == pane
     }
 
-    /// The panes that can have the focus: those side by side on the screen, or every pane that may be shown where the
-    /// screen holds one or two at a time.
+    /// The panes that can have the focus, from left to right. One that is not on the screen comes there with the focus.
     fn focusable(&self) -> Vec<Pane> {
-        if !self.filled && self.side_by_side.len() > 2 {
-            // A pane that was hidden since the screen was last fitted is still in this list.
-            let mut panes = self.shown_among(&self.side_by_side);
-            if !panes.is_empty() {
-                // A page that has just been opened is not in the list yet.
-                if self.may_show(Pane::Lesson) && !panes.contains(&Pane::Lesson) {
-                    panes.insert(0, Pane::Lesson);
-                }
-                return panes;
-            }
-        }
-        self.shown_among(&Pane::ALL)
-    }
-
-    /// Returns those of `panes` that may be shown, or fill the screen.
-    fn shown_among(&self, panes: &[Pane]) -> Vec<Pane> {
-        panes
-            .iter()
-            .copied()
+        Pane::ALL
+            .into_iter()
             .filter(|pane| self.may_show(*pane) || self.is_filled_by(*pane))
             .collect()
+    }
+
+    /// Moves the focus to `pane`.
+    fn focus_on(&mut self, pane: Pane) {
+        self.focus = pane;
+        if [Pane::Above, Pane::ThreeD].contains(&pane) {
+            self.path_view = pane;
+        }
     }
 
     /// Moves the focus to the next pane that can have it, or to the one before; after the last comes the first.
@@ -71,14 +61,15 @@ impl View {
             (Some(here), false) => (here + count - 1) % count,
             (None, _) => 0,
         };
-        self.focus = panes.get(next).copied().unwrap_or(self.focus);
+        self.focus_on(panes.get(next).copied().unwrap_or(self.focus));
         self.is_touched = true;
     }
 
     /// Moves the focus to `pane`, which fills the screen if it is not on it.
     pub fn turn_to(&mut self, pane: Pane) {
         self.filled = self.is_filled_by(pane) || !self.focusable().contains(&pane);
-        (self.focus, self.is_touched) = (pane, true);
+        self.focus_on(pane);
+        self.is_touched = true;
     }
 
     /// Moves the focus from the parameters to the first other pane that can have it; returns whether it did.

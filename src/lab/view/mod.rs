@@ -131,6 +131,8 @@ pub struct View {
     pub pointed_at: Option<Pane>,
     /// The pane beside the text where there is room for one: the last that had the focus, or the first that was chosen.
     pub beside: Option<Pane>,
+    /// From above or 3-D: the one that had the focus last, which is shown where there is room for one.
+    pub path_view: Pane,
     /// The text beside the panes.
     pub sheet: Option<Arc<Sheet>>,
     /// The first row of the text that is shown; `None`: the row that brings its important paragraph into view.
@@ -165,6 +167,7 @@ impl View {
             page_before: StepPageChoice::default(),
             pointed_at: None,
             beside: None,
+            path_view: Pane::Above,
             sheet: None,
             sheet_scrolled: None,
             measured: false,

@@ -3,7 +3,7 @@
 //! It shows where the point is, and the shape of its last swings behind it, as a line. The turn before them and all
 //! that came before are dotted, more and more sparsely; dots are denser where the point stayed longer.
 
-use super::{MOST_SHOWN_PUSHES, PaneRow, PlotInputs, ROWS_A_LINE, Width, round_rule, write};
+use super::{MOST_SHOWN_PUSHES, PaneRow, PlotInputs, ROWS_A_LINE, round_rule, write};
 use crate::engine::data::MeasuredPlace;
 use crate::engine::recording::RecordedSample;
 use crate::engine::run::Clock;
@@ -55,9 +55,6 @@ const EARLIER_RUN_LEGEND: [&str; 2] = ["dotted: before"; 2];
 pub const FROM_ABOVE_ROW: PaneRow = PaneRow {
     id: Pane::Above,
     title: "from above",
-    width: Width::Round,
-    rank: 1,
-    least: (27, 17),
     draw: |lab, area, buf| {
         FromAbove(PlotInputs::of(lab)).render(area, buf);
     },

@@ -28,7 +28,7 @@ fn lines_of(text: &str, width: u16) -> u16 {
 /// Where the hint of `lab` stands. A message that needs more lines takes lines above as long as it stays: the line about
 /// the numbers, and on a small or a bare screen the last of a pane.
 pub fn place(lab: &Lab, layout: &ScreenLayout) -> Rect {
-    let place = layout.hint;
+    let place = layout.note;
     let needed = if has_message(lab) {
         lines_of(&said(lab).0, place.width)
     } else {
@@ -37,7 +37,7 @@ pub fn place(lab: &Lab, layout: &ScreenLayout) -> Rect {
     if needed <= place.height || place.is_empty() {
         return place;
     }
-    let own = place.union(layout.health).height;
+    let own = place.union(layout.verdict).height;
     let most = match (lab.view().look.bare, layout.is_cramped) {
         (true, _) => place.height + 1,
         (false, _) if lab.view().sheet.is_some() => own.max(MOST_HINT_LINES),

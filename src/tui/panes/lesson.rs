@@ -1,6 +1,6 @@
 //! The page of a lesson beside the run: its text, the question with its answers, what is to be reached, and the keys.
 
-use super::{PaneRow, Width, below_rule, longest, rule, write};
+use super::{PaneRow, below_rule, longest, rule, write};
 use crate::engine::text::wrap::{columns, wrapped};
 use crate::lab::Lab;
 use crate::lab::action::{Action, Direction, LessonKey};
@@ -18,9 +18,6 @@ use std::iter::Peekable;
 pub const LESSON_ROW: PaneRow = PaneRow {
     id: Pane::Lesson,
     title: "lesson",
-    width: Width::Fixed,
-    rank: 9,
-    least: (36, 0),
     draw,
     keys: LESSON_PANE_KEYS,
     arrows: None,

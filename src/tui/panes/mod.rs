@@ -44,12 +44,6 @@ pub struct PaneRow {
     pub id: Pane,
     /// Its title, on its rule and over its keys in the help; the pane may add words to it.
     pub title: &'static str,
-    /// How wide it is where panes stand side by side.
-    pub width: Width,
-    /// Its place in the order in which panes join the others as the screen becomes wider; the first is 0.
-    pub rank: u8,
-    /// The fewest columns with which it stands beside others, and the fewest rows with which it shares a column.
-    pub least: (u16, u16),
     pub draw: fn(&Lab, Rect, &mut Buffer),
     /// The keys that are its own while it has the focus; they go before the keys of the lab.
     pub keys: &'static [Binding],
@@ -58,17 +52,6 @@ pub struct PaneRow {
 }
 
 pub type Arrows = fn(&Lab, Direction, i32) -> KeyCommands;
-
-/// How wide a pane is where panes stand side by side.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Width {
-    /// What the others leave.
-    Wide,
-    /// As the others of this kind, and no wider than a circle needs; two of them share a column of a high screen.
-    Round,
-    /// Its least width.
-    Fixed,
-}
 
 pub fn row(pane: Pane) -> &'static PaneRow {
     match pane {
@@ -319,11 +302,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_pane_has_a_row_and_a_rank_of_its_own() {
-        for (index, pane) in Pane::ALL.into_iter().enumerate() {
-            let (id, rank) = (row(pane).id, row(pane).rank);
-            assert_eq!(id, pane);
-            assert!(rows().take(index).all(|other| other.rank != rank), "{id:?}");
+    fn every_pane_has_its_row() {
+        for pane in Pane::ALL {
+            assert_eq!(row(pane).id, pane);
         }
     }
 

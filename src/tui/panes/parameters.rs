@@ -5,7 +5,7 @@
 
 mod lines;
 
-use super::{PaneRow, Width, leave_one_out, rule, shortened, write};
+use super::{PaneRow, leave_one_out, rule, shortened, write};
 use crate::engine::scenario::{Motion, Scenario};
 use crate::engine::text::printable::printable;
 use crate::engine::text::wrap::columns;
@@ -38,9 +38,6 @@ const WATCHED_FROM: usize = 8;
 pub const PARAMETERS_ROW: PaneRow = PaneRow {
     id: Pane::Parameters,
     title: "parameters",
-    width: Width::Fixed,
-    rank: 2,
-    least: (COLUMN, 0),
     draw: |lab, area, buf| {
         Parameters {
             scenario: lab.player().run().scenario(),

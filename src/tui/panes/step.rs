@@ -5,7 +5,7 @@ mod numbers;
 mod page;
 mod why;
 
-use super::{PaneRow, Width, rule};
+use super::{PaneRow, rule};
 use crate::engine::scenario::Scenario;
 use crate::engine::text::number::{rounded, shortest, significant};
 use crate::engine::text::wrap::columns;
@@ -35,9 +35,6 @@ const SHORT_NAMES_FROM: usize = 1000;
 pub const STEP_ROW: PaneRow = PaneRow {
     id: Pane::Step,
     title: "step",
-    width: Width::Wide,
-    rank: 4,
-    least: (44, 0),
     draw,
     keys: STEP_PANE_KEYS,
     arrows: Some(|lab, direction, times| {

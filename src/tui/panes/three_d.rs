@@ -6,7 +6,7 @@
 mod arrows;
 mod body;
 
-use super::{PaneRow, PlotInputs, ROWS_A_LINE, Width, round_rule, write};
+use super::{PaneRow, PlotInputs, ROWS_A_LINE, round_rule, write};
 use crate::engine::recording::RecordedCurve;
 use crate::engine::text::wrap::columns;
 use crate::lab::playback::ages::{Age, Ages};
@@ -53,9 +53,6 @@ const CIRCLE_PARTS: usize = 72;
 pub const THREE_D_ROW: PaneRow = PaneRow {
     id: Pane::ThreeD,
     title: "3-D",
-    width: Width::Round,
-    rank: 3,
-    least: (40, 17),
     draw: |lab, area, buf| {
         ThreeD(PlotInputs::of(lab)).render(area, buf);
     },

@@ -6,7 +6,7 @@ mod border;
 mod groups;
 mod plot;
 
-use super::{PaneRow, PlotInputs, Width, below_rule, longest, rule, write};
+use super::{PaneRow, PlotInputs, below_rule, longest, rule, write};
 use crate::lab::action::{Action, Direction, repeated, signed};
 use crate::lab::command::{Command, CursorTo};
 use crate::lab::playback::marks::Marks;
@@ -44,9 +44,6 @@ const CURSOR_MARK: char = '┃';
 pub const TRACES_ROW: PaneRow = PaneRow {
     id: Pane::Traces,
     title: "over time",
-    width: Width::Wide,
-    rank: 0,
-    least: (27, 0),
     draw: |lab, area, buf| {
         Traces(PlotInputs::of(lab)).render(area, buf);
     },
