@@ -14,11 +14,11 @@ use super::numbers::{self, NumberSource, RunNumbers};
 use super::view::View;
 use crate::engine::journal::expression::Expression;
 use crate::engine::journal::restart::{in_force, scenario_from};
-use crate::engine::run::{Clock, Sample, Simulation};
+use crate::engine::run::{Clock, Moment, Sample, Simulation};
 use crate::engine::scenario::{Motion, Scenario};
 use crate::lab::playback::detail::Detail;
 use crate::lab::playback::live::LiveRun;
-use crate::lab::playback::lookup;
+use crate::lab::playback::lookup::{self, StepNumbers};
 use crate::lab::playback::pace::{Pace, Speed};
 use crate::lab::playback::reading::{READING_INTERVAL, Reading};
 use fast_strip::FastStrip;
@@ -69,6 +69,15 @@ impl RunChange {
     }
 }
 
+/// The numbers at the cursor.
+struct CursorNumbers {
+    /// That of their run.
+    scenario: Arc<Scenario>,
+    run: StepNumbers,
+    /// The exact motion at the same time; `None` where it is not known.
+    exact: Option<Moment>,
+}
+
 /// The run, its pace and its goal, and its latest reading.
 pub struct Player {
     pub(super) run: LiveRun,
@@ -87,8 +96,7 @@ pub struct Player {
     strip: FastStrip,
     /// When the window of the traces was held last.
     window_held_at: Duration,
-    /// The numbers at the cursor, and the scenario of their run.
-    at_cursor: Option<(Arc<Scenario>, Sample)>,
+    at_cursor: Option<CursorNumbers>,
     /// Whether a single step keeps its intermediate results, until they are read.
     pub(super) keeps_workings: bool,
 }
@@ -342,18 +350,37 @@ impl Player {
     /// Looks up the numbers at the cursor, unless they are known.
     fn look_up_cursor(&mut self, cursor: Option<u64>) {
         let scenario = self.run.scenario();
-        if let Some((known, sample)) = &self.at_cursor
-            && Some(sample.step) == cursor
-            && Arc::ptr_eq(known, scenario)
+        if let Some(known) = &self.at_cursor
+            && Some(known.run.sample.step) == cursor
+            && Arc::ptr_eq(&known.scenario, scenario)
         {
             return;
         }
-        let found = cursor.and_then(|step| lookup::sample(&self.run, step).ok());
-        self.at_cursor = found.map(|sample| (Arc::clone(scenario), sample));
+        let found = cursor.and_then(|step| lookup::numbers(&self.run, step).ok());
+        self.at_cursor = found.map(|run| CursorNumbers {
+            exact: self.exact_at(run.sample.step, run.sample.time_s),
+            scenario: Arc::clone(scenario),
+            run,
+        });
+    }
+
+    /// Returns the exact motion at `time_s` (s), the time of `step`; `None` where it is not known.
+    fn exact_at(&self, step: u64, time_s: f64) -> Option<Moment> {
+        let predictable = self.reading.readouts.health.predictability;
+        let is_predictable = predictable.until_s.is_none_or(|until_s| time_s <= until_s);
+        is_predictable
+            .then(|| lookup::exact(&self.run, step, time_s))
+            .flatten()
     }
 
     pub fn cursor(&self) -> Option<&Sample> {
-        self.at_cursor.as_ref().map(|(_, sample)| sample)
+        self.at_cursor.as_ref().map(|cursor| &cursor.run.sample)
+    }
+
+    /// Returns the run and the exact motion at the cursor.
+    pub fn cursor_moments(&self) -> Option<(&Moment, Option<&Moment>)> {
+        let cursor = self.at_cursor.as_ref()?;
+        Some((&cursor.run.moment, cursor.exact.as_ref()))
     }
 
     /// Returns the window of the strip of the fast motion.

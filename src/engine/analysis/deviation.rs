@@ -220,6 +220,17 @@ impl ExactReference {
         self.truth.as_ref().map(|_| deviation)
     }
 
+    /// Returns the state of the exact motion at `time_s`, s; `None` where the run is not compared with it, or it can no longer
+    /// be predicted.
+    pub fn exact_state(&mut self, time_s: f64) -> Option<State> {
+        self.settle();
+        if self.has_parted() {
+            return None;
+        }
+        let state = self.truth.as_mut()?.state_at(time_s);
+        state.is_finite().then_some(state)
+    }
+
     /// The largest distance of the traced point from the exact motion up to the last time that it was [settled](Self::settle),
     /// m, while that could be predicted; `None` where it is not compared.
     pub fn most_distance_m(&self) -> Option<f64> {

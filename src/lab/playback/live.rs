@@ -8,10 +8,10 @@ mod pictures;
 use super::path::PathFromAbove;
 use crate::engine::analysis::cost::{has_closed_form, integration_rad_per_s, is_affordable};
 use crate::engine::analysis::readouts::ReadoutSource;
-use crate::engine::analysis::{Monitor, Readouts};
+use crate::engine::analysis::{ExactReference, Monitor, Readouts};
 use crate::engine::journal::restart::in_force;
 use crate::engine::recording::{RecordedSample, Recording};
-use crate::engine::run::{NotFinite, Simulation};
+use crate::engine::run::{Moment, NotFinite, Simulation};
 use crate::engine::scenario::Scenario;
 use crate::physics::{State, Workings};
 use pictures::{Overlay, Pictures};
@@ -272,6 +272,23 @@ impl LiveRun {
         (now.time_s >= self.now().time_s).then_some(now)
     }
 
+    /// Returns the exact motion at the present time, whether or not it is shown; `None` where it is not known.
+    pub fn exact_moment(&mut self) -> Option<Moment> {
+        let now = self.simulation.now();
+        exact_moment(&mut self.monitor.beside, now.time_s(), now.scenario())
+    }
+
+    /// Returns the exact motion at `time_s` (s), the time of `step`; `None` where it is not known.
+    pub(super) fn exact_moment_at(&self, step: u64, time_s: f64) -> Option<Moment> {
+        let scenario = self.scenario();
+        let mut beside = match self.checkpoint_before(step) {
+            Some(stored) => stored.monitor.beside.clone(),
+            None => self.monitor.beside.clone(),
+        };
+        beside.branch(scenario);
+        exact_moment(&mut beside, time_s, scenario)
+    }
+
     /// Returns true if the exact motion is shown and its time is earlier than the run's.
     pub fn overlay_is_behind(&self) -> bool {
         let now_s = self.now().time_s;
@@ -351,6 +368,11 @@ impl LiveRun {
     pub fn path(&self) -> &PathFromAbove {
         &self.pictures.path
     }
+}
+
+fn exact_moment(beside: &mut ExactReference, time_s: f64, scenario: &Scenario) -> Option<Moment> {
+    let state = beside.exact_state(time_s)?;
+    Some(Moment::of_exact_motion(scenario, &state))
 }
 
 /// Returns the cost of the integrations of the next step of `simulation`, in points of a body: that of its scheme, if

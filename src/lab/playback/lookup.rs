@@ -1,7 +1,7 @@
 //! The numbers of any step that a run has reached, computed again from its stored states, without moving the run.
 
 use super::live::{LiveRun, integration_cost};
-use crate::engine::run::{Sample, Simulation};
+use crate::engine::run::{Moment, Sample, Simulation};
 
 /// The most time steps of a body of one point that are computed for an answer; a body of n points has 1/n of that, and steps
 /// that are integrated count as so many points.
@@ -20,11 +20,19 @@ pub enum Missing {
     NoTurn,
 }
 
-/// Returns the numbers at `step` of `run`: those that its CSV has in that row.
+/// The numbers at one step of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepNumbers {
+    /// Those that its CSV has in that row.
+    pub sample: Sample,
+    pub moment: Moment,
+}
+
+/// Returns the numbers at `step` of `run`.
 ///
 /// # Errors
-/// Where the run has not been at the step, or computing it again would take too long.
-pub fn sample(run: &LiveRun, step: u64) -> Result<Sample, Missing> {
+/// If the run has not been at the step, or computing it again would take too long.
+pub fn numbers(run: &LiveRun, step: u64) -> Result<StepNumbers, Missing> {
     if step > run.furthest() {
         return Err(Missing::NotReached);
     }
@@ -32,7 +40,20 @@ pub fn sample(run: &LiveRun, step: u64) -> Result<Sample, Missing> {
     while steps.step_number() < step {
         steps.step()?;
     }
-    Ok(steps.simulation.sample())
+    Ok(StepNumbers {
+        sample: steps.simulation.sample(),
+        moment: Moment::of_run(steps.simulation.now()),
+    })
+}
+
+/// Returns the exact motion at `time_s` (s), the time of `step`, which `run` has reached; `None` where it is not known, or
+/// computing it again would take too long.
+pub fn exact(run: &LiveRun, step: u64, time_s: f64) -> Option<Moment> {
+    let before = run.again_before(step);
+    let cost = integration_cost(&before, 1).saturating_mul(step - before.step_number());
+    (cost / COST_OF_A_POINT <= MOST_LOOKUP_STEPS)
+        .then(|| run.exact_moment_at(step, time_s))
+        .flatten()
 }
 
 /// Returns the step nearest to `from`, after or before it, at which the tilt of `run` turns up or down.
@@ -131,9 +152,9 @@ mod tests {
             .collect();
         let run = LiveRun::played("cusps", 700);
         for step in [0, 1, 255, 256, 257, 699, 700] {
-            assert_eq!(sample(&run, step).unwrap(), samples[step as usize]);
+            assert_eq!(numbers(&run, step).unwrap().sample, samples[step as usize]);
         }
-        assert_eq!(sample(&run, 701), Err(Missing::NotReached));
+        assert_eq!(numbers(&run, 701), Err(Missing::NotReached));
     }
 
     #[test]

@@ -4,7 +4,7 @@
 use super::live::LiveRun;
 use super::pace::{Pace, Speed};
 use crate::engine::analysis::{MeasuredNumber, Readouts};
-use crate::engine::recording::RecordedSample;
+use crate::engine::run::Moment;
 use crate::engine::text::number::{exponent, fixed, rounded, shortest};
 use crate::physics::State;
 use std::time::Duration;
@@ -18,7 +18,9 @@ pub struct Reading {
     pub state: State,
     /// The step of that state, if the scheme has broken down since; else `None`.
     pub last_whole: Option<u64>,
-    pub exact: Option<RecordedSample>,
+    pub moment: Moment,
+    /// The exact motion at the same time, whether or not its curves are shown; `None` where it is not known.
+    pub exact: Option<Moment>,
     pub pace: String,
 }
 
@@ -28,8 +30,9 @@ impl Reading {
         Self {
             state: last_whole.map_or(*run.simulation().state(), |(_, state)| *state),
             last_whole: last_whole.map(|(step, _)| *step),
-            exact: run.exact_now().copied(),
+            moment: Moment::of_run(run.simulation().now()),
             readouts: run.readouts(),
+            exact: run.exact_moment(),
             pace: pace_in_words(pace),
         }
     }

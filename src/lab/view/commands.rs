@@ -8,7 +8,7 @@ use crate::engine::scenario::screen::AUTO;
 use crate::lab::action::{Direction, signed};
 use crate::lab::answer::{ActionResult, Done};
 use crate::lab::command::{Command, CursorTo, MOST_MAGNIFIED, SeekTarget};
-use crate::lab::playback::lookup;
+use crate::lab::playback::lookup::{self, StepNumbers};
 use crate::lab::playback::strip::Strip;
 use crate::lab::player::Player;
 use crate::lab::step_pane::StepPane;
@@ -100,7 +100,8 @@ impl View {
         };
         let step = target.map(|step| step.min(run.furthest()));
         if let Some(step) = step {
-            let sample = lookup::sample(run, step).map_err(|missing| missing.to_string())?;
+            let StepNumbers { sample, .. } =
+                lookup::numbers(run, step).map_err(|missing| missing.to_string())?;
             let (begin_s, window_s) = (self.begin_s(player), self.look.window_s);
             if !(begin_s..=begin_s + window_s).contains(&sample.time_s) {
                 self.since_s = Some((sample.time_s - 0.5 * window_s).max(0.0));

@@ -173,9 +173,8 @@ impl FromAbove<'_> {
 
     /// The exact motion at `time_s` (s), the moment that is shown; `None` where it is not shown, or has not come so far yet.
     fn exact_at(&self, time_s: f64) -> Option<&RecordedSample> {
-        let read = self.0.reading.and_then(|reading| reading.exact.as_ref());
-        let known = [self.0.run.exact_now(), read].into_iter().flatten();
-        known.into_iter().find(|exact| exact.time_s == time_s)
+        let exact = self.0.run.exact_now();
+        exact.filter(|exact| exact.time_s == time_s)
     }
 
     fn path(&self, plane: &Plane, picture: Rect, buf: &mut Buffer) {
