@@ -112,10 +112,6 @@ pub(super) fn open_at(
     chosen.tell(&mut lab);
     lab.settings.folder = folder.ok();
     furnish(&mut lab, args, confined)?;
-    let is_new = is_alone && lesson.is_none() && commands.is_none();
-    if is_new && args.scenario.is_none() && args.resume.is_none() {
-        lab.play_on();
-    }
     lab.set_trouble(session.as_ref().err().cloned());
     lab.take_advice();
     if let Some(commands) = commands {

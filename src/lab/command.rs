@@ -387,6 +387,13 @@ impl Command {
         }
     }
 
+    /// Its name in a `[[do]]` table.
+    pub fn name(&self) -> String {
+        let table = self.to_table();
+        let mut names = table.keys().filter(|name| *name != RERUN);
+        names.next().cloned().unwrap_or_default()
+    }
+
     /// Its name and the value behind it, as TOML.
     pub fn to_table(&self) -> Table {
         match (self, Value::try_from(self)) {

@@ -186,10 +186,6 @@ pub(super) fn note<'a>(view: &'a View, runs: &'a Runs, player: &'a Player) -> Co
         return "".into();
     }
     let set = view.look.look_at.as_deref();
-    let is_over = player.is_endless && player.step_number() >= player.end_step();
-    if let Some(next) = next(view, runs, player).filter(|_| is_over) {
-        return next;
-    }
     let changed = runs.changed_from_file();
     if set.is_none() && changed.is_some() && view.sheet.is_some() {
         // The page says what the run is. The file's line speaks of another one.

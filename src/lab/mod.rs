@@ -143,11 +143,6 @@ impl Lab {
         self.read_now(); // a run that stands still is not read again by itself
     }
 
-    /// From now on the run goes on at the scenario's end, until another is opened.
-    pub fn play_on(&mut self) {
-        self.player.is_endless = true;
-    }
-
     /// Chooses the time that the traces show.
     fn choose_window(&mut self) {
         self.view.window = self.player.window(self.now, &self.view, &self.comparison);

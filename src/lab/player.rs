@@ -85,8 +85,6 @@ pub struct Player {
     goal: Option<Goal>,
     /// The time at which the run ends, s.
     pub end_s: f64,
-    /// Whether the run goes on at its end.
-    pub(super) is_endless: bool,
     /// Returns the present time, for the steps that are taken before returning.
     clock: fn() -> Instant,
     /// The replay after the last edit that restarted the run; `None` if another edit came after it.
@@ -117,7 +115,6 @@ impl Player {
             pace,
             goal: None,
             end_s,
-            is_endless: false,
             clock: Instant::now,
             replay: None,
             reading,
@@ -173,7 +170,6 @@ impl Player {
     /// Begins the run of `scenario`, paused, as its `[view]` says.
     fn open(&mut self, scenario: &Arc<Scenario>) {
         self.pace = Pace::of_scenario(scenario, false);
-        self.is_endless = false;
         self.restart(scenario);
         if let Some(exact) = begins_with_exact(scenario) {
             self.run.set_overlay(exact);

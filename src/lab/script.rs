@@ -238,7 +238,7 @@ impl CommandScript {
             more => format!("; the {more} commands after it are not carried out"),
         };
         let line = placed.line.map_or(String::new(), |line| format!(":{line}"));
-        let name: String = placed.command.to_table().keys().cloned().collect();
+        let name = placed.command.name();
         let text = format!("{}{line}: {name}: {reason}{rest}", self.origin);
         self.left.clear();
         self.failed = Some(text.clone());

@@ -238,16 +238,3 @@ fn every_preset_says_what_to_try_next_in_the_room_there_is() {
     changed.wait(3.0).shows("end of the scenario's run");
     changed.shows_no("Next");
 }
-
-#[test]
-fn the_lab_without_a_name_goes_on_and_says_what_to_try() {
-    let mut stage = Stage::open("method-2", &["motion.steps=20"], SMALL);
-    stage.lab.play_on();
-    stage.shows("almost a circle").wait(3.0);
-    assert!(stage.step() > 500, "{}", stage.step());
-    stage.shows("t draws the exact motion").shows_no("paused");
-    stage.commands("open = 'cusps'").commands("go_to = 9990");
-    stage.commands("run = true");
-    stage.wait(3.0);
-    assert_eq!(stage.step(), 10000, "what was opened by name stops");
-}

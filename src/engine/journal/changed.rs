@@ -4,7 +4,7 @@
 use super::restart::in_force;
 use crate::scenario::presets::{PRESETS, Preset};
 use crate::scenario::rescale::at_time_step;
-use crate::scenario::{Document, Scenario, float};
+use crate::scenario::{Document, Motion, Scenario, float};
 use crate::text::number::shortest;
 use crate::text::printable::printable;
 use serde::Serialize;
@@ -134,20 +134,51 @@ fn changes(before: &Scenario, now: &Scenario) -> Vec<String> {
     let [old, new] = [before, now].map(|run| in_force(run, u64::MAX).0);
     let (old_file, new_file) = (&before.file, &now.file);
     let [scheme, old_scheme] = [new, old].map(|motion| motion.scheme.name);
-    let found = [
-        number_change("dt", "s", [new.time_step_s, old.time_step_s]),
-        (scheme != old_scheme).then(|| format!("{scheme} scheme, not {old_scheme}")),
-        number_change("gravity", "m/s2", [new.gravity, old.gravity]),
+    let of_motion = [
+        (
+            number_change("dt", "s", [new.time_step_s, old.time_step_s]),
+            last_change(now, |motion| motion.time_step_s.to_bits()),
+        ),
+        (
+            (scheme != old_scheme).then(|| format!("{scheme} scheme, not {old_scheme}")),
+            last_change(now, |motion| motion.scheme.name),
+        ),
+        (
+            number_change("gravity", "m/s2", [new.gravity, old.gravity]),
+            last_change(now, |motion| motion.gravity.to_bits()),
+        ),
+    ];
+    let changes_of_motion = of_motion.into_iter().filter_map(|(change, step)| {
+        Some(match step {
+            0 => change?,
+            step => format!("{}, from step {step} on", change?),
+        })
+    });
+    let others = [
         (new_file.body != old_file.body).then(|| "another body".to_owned()),
         values("start", &old_file.start, &new_file.start),
         values("friction", &old_file.friction, &new_file.friction),
         push_change(before, now).map(str::to_owned),
     ];
-    let mut changes: Vec<String> = found.into_iter().flatten().collect();
+    let mut changes: Vec<String> = changes_of_motion
+        .chain(others.into_iter().flatten())
+        .collect();
     if changes.is_empty() && new_file.edit != old_file.edit {
         changes.push("edits on the way".to_owned());
     }
     changes
+}
+
+/// Returns the step of the last edit of `now` that changes what `value` reads, 0 if none does.
+fn last_change<T: PartialEq>(now: &Scenario, value: impl Fn(&Motion) -> T) -> u64 {
+    let (mut last, mut before) = (0, value(&now.motion));
+    for edit in &now.edits {
+        let after = value(&edit.motion);
+        if after != before {
+            (last, before) = (edit.step, after);
+        }
+    }
+    last
 }
 
 fn number_change(name: &str, unit: &str, [new, old]: [f64; 2]) -> Option<String> {

@@ -4,7 +4,9 @@
 use super::live::LiveRun;
 use super::pace::{Pace, Speed};
 use crate::engine::analysis::{MeasuredNumber, Readouts};
+use crate::engine::journal::restart::in_force;
 use crate::engine::run::Moment;
+use crate::engine::scenario::Motion;
 use crate::engine::text::number::{exponent, fixed, rounded, shortest};
 use crate::physics::State;
 use std::time::Duration;
@@ -14,6 +16,8 @@ pub const READING_INTERVAL: Duration = Duration::from_millis(250);
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reading {
     pub readouts: Readouts,
+    /// Gravity, scheme and time step of the step that follows.
+    pub motion: Motion,
     /// The state at that time. Where the scheme has broken down, the last state whose orientation is a rotation.
     pub state: State,
     /// The step of that state, if the scheme has broken down since; else `None`.
@@ -31,6 +35,7 @@ impl Reading {
             state: last_whole.map_or(*run.simulation().state(), |(_, state)| *state),
             last_whole: last_whole.map(|(step, _)| *step),
             moment: Moment::of_run(run.simulation().now()),
+            motion: in_force(run.scenario(), run.simulation().step_number()).0,
             readouts: run.readouts(),
             exact: run.exact_moment(),
             pace: pace_in_words(pace),

@@ -176,7 +176,7 @@ impl Player {
         match self.goal {
             Some(Goal::Seek(Seek { step, .. })) => step,
             Some(Goal::Condition { give_up_at, .. }) => give_up_at,
-            None if self.is_endless || self.step_number() >= self.end_step() => u64::MAX,
+            None if self.step_number() >= self.end_step() => u64::MAX,
             None => self.end_step(),
         }
     }

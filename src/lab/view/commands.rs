@@ -140,10 +140,10 @@ impl View {
     }
 
     /// Turns the camera so that the axle is seen aslant, unless its direction was chosen. A moving picture is left as it is:
-    /// the motion shows where the axle points.
+    /// the motion shows where the axle points. So is that of a run that an edit began anew, to be compared with the previous.
     pub(in crate::lab) fn turn_camera(&mut self, player: &Player) {
         let is_still = !player.is_running() || player.step_number() == 0;
-        if is_still && self.look.camera.is_none() {
+        if is_still && !player.has_just_restarted() && self.look.camera.is_none() {
             self.camera = self.camera.aside_of(&player.reading.state.axle());
         }
     }

@@ -28,7 +28,7 @@ pub fn title(lab: &Lab, area: Rect, buf: &mut Buffer) {
         return bare_title(lab, area, buf);
     }
     let theme = &lab.view().theme;
-    let motion = lab.player().motion();
+    let motion = &lab.player().reading.motion;
     let step = significant(motion.time_step_s, 7);
     let clock = clock_text(
         &lab.player().reading,

@@ -41,7 +41,7 @@ pub const PARAMETERS_ROW: PaneRow = PaneRow {
     draw: |lab, area, buf| {
         Parameters {
             scenario: lab.player().run().scenario(),
-            motion: &lab.player().motion(),
+            motion: &lab.player().reading.motion,
             reading: &lab.player().reading,
             list: &lab.values().list,
             is_searched: lab.popups().mode == Mode::Find,
