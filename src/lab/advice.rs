@@ -64,15 +64,12 @@ impl Adviser {
         self.search.is_some() && self.advice().is_none()
     }
 
-    /// What would mend doubtful numbers, with the key that does it, at length and in short; `None` where no remedy is
-    /// known, or where this run cannot be changed so.
-    pub fn offer(&self, player: &Player) -> Option<[String; 2]> {
+    /// The scheme and the time step with which the run would be reliable, in words; `None` if none is known, or if this run
+    /// cannot be changed so.
+    pub fn offer(&self, player: &Player) -> Option<String> {
         let is_doubted = is_believed(player) == Some(false);
         let Offer { what, since, .. } = self.offer.as_ref().filter(|_| is_doubted)?;
-        Some([
-            format!("{what}{since} mends it: a takes it"),
-            format!("a: {what}{since} mends it"),
-        ])
+        Some(format!("{what}{since}"))
     }
 
     /// The command that follows the advice, or why there is none to follow now.
@@ -85,12 +82,10 @@ impl Adviser {
 
     fn why_none(&self, player: &Player) -> Option<&'static str> {
         match (is_believed(player), self.is_seeking()) {
-            (Some(true), _) => Some("there is nothing to mend: the run keeps to the exact motion"),
-            (None, _) => {
-                Some("whether there is something to mend is not known: nothing is advised")
-            }
+            (Some(true), _) => Some("nothing to fix: the run agrees with the exact motion"),
+            (None, _) => Some("no advice: the run cannot be compared with the exact motion"),
             (Some(false), true) => {
-                Some("what mends the numbers is being sought: press a again in a moment")
+                Some("still looking for a better time step: press a again in a moment")
             }
             (Some(false), false) => None,
         }
@@ -106,7 +101,7 @@ impl Adviser {
             let advice = known.unwrap_or_else(|| advise(&to_be_mended(player)));
             offered(&advice, player)
         });
-        offer.ok_or_else(|| "no time step or scheme is known that mends this run".to_owned())
+        offer.ok_or_else(|| "no time step or scheme was found that fixes this run".to_owned())
     }
 }
 

@@ -414,9 +414,10 @@ impl Lab {
         if let Halt::NotFinite(_) = halt {
             let edits = self.edits.runs.journal();
             let is_edited = edits.count_by(self.player.step_number()) > 0;
-            let mends = self.adviser.offer(&self.player).map(|[_, short]| short);
+            let offer = self.adviser.offer(&self.player);
+            let cure = offer.map(|offer| format!("a: rerun with {offer}"));
             self.messages
-                .tell_of_break(&text, mends.as_deref(), is_edited);
+                .tell_of_break(&text, cure.as_deref(), is_edited);
             self.changed = true;
         } else {
             self.tell(text);

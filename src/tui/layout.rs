@@ -50,15 +50,6 @@ const STEP_SHARE: u32 = 62;
 const COMPANION_COLUMNS: u16 = 24;
 const COMPANION_ROWS: u16 = 16;
 
-/// What the lab says below the panes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct LinesBelow {
-    /// Rows that the note takes on a screen of this width.
-    pub note_rows: u16,
-    /// Whether the traces show a part of the run, and an overview the whole.
-    pub has_overview: bool,
-}
-
 /// The areas of a screen; a part without a place has an empty area.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ScreenLayout {
@@ -79,8 +70,8 @@ pub struct ScreenLayout {
 }
 
 impl ScreenLayout {
-    /// Returns the layout of `area`; `keys` says whether there is a row of keys.
-    pub fn new(said: LinesBelow, area: Rect, view: &View, keys: bool) -> Self {
+    /// Returns the layout of `area`, with a note that needs `note_rows`; `keys` says whether there is a row of keys.
+    pub fn new(area: Rect, view: &View, note_rows: u16, keys: bool) -> Self {
         let mut rest = area;
         let header = cut_top(&mut rest, u16::from(area.height >= 3));
         if view.look.bare {
@@ -97,12 +88,12 @@ impl ScreenLayout {
         let note_rows = if area.height < SCRUB_FROM {
             0
         } else {
-            said.note_rows.clamp(1, most_note_rows)
+            note_rows.clamp(1, most_note_rows)
         };
         let note = cut_bottom(&mut rest, note_rows);
         let has_verdict = area.height >= 5 && !(view.hides(HideablePart::Health) && note_rows > 0);
         let verdict = cut_bottom(&mut rest, has_verdict.into());
-        let overview = cut_bottom(&mut rest, overview_rows(said, area.height, view));
+        let overview = cut_bottom(&mut rest, overview_rows(area.height, view));
         let measured = cut_bottom(&mut rest, u16::from(view.measured && area.height >= 8));
         Self {
             header,
@@ -123,20 +114,20 @@ impl ScreenLayout {
     }
 
     /// Returns the panes that are side by side while none fills the screen.
-    pub fn side_by_side(said: LinesBelow, area: Rect, view: &View) -> Vec<Pane> {
+    pub fn side_by_side(area: Rect, view: &View) -> Vec<Pane> {
         let unfilled = View {
             filled: false,
             ..view.clone()
         };
-        let layout = Self::new(said, area, &unfilled, true);
+        let layout = Self::new(area, &unfilled, 1, true);
         layout.panes.iter().map(|(pane, _)| *pane).collect()
     }
 }
 
-fn overview_rows(said: LinesBelow, height: u16, view: &View) -> u16 {
+fn overview_rows(height: u16, view: &View) -> u16 {
     let full = OVERVIEW_ROWS.iter().find(|(from, _)| height >= *from);
     match full {
-        Some((_, rows)) if said.has_overview && !view.filled => *rows,
+        Some((_, rows)) if view.window.has_overview && !view.filled => *rows,
         _ => u16::from(height >= SCRUB_FROM),
     }
 }

@@ -9,7 +9,7 @@ use crate::lab::view::theme::Marker;
 use crate::lab::view::{HideablePart, Pane};
 use crate::tui::dots;
 use crate::tui::keymap::Mode;
-use crate::tui::layout::{LinesBelow, ScreenLayout};
+use crate::tui::layout::ScreenLayout;
 use crate::tui::split::split_rows;
 use crate::tui::theme::Role;
 use crossterm::style;
@@ -21,13 +21,13 @@ use std::{io, mem};
 
 /// Fits `lab` to a screen of this size; all of it is to be drawn again.
 pub fn fit(lab: &mut Lab, size: Rect) {
-    let panes = ScreenLayout::side_by_side(lines_below(lab, size), size, lab.view());
+    let panes = ScreenLayout::side_by_side(size, lab.view());
     lab.view_mut().set_side_by_side(panes);
 }
 
 /// Fits `lab` to a screen of this size again where other panes are shown than before.
 pub fn refit(lab: &mut Lab, size: Rect) {
-    let panes = ScreenLayout::side_by_side(lines_below(lab, size), size, lab.view());
+    let panes = ScreenLayout::side_by_side(size, lab.view());
     if panes != lab.view().side_by_side {
         fit(lab, size);
     }
@@ -48,14 +48,8 @@ pub fn page_goes_on(lab: &Lab, size: Rect) -> bool {
 
 /// Where everything of `lab` stands on `area`; `keys` says whether there is a line of keys.
 pub fn layout(lab: &Lab, keys: bool, area: Rect) -> ScreenLayout {
-    ScreenLayout::new(lines_below(lab, area), area, lab.view(), keys)
-}
-
-fn lines_below(lab: &Lab, area: Rect) -> LinesBelow {
-    LinesBelow {
-        note_rows: hint::lines_of_note(lab, area.width),
-        has_overview: true,
-    }
+    let note_rows = hint::lines_of_note(lab, area.width);
+    ScreenLayout::new(area, lab.view(), note_rows, keys)
 }
 
 /// Draws `lab` on `area`; `keys` says whether with the line of keys.
@@ -67,7 +61,7 @@ pub fn draw(lab: &Lab, keys: bool, area: Rect, buf: &mut Buffer) {
             point_at(lab, place, buf);
         }
     }
-    chrome::title(lab, places.header, buf);
+    chrome::header(lab, places.header, buf);
     timeline::draw(lab, places.overview, buf);
     measured::draw(lab, places.measured, buf);
     let place = hint::place(lab, &places);
@@ -75,7 +69,7 @@ pub fn draw(lab: &Lab, keys: bool, area: Rect, buf: &mut Buffer) {
     let has_message = hint::has_message(lab);
     let is_covered = place != places.note || share_a_row && has_message;
     if !lab.view().hides(HideablePart::Health) && !is_covered {
-        chrome::health(lab, places.verdict, buf);
+        chrome::verdict(lab, places.verdict, buf);
     }
     if has_message || !lab.view().look.bare && !share_a_row {
         hint::draw(lab, keys && places.is_cramped, place, buf);

@@ -3,10 +3,10 @@
 use crate::support::desk::Desk;
 use crate::support::scenarios::preset;
 use crate::support::stage::{LARGE, SMALL, Stage};
-use crate::support::words::{has, has_all};
+use crate::support::words::has;
 use gyrolab::engine::analysis::Monitor;
 use gyrolab::engine::analysis::health::Health;
-use gyrolab::engine::analysis::remarks::{Remark, remarks};
+use gyrolab::engine::analysis::verdict::{Verdict, VerdictWord};
 use gyrolab::engine::run::Simulation;
 use gyrolab::engine::scenario::Document;
 use gyrolab::lab::command;
@@ -33,27 +33,16 @@ fn await_advice(stage: &Stage) {
     }
 }
 
-fn said(remarks: &[Remark]) -> String {
-    let long: Vec<_> = remarks.iter().map(|remark| remark.long.as_str()).collect();
-    long.join(" · ")
+/// The reasons of the verdict on a run, at length.
+fn reasons(scenario: &str, set: &[&str]) -> Vec<String> {
+    let verdict = Verdict::new(&health(scenario, set));
+    verdict.reasons.into_iter().map(|it| it.long).collect()
 }
 
 #[test]
-fn a_damping_that_spoils_a_run_is_seen_in_the_line_about_the_numbers() {
-    let health = health("cusps", &["motion.scheme=report"]);
-    let remarks = remarks(&health, None);
-    let line = said(&remarks);
-    has(&line, "nutation damped by 0.00441 % a step");
-    assert!(!line.contains("as it should"), "{line}");
-    let damped = remarks.iter().find(|one| one.long.contains("damped"));
-    assert!(damped.is_some_and(|remark| remark.warns), "{line}");
-}
-
-#[test]
-fn what_is_right_about_a_good_run_is_said() {
-    let set = ["motion.scheme=report", "motion.time_step_s=0.00005"];
-    let line = said(&remarks(&health("cusps", &set), None));
-    has_all(&line, ["as far as it should", "nutation ×1.0000 a step"]);
+fn the_verdict_names_a_damped_nutation() {
+    let reasons = reasons("cusps", &["motion.scheme=report"]);
+    assert_eq!(reasons[0], "nutation damped by 0.00441 % per step");
 }
 
 #[test]
@@ -65,35 +54,37 @@ fn a_nutation_that_is_lost_does_not_contradict_the_first_words() {
 }
 
 #[test]
-fn one_word_stands_for_what_a_long_time_step_shows() {
-    for (scenario, set) in [
-        ("method-2", &[][..]),
-        ("method-2", &["motion.scheme=strang"]),
-        (
-            "fast-top",
-            &["motion.time_step_s=0.03", "motion.scheme=exact"],
-        ),
-    ] {
-        let health = health(scenario, set);
-        let remarks = remarks(&health, None);
-        assert!(remarks[0].long.contains("strobed"), "{:?}", remarks[0]);
-        assert!(remarks[0].short.ends_with(": strobed"), "{:?}", remarks[0]);
-    }
+fn an_unreliable_run_says_how_far_the_wheel_turns_and_how_far_it_is_off() {
+    let verdict = Verdict::new(&health("method-2", &[]));
+    assert_eq!(verdict.word, VerdictWord::Badge("NOT RELIABLE".to_owned()));
+    let [turns, distance] = &verdict.reasons[..] else {
+        panic!("{verdict:?}");
+    };
+    assert_eq!(
+        turns.long,
+        "wheel turns 4.97 times per step (under-sampled)"
+    );
+    assert_eq!(turns.short, "wheel turns 4.97 times per step");
+    assert!(
+        distance.long.ends_with(" m from the exact motion"),
+        "{distance:?}"
+    );
+    assert!(distance.short.ends_with(" m off"), "{distance:?}");
 }
 
-/// From a tenth of a turn a step on the wheel's ten points are taken for one another: that is no fault of the run.
+/// From a tenth of a turn per step on, the wheel's ten points move to where others were. That is no fault of the run.
 #[test]
-fn a_wheel_that_is_strobed_is_no_fault_of_the_run() {
-    let good = health("method-2", &["motion.time_step_s=0.0022"]);
-    assert_eq!(good.is_believed(), Some(true));
-    let remarks = remarks(&good, None);
-    assert_eq!(remarks[0].short, "0.109 turns a step");
-    assert!(remarks.iter().all(|remark| !remark.warns), "{remarks:?}");
-    let words = "the body's picture is strobed, the motion is not";
-    assert_eq!(remarks.last().unwrap().long, words);
-    for size in [SMALL, LARGE] {
-        Stage::open("method-2", &["motion.time_step_s=0.0022"], size).shows_no(": strobed");
-    }
+fn a_wheel_that_looks_slow_is_no_fault_of_the_run() {
+    let verdict = Verdict::new(&health("method-1", &[]));
+    assert_eq!(verdict.word, VerdictWord::Reliable);
+    assert_eq!(
+        verdict.reasons[0].long,
+        "within 8.2e-6 m of the exact motion"
+    );
+    let hint = verdict.hint.unwrap().long;
+    assert_eq!(hint, "the wheel looks slow: it is seen once per step");
+    let exact = Verdict::new(&health("fast-top", &["motion.scheme=exact"]));
+    assert_eq!(exact.reasons[0].long, "the run is the exact motion");
 }
 
 #[test]

@@ -8,7 +8,7 @@ use gyrolab::engine::analysis::compare::{ComparisonTable, compare};
 use gyrolab::engine::analysis::health::{Advice, Health, advise};
 use gyrolab::engine::analysis::predictability::{Equilibrium, predictability};
 use gyrolab::engine::analysis::readouts::{ReadoutValue, at_end, find};
-use gyrolab::engine::analysis::remarks::remarks;
+use gyrolab::engine::analysis::verdict::{Verdict, VerdictWord};
 use gyrolab::engine::run::{Clock, Simulation, resampled};
 use gyrolab::engine::scenario::Scenario;
 use gyrolab::engine::scenario::presets::PRESETS;
@@ -157,8 +157,8 @@ fn an_upright_top_too_slow_to_sleep_is_neither_blamed_nor_praised() {
         has_no(&case, "The numbers hold");
         assert_eq!(health.is_believed(), None, "{case}");
         assert_eq!(health.is_reliable(), Some(false), "{case}");
-        let remarks = remarks(&health, None);
-        assert!(remarks[0].long.contains(BALANCED), "{remarks:?}");
+        let word = Verdict::new(&health).word;
+        assert_eq!(word, VerdictWord::Badge("UNSTABLE BALANCE".to_owned()));
     }
 }
 

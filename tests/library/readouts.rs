@@ -8,6 +8,7 @@ use gyrolab::engine::analysis::Predictability;
 use gyrolab::engine::analysis::compare::{ComparisonTable, compare};
 use gyrolab::engine::analysis::readouts::{READOUTS, ReadoutValue, find, names, nearest};
 use gyrolab::engine::analysis::theory::TheoryAxis;
+use gyrolab::engine::analysis::verdict::Verdict;
 use gyrolab::engine::analysis::{Monitor, Readouts};
 use gyrolab::engine::export::{COLUMNS, RunSummary};
 use gyrolab::engine::run::{EnergyScale, EnergyUnit, Simulation};
@@ -406,8 +407,8 @@ fn no_text_shows_what_is_no_number() {
             assert_eq!(blemish(&numbers), None, "{case}\n{numbers}");
             let picture = picture(&scenario);
             assert_eq!(blemish(&picture), None, "{case}\n{picture}");
-            for remark in gyrolab::engine::analysis::remarks::remarks(&readouts.health, None) {
-                assert_eq!(blemish(&remark.long), None, "{case}: {remark:?}");
+            for reason in Verdict::new(&readouts.health).reasons {
+                assert_eq!(blemish(&reason.long), None, "{case}: {reason:?}");
             }
         }
     }

@@ -41,6 +41,8 @@ pub struct Health {
     pub turns_per_step: f64,
     /// What that does to the picture of the wheel.
     pub picture: WheelPicture,
+    /// Whether the body has a rim, and so is a wheel.
+    pub has_rim: bool,
     /// The report's scheme alone: what it does to nutation and lag.
     pub nutation: Option<Nutation>,
     /// How the tilt has swung beside the exact motion's; `None` where the exact motion would take too long.
@@ -137,6 +139,7 @@ impl Health {
                 psi,
                 scenario.file.body.rim.as_ref().map_or(1, |rim| rim.points),
             ),
+            has_rim: scenario.file.body.rim.is_some(),
             nutation: Nutation::from_step(step, &motion, psi),
             swing: beside.swing(),
             is_a_rotation: state.is_a_rotation(),

@@ -1,7 +1,7 @@
 //! What a run's numbers are worth: [`theory`] says what the top should do, [`monitor`] and [`extremes`] what the run did,
 //! [`report_theory`] what the report's scheme should make of it, [`slowing`] what friction does to it, [`health`] what the
-//! time step made of it, [`predictability`] how long the motion can be predicted at all, [`remarks`] the same in words. [`readouts`] is the one table of all these numbers under their
-//! names, and [`compare`] holds schemes and time steps against the exact motion.
+//! time step made of it, [`predictability`] how long the motion can be predicted at all, [`verdict`] and [`remarks`] the same in words.
+//! [`readouts`] is the one table of all these numbers under their names, and [`compare`] holds schemes and time steps against the exact motion.
 //!
 //! These rooms follow a run and read it; none of them changes a number of it.
 
@@ -24,6 +24,7 @@ mod swings;
 pub mod theory;
 mod turning_points;
 mod turns;
+pub mod verdict;
 
 pub use deviation::ExactReference;
 pub use extremes::Extremes;

@@ -1,20 +1,15 @@
-//! The health of a run in words, all of them: the sentence after a run, the remarks on the lab's screen, and the lines of
-//! the summary.
+//! The health of a run in words: the sentence after a run, and the lines of the summary.
 
+use super::Health;
 use super::health::{Advice, Nutation, WheelPicture};
 use super::predictability::{Equilibrium, Predictability};
-use super::{FrictionEffect, Health};
 use crate::run::EnergyUnit;
-use crate::text::number::{
-    NOT_AVAILABLE, exponent, fixed, short, shortest, signed, signed_exponent, steady, times,
-};
+use crate::text::number::{NOT_AVAILABLE, fixed, short, shortest, signed_exponent};
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 
 /// What is wrong with a run whose scheme has broken down.
 const NO_ROTATION: &str = "its orientation is no rotation any more";
-/// Distances smaller than this are what decimals leave over, m.
-const ROUNDING_M: f64 = 1e-12;
 
 impl fmt::Display for WheelPicture {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -26,88 +21,6 @@ impl fmt::Display for WheelPicture {
             Self::Unknown => "further than numbers reach",
         })
     }
-}
-
-/// One thing to say on the screen, at length where there is room, and in short.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Remark {
-    pub long: String,
-    pub short: String,
-    pub warns: bool,
-}
-
-impl Remark {
-    fn new(text: String, warns: bool) -> Self {
-        Self {
-            long: text.clone(),
-            short: text,
-            warns,
-        }
-    }
-}
-
-/// What there is to say of `health`, and of what would mend it, where that is known; most important first.
-pub fn remarks(health: &Health, advice: Option<&Advice>) -> Vec<Remark> {
-    let limited = limit(health);
-    if let Some(limit) = limited.as_ref()
-        && health.is_believed() != Some(false)
-    {
-        // Nothing else of it is right or wrong.
-        return vec![limit.clone(), energy(health)];
-    }
-    let mut remarks = if health.is_a_rotation {
-        vec![turns(health), distance(health)]
-    } else {
-        vec![broken_down(health)]
-    };
-    remarks.extend(limited);
-    remarks.extend(wrong_swing(health));
-    if health.is_believed() == Some(false) {
-        remarks.extend(advice.and_then(|advice| mend(health, advice)));
-    }
-    if !health.is_a_rotation {
-        return remarks; // its energy and its swing are no body's
-    }
-    let swing = health.nutation.iter();
-    let (faults, others): (Vec<_>, Vec<_>) = swing
-        .flat_map(|nutation| swing_of(health, nutation))
-        .partition(|(is_the_fault, _)| *is_the_fault);
-    remarks.extend(faults.into_iter().map(|(_, remark)| remark));
-    remarks.push(energy(health));
-    remarks.extend(health.slowing.map(|slowing| taken(&slowing)));
-    remarks.extend(others.into_iter().map(|(_, remark)| remark));
-    if health.picture == WheelPicture::Strobed && health.is_believed() != Some(false) {
-        // Of the picture alone: it changes no number, so it is said last.
-        remarks.push(Remark::new(
-            "the body's picture is strobed, the motion is not".to_owned(),
-            false,
-        ));
-    }
-    remarks
-}
-
-fn broken_down(health: &Health) -> Remark {
-    let name = health.scheme.name;
-    Remark {
-        long: format!("the scheme {name} breaks down at this time step, {NO_ROTATION}"),
-        short: format!("{name} breaks down: no rotation"),
-        warns: true,
-    }
-}
-
-fn mend(health: &Health, advice: &Advice) -> Option<Remark> {
-    let short = match advice {
-        Advice::TimeStep(step) => format!("dt {} s", shortest(*step)),
-        Advice::Scheme {
-            name, time_step_s, ..
-        } => format!("{name}, dt {} s", shortest(*time_step_s)),
-        Advice::Holds | Advice::Nothing | Advice::BoundToItsTimeStep => return None,
-    };
-    Some(Remark {
-        long: remedy(health, advice)? + " would mend it",
-        short: short + " mends it",
-        warns: false,
-    })
 }
 
 /// What mends the run: options of the command line where it can be run again with them.
@@ -138,84 +51,6 @@ fn remedy(health: &Health, advice: &Advice) -> Option<String> {
 /// Largest ratio of the scheme's lag to the true lag that is reported as right. The scheme's lag is never the smaller.
 const LAG_IS_RIGHT: f64 = 1.05;
 
-/// How far the axle lags behind L, and what becomes of the nutation, which is the fault of the run where it is changed.
-fn swing_of(health: &Health, nutation: &Nutation) -> Vec<(bool, Remark)> {
-    let changed = health.changed_nutation();
-    let is_right = changed.is_none() && health.is_believed() != Some(false);
-    let lag = nutation.lag_ratio.and_then(|ratio| {
-        let text = match ratio {
-            // A lag that is right is not said beside what is wrong.
-            ..LAG_IS_RIGHT if !is_right => return None,
-            ..LAG_IS_RIGHT => "axle lags L as far as it should".to_owned(),
-            ..2.0 => format!("axle lags L {} % too far", short(100.0 * (ratio - 1.0))),
-            _ => format!("axle lags L {} times too far", times(ratio)),
-        };
-        Some(Remark::new(text, ratio >= LAG_IS_RIGHT))
-    });
-    let factor = if let Some(left) = changed {
-        let gone = if left < 1e-3 { ": gone" } else { "" };
-        format!("nutation {}{gone}", self::changed(nutation))
-    } else {
-        format!("nutation ×{} a step", fixed(nutation.multiplier, 4))
-    };
-    let is_the_fault = changed.is_some();
-    let factor = (is_the_fault, Remark::new(factor, is_the_fault));
-    lag.map(|lag| (false, lag))
-        .into_iter()
-        .chain([factor])
-        .collect()
-}
-
-fn turns(health: &Health) -> Remark {
-    if health.picture == WheelPicture::Unknown {
-        let text = "the body turns further in a step than numbers reach".to_owned();
-        return Remark::new(text, true);
-    }
-    let turns = steady(health.turns_per_step);
-    let (long, warns) = match (health.picture, health.nutation) {
-        (WheelPicture::Right | WheelPicture::Strobed, _) => (String::new(), false),
-        (picture, None) => (format!(": {picture}"), true),
-        (_, Some(_)) => (": strobed, the swing is the time step's".to_owned(), true),
-    };
-    let short = if long.is_empty() { "" } else { ": strobed" };
-    Remark {
-        long: format!("the body turns {turns} times a step{long}"),
-        short: format!("{turns} turns a step{short}"),
-        warns,
-    }
-}
-
-fn distance(health: &Health) -> Remark {
-    let metres = match (health.deviation, health.most_distance_m) {
-        (Some(deviation), _) => length(deviation.distance_m),
-        (None, Some(most_m)) => format!("up to {}", length(most_m)),
-        (None, None) => {
-            return Remark::new("not held against the exact motion".to_owned(), false);
-        }
-    };
-    Remark {
-        long: format!("{metres} off the exact motion"),
-        short: format!("{metres} off exact"),
-        warns: health.point_holds() == Some(false),
-    }
-}
-
-/// Returns what limits every computation of the motion, where something does.
-fn limit(health: &Health) -> Option<Remark> {
-    let limits = health.limits();
-    let short = match limits {
-        Predictability {
-            unstable: Some(_), ..
-        } => "unstable equilibrium".to_owned(),
-        Predictability { until_s, .. } => format!("predictable until {} s", short(until_s?)),
-    };
-    Some(Remark {
-        long: limits.to_string(),
-        short,
-        warns: true,
-    })
-}
-
 impl fmt::Display for Predictability {
     /// Writes what follows "the motion is"; nothing where there is no limit.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -240,37 +75,6 @@ impl fmt::Display for Predictability {
     }
 }
 
-/// How the tilt swings, where it does not as it should although the traced point is right.
-fn wrong_swing(health: &Health) -> Option<Remark> {
-    let swing = health.swing.filter(|swing| !swing.is_right())?;
-    (health.point_holds() == Some(true)).then(|| Remark {
-        long: swing.to_string(),
-        short: swing.in_short(),
-        warns: true,
-    })
-}
-
-fn energy(health: &Health) -> Remark {
-    let Some(drift) = health.energy_drift else {
-        return Remark {
-            long: format!("energy drift {NOT_AVAILABLE}: {}", no_drift(health)),
-            short: format!(
-                "energy {NOT_AVAILABLE}: {}",
-                short_no_drift(health.energy_unit)
-            ),
-            warns: false,
-        };
-    };
-    let unit = short_unit(health.energy_unit);
-    let text = format!("energy drift {} {unit}", signed(drift, 4));
-    Remark::new(text, false)
-}
-
-/// The energy that friction has taken; the drift counts it as work.
-fn taken(slowing: &FrictionEffect) -> Remark {
-    Remark::new(format!("friction took {} J", short(-slowing.work)), false)
-}
-
 fn no_drift(health: &Health) -> &'static str {
     match health.energy_unit {
         None => "neither weight nor kinetic energy to measure it by",
@@ -292,15 +96,6 @@ pub fn short_unit(unit: Option<EnergyUnit>) -> &'static str {
         Some(EnergyUnit::Weight) => "mgl",
         Some(EnergyUnit::KineticAtStart) => "Ekin",
         None => "",
-    }
-}
-
-/// A distance in metres, as many characters whatever its size; rounding is no distance.
-fn length(metres: f64) -> String {
-    match metres {
-        m if m < ROUNDING_M => "0 m".to_owned(),
-        m if m >= 1e-3 => format!("{} m", fixed(m, 4)),
-        m => format!("{} m", exponent(m, 1)),
     }
 }
 

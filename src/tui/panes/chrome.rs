@@ -1,14 +1,14 @@
-//! The lines around the panes: title, health and keys.
+//! The rows around the panes: the header, the verdict and the keys.
 
 use super::{longest, shortened, write};
-use crate::engine::analysis::remarks::{Remark, remarks};
+use crate::engine::analysis::verdict::{Phrase, Verdict, VerdictWord};
+use crate::engine::run::Clock;
 use crate::engine::text::number::{fixed, significant};
 use crate::engine::text::wrap::columns;
 use crate::lab::Lab;
 use crate::lab::action::{Action, LessonKey};
-use crate::lab::playback::reading::Reading;
+use crate::lab::view::Pane;
 use crate::lab::view::step::StepPageChoice;
-use crate::lab::view::{HideablePart, Pane};
 use crate::tui::keymap::{BINDINGS, Binding, FooterPriority, Key, KeyEffect, Mode};
 use crate::tui::screen::page_goes_on;
 use crate::tui::split::split_columns;
@@ -18,45 +18,47 @@ use ratatui::layout::Rect;
 
 /// A title of up to this many columns is written whole before scheme and time step have room.
 const LEAST_TITLE: usize = 32;
-/// Remarks before what would mend the numbers: the turns in a step and the distance.
-const BEFORE_OFFER: usize = 2;
+/// The speed of playback is written in this many columns, so that the time before it does not move.
+const PACE_COLUMNS: usize = 11;
+/// From this width on, phrases and keys are three columns apart, else two.
+const WIDE_FROM: u16 = 100;
 pub(super) const SEPARATOR: &str = " · ";
 
-/// Title, scheme and time step on the left, what fits of it; time, step and pace on the right, in fixed columns.
-pub fn title(lab: &Lab, area: Rect, buf: &mut Buffer) {
+/// Draws title, scheme and time step at the left, and time, step and speed at the right: the longest form that fits.
+pub fn header(lab: &Lab, area: Rect, buf: &mut Buffer) {
     if lab.view().look.bare {
-        return bare_title(lab, area, buf);
+        return bare_header(lab, area, buf);
     }
     let theme = &lab.view().theme;
     let motion = &lab.player().reading.motion;
-    let step = significant(motion.time_step_s, 7);
-    let clock = clock_text(
-        &lab.player().reading,
-        lab.player().run().scenario().least_time_step_s(),
-        area.width as usize,
-    );
-    let clock_x = area.width.saturating_sub(columns(&clock) as u16);
-    write(area, (clock_x, 0), &clock, theme.style(Role::Text), buf);
-    let [left, _] = split_columns(area, clock_x.saturating_sub(1));
-    let room = left.width.saturating_sub(1) as usize;
-    let details = [
-        format!(" · {} scheme · dt {step} s", motion.scheme.name),
-        format!(" · {} · dt {step} s", motion.scheme.name),
-        format!(" · {} scheme", motion.scheme.name), // the values have the time step too
-        format!(" · {}", motion.scheme.name),
-        String::new(),
+    let name = motion.scheme.name;
+    let step = format!("dt {} s", significant(motion.time_step_s, 7));
+    let scenario = lab.player().run().scenario();
+    let title = &scenario.file.title;
+    let forms = [
+        (format!("  {name} scheme   {step}"), clock(lab, true)),
+        (format!("  {name}   {step}"), clock(lab, true)),
+        (format!("  {name}   {step}"), clock(lab, false)),
+        (format!("  {step}"), clock(lab, false)),
+        (String::new(), clock(lab, false)),
+        (String::new(), short_clock(lab, area.width.into())),
     ];
-    let title = &lab.player().run().scenario().file.title;
-    let least = columns(title).min(LEAST_TITLE);
-    let fitting = details.iter().find(|text| columns(text) + least <= room);
-    if let Some(details) = fitting {
-        let short = shortened(title, room - columns(details));
-        let x = write(left, (1, 0), &short, theme.style(Role::Heading), buf);
-        write(left, (x, 0), details, theme.style(Role::Label), buf);
-    }
+    let width = usize::from(area.width);
+    let least_title = columns(title).min(LEAST_TITLE);
+    let fits =
+        |form: &(String, String)| least_title + columns(&form.0) + 2 + columns(&form.1) <= width;
+    let [.., last] = &forms;
+    let (details, clock) = forms.iter().find(|form| fits(form)).unwrap_or(last);
+    let clock_x = width.saturating_sub(columns(clock)) as u16;
+    write(area, (clock_x, 0), clock, theme.style(Role::Text), buf);
+    let [left, _] = split_columns(area, clock_x.saturating_sub(1));
+    let room = usize::from(left.width).saturating_sub(columns(details));
+    let short = shortened(title, room);
+    let x = write(left, (0, 0), &short, theme.style(Role::Heading), buf);
+    write(left, (x, 0), details, theme.style(Role::Label), buf);
 }
 
-fn bare_title(lab: &Lab, area: Rect, buf: &mut Buffer) {
+fn bare_header(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
     let digits = time_decimals(lab.player().run().scenario().least_time_step_s());
     let time_s = lab.player().reading.readouts.sample.time_s;
@@ -65,7 +67,7 @@ fn bare_title(lab: &Lab, area: Rect, buf: &mut Buffer) {
     write(area, (x, 0), &time, theme.style(Role::Text), buf);
     let [left, _] = split_columns(area, x.saturating_sub(1));
     let title = &lab.player().run().scenario().file.title;
-    write(left, (1, 0), title, theme.style(Role::Heading), buf);
+    write(left, (0, 0), title, theme.style(Role::Heading), buf);
 }
 
 /// Digits after the point of a time that tell every step from the next, of a run whose shortest step is `time_step_s`.
@@ -73,91 +75,156 @@ fn time_decimals(time_step_s: f64) -> usize {
     (-libm::log10(time_step_s)).ceil().clamp(0.0, 6.0) as usize
 }
 
-/// Time, step and pace in fixed columns, or closer together where `width` is short of them.
-fn clock_text(reading: &Reading, time_step_s: f64, width: usize) -> String {
-    let digits = time_decimals(time_step_s);
-    let (t, step) = (reading.readouts.sample.time_s, reading.readouts.sample.step);
-    let (t, pace) = (fixed(t, digits), &reading.pace);
+/// Time, step and speed in fixed columns; `with_total` says whether with the number of steps of the whole run.
+fn clock(lab: &Lab, with_total: bool) -> String {
+    let reading = &lab.player().reading;
+    let scenario = lab.player().run().scenario();
+    let decimals = time_decimals(scenario.least_time_step_s());
+    let end = fixed(Clock::end_s(scenario), decimals);
+    let time = fixed(reading.readouts.sample.time_s, decimals);
+    let time_columns = end.len();
+    let (step, steps) = (reading.readouts.sample.step, scenario.steps.to_string());
+    let step_columns = steps.len();
+    let total = if with_total {
+        format!(" of {steps}")
+    } else {
+        String::new()
+    };
+    let pace = &reading.pace;
+    format!("t {time:>time_columns$} s   step {step:>step_columns$}{total}   {pace:<PACE_COLUMNS$}")
+}
+
+/// As [`clock`], for narrow screens.
+fn short_clock(lab: &Lab, width: usize) -> String {
+    let reading = &lab.player().reading;
+    let decimals = time_decimals(lab.player().run().scenario().least_time_step_s());
+    let (step, pace) = (reading.readouts.sample.step, &reading.pace);
+    let time = fixed(reading.readouts.sample.time_s, decimals);
     let moves = pace.split([' ', ',']).next().unwrap_or_default();
     let clocks = [
-        format!("t {t:>8} s  step {step:<8} {pace:<11}"),
-        format!("t {t} s  step {step}  {pace} "),
-        format!("t {t} s step {step} {moves}"),
+        format!("t {time} s  step {step}  {pace} "),
+        format!("t {time} s step {step} {moves}"),
     ];
     shortened(&longest(clocks, width), width).into_owned()
 }
 
-/// What the time step makes of the numbers, in words: at length if all of it fits, else in short, as much as fits.
-pub fn health(lab: &Lab, area: Rect, buf: &mut Buffer) {
+/// Draws the verdict on the run: a word, the reasons, and the key that fixes it. Reasons give way to the key.
+pub fn verdict(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
-    let mut shown = remarks(&lab.player().reading.readouts.health, None);
-    if let Some([long, short]) = lab.adviser().offer(lab.player()) {
-        let offer = Remark {
-            long,
-            short,
-            warns: false,
-        };
-        shown.insert(BEFORE_OFFER.min(shown.len()), offer);
-    }
-    let whole: usize = shown
-        .iter()
-        .map(|remark| columns(&remark.long) + columns(SEPARATOR))
-        .sum();
-    let mut x = 1;
-    for remark in &shown {
-        let text = if whole <= area.width as usize {
-            &remark.long
-        } else {
-            &remark.short
-        };
-        if x > 1 && x as usize + columns(text) + columns(SEPARATOR) > area.width as usize {
-            return;
-        }
-        if x > 1 {
-            x = write(area, (x, 0), SEPARATOR, theme.style(Role::Label), buf);
-        }
-        let role = if remark.warns { Role::Off } else { Role::Text };
-        x = write(area, (x, 0), text, theme.style(role), buf);
+    let verdict = Verdict::new(&lab.player().reading.readouts.health);
+    let (word, role) = match &verdict.word {
+        VerdictWord::Reliable => (" reliable:".to_owned(), Role::Heading),
+        VerdictWord::Checking => (" checking ...".to_owned(), Role::Label),
+        VerdictWord::Badge(word) => (format!(" {word} "), Role::Badge),
+    };
+    let cure = lab.adviser().offer(lab.player()).map(|offer| {
+        let long = format!("a rerun with {offer}");
+        Phrase::new(long, format!("a {offer}"))
+    });
+    let gap = if area.width >= WIDE_FROM { 3 } else { 2 };
+    let begin = columns(&word) + 1;
+    let room = usize::from(area.width).saturating_sub(begin);
+    let texts = fitting_phrases(&verdict, cure.as_ref(), gap, room);
+    let mut x = write(area, (0, 0), &word, theme.style(role), buf) + 1;
+    for (text, kind) in texts {
+        x = match kind {
+            PhraseKind::Reason => write(area, (x, 0), &text, theme.style(Role::Text), buf),
+            PhraseKind::Hint => write(area, (x, 0), &text, theme.style(Role::Label), buf),
+            PhraseKind::Cure => {
+                let (key, rest) = text.split_at(1);
+                let x = write(area, (x, 0), key, theme.style(Role::Heading), buf);
+                write(area, (x, 0), rest, theme.style(Role::Text), buf)
+            }
+        } + gap as u16;
     }
 }
 
-/// Whether the line about the numbers' health warns of something.
-pub fn warns(lab: &Lab) -> bool {
-    let health = &lab.player().reading.readouts.health;
-    !lab.view().hides(HideablePart::Health)
-        && remarks(health, None).iter().any(|remark| remark.warns)
+#[derive(Clone, Copy, PartialEq)]
+enum PhraseKind {
+    Reason,
+    Hint,
+    Cure,
 }
 
-/// The keys of the mode, as many as fit; help and quit always.
+/// The phrases of `verdict` and `cure` in at most `room` columns: all at length, or in short, without the hint, and with as
+/// many reasons as fit.
+fn fitting_phrases(
+    verdict: &Verdict,
+    cure: Option<&Phrase>,
+    gap: usize,
+    room: usize,
+) -> Vec<(String, PhraseKind)> {
+    let reasons = verdict.reasons.iter().map(|it| (it, PhraseKind::Reason));
+    let hint = verdict.hint.iter().map(|it| (it, PhraseKind::Hint));
+    let cure = cure.map(|it| (it, PhraseKind::Cure));
+    let mut phrases: Vec<_> = reasons.chain(hint).chain(cure).collect();
+    let length = |phrases: &[(&Phrase, PhraseKind)], is_long: bool| {
+        let all = phrases
+            .iter()
+            .map(|(phrase, _)| columns(if is_long { &phrase.long } else { &phrase.short }) + gap);
+        all.sum::<usize>().saturating_sub(gap)
+    };
+    while length(&phrases, true) > room && length(&phrases, false) > room {
+        let others = phrases
+            .iter()
+            .rposition(|(_, kind)| *kind != PhraseKind::Cure);
+        match others {
+            Some(last) => phrases.remove(last),
+            None => break,
+        };
+    }
+    let is_long = length(&phrases, true) <= room;
+    phrases
+        .into_iter()
+        .map(|(phrase, kind)| {
+            let text = if is_long { &phrase.long } else { &phrase.short };
+            (text.clone(), kind)
+        })
+        .collect()
+}
+
+/// Draws the keys of the mode, as many as fit.
 pub fn keys(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
-    for (x, item) in place_keys(lab, area) {
-        let (key, focus) = (item.key.to_string(), theme.style(Role::Heading));
-        let x = write(area, (x, 0), &key, focus, buf);
+    for (at, item) in place_keys(lab, area) {
+        let label = item.label();
+        let x = write(area, (at, 0), &label, theme.style(Role::Heading), buf);
         write(area, (x + 1, 0), item.word, theme.style(Role::Label), buf);
     }
 }
 
-/// The key that the line of keys on `area` names at the column `x` of the screen.
+/// The key that the row of keys on `area` names at the column `x` of the screen.
 pub fn key_at(lab: &Lab, area: Rect, x: u16) -> Option<Key> {
     let column = x.checked_sub(area.x)?;
     let mut placed = place_keys(lab, area).into_iter();
-    let found = placed.find(|(at, item)| (*at..at + item.length()).contains(&column));
-    found.map(|(_, item)| item.key)
+    let (at, item) = placed.find(|(at, item)| (*at..at + item.length()).contains(&column))?;
+    let mut end = at;
+    let mut keys = item.keys.iter().copied();
+    let under = keys.find(|key| {
+        end += key.to_string().len() as u16 + 1;
+        column < end
+    });
+    under.or(item.keys.first().copied())
 }
 
-#[derive(Clone, Copy)]
+/// Keys that share a word in the row of keys.
+#[derive(Clone)]
 struct FooterItem {
-    key: Key,
+    keys: Vec<Key>,
     word: &'static str,
     worth: FooterPriority,
 }
 
 impl FooterItem {
-    /// Columns of the key and its word.
+    fn label(&self) -> String {
+        let keys: Vec<_> = self.keys.iter().map(Key::to_string).collect();
+        keys.join(" ")
+    }
+
+    /// Columns of the keys and their word.
     fn length(&self) -> u16 {
         let blank = usize::from(!self.word.is_empty());
-        (self.key.to_string().len() + blank + self.word.len()) as u16
+        (self.label().len() + blank + self.word.len()) as u16
     }
 }
 
@@ -175,28 +242,24 @@ fn place_keys(lab: &Lab, area: Rect) -> Vec<(u16, FooterItem)> {
         .collect()
 }
 
-/// As many of `items` as `width` has room for, and the columns between two of them. The spare keys give way first, then
-/// every second blank, then the words of the keys that every pane has, and last keys; help and quit stay.
+/// As many of `items` as `width` has room for, and the columns between two of them. Keys that are used less give way first,
+/// from the last; then blanks, and the words of the pane's own keys.
 fn fitted(mut items: Vec<FooterItem>, width: u16) -> (Vec<FooterItem>, u16) {
-    let mut gap = 2;
+    let mut gap = if width >= WIDE_FROM { 3 } else { 2 };
     loop {
         let whole: u16 = items.iter().map(|item| item.length() + gap).sum();
-        if whole.saturating_sub(gap) < width || items.len() <= 2 {
+        if whole.saturating_sub(gap) < width || items.is_empty() {
             return (items, gap);
         }
-        let others = &items[..items.len() - 2]; // the last two are help and quit
-        let least = others.iter().map(|item| item.worth).min();
-        let has_spare = least == Some(FooterPriority::Spare);
-        let last_word = others
-            .iter()
-            .rposition(|item| item.worth < FooterPriority::Own && !item.word.is_empty());
-        let last_least = others.iter().rposition(|item| Some(item.worth) == least);
-        if gap > 1 && least.is_some() && !has_spare {
-            gap = 1;
-        } else if let Some(word) = last_word.filter(|_| !has_spare) {
-            items[word].word = "";
-        } else if let Some(key) = last_least {
-            items.remove(key);
+        let least = items.iter().map(|item| item.worth).min();
+        let last_least = items.iter().rposition(|item| Some(item.worth) == least);
+        let last_word = items.iter().rposition(|item| !item.word.is_empty());
+        match (last_least, last_word) {
+            _ if gap > 2 => gap = 2,
+            (Some(key), _) if least < Some(FooterPriority::Kept) => drop(items.remove(key)),
+            _ if gap > 1 => gap = 1,
+            (_, Some(word)) => items[word].word = "",
+            _ => drop(items.pop()),
         }
     }
 }
@@ -220,8 +283,8 @@ fn footer(lab: &Lab, goes_on: bool) -> Vec<FooterItem> {
         .filter(|(row, _)| row.modes.contains(&mode) && !row.footer.is_empty());
     let items = rows.filter_map(|(row, worth)| {
         let word = footer_word(lab, goes_on, row)?;
-        let key = row.keys[0];
-        Some(FooterItem { key, word, worth })
+        let keys = vec![row.keys[0]];
+        Some(FooterItem { keys, word, worth })
     });
     let esc_word = match mode {
         Mode::Lab if lab.view().filled && lab.view().sheet.is_some() => Some("to the page"),
@@ -231,11 +294,19 @@ fn footer(lab: &Lab, goes_on: bool) -> Vec<FooterItem> {
         Mode::Browser | Mode::Dialog => Some("close"),
     };
     let esc = esc_word.map(|word| FooterItem {
-        key: Key::Esc,
+        keys: vec![Key::Esc],
         word,
         worth: FooterPriority::Own,
     });
-    esc.into_iter().chain(items).collect()
+    let mut all: Vec<_> = esc.into_iter().chain(items).collect();
+    all.dedup_by(|next, kept| {
+        let is_same = next.word == kept.word && next.worth == kept.worth;
+        if is_same {
+            kept.keys.append(&mut next.keys);
+        }
+        is_same
+    });
+    all
 }
 
 /// What the footer says of a key now; `None` where the key does nothing.
@@ -259,7 +330,7 @@ fn footer_word(lab: &Lab, goes_on: bool, row: &Binding) -> Option<&'static str> 
         _ => true,
     };
     let word = match (row.footer, action) {
-        ("pause", _) if !lab.player().is_running() => "go on",
+        ("pause", _) if !lab.player().is_running() => "run",
         ("next phase", _) if is_why => "next step",
         ("why sideways", _) if is_why => "phases",
         (_, Some(Action::Lesson(LessonKey::Take))) => enter,

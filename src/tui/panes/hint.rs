@@ -1,8 +1,8 @@
-//! The lines of hints: what there is to see, and for a while what is to be said now.
+//! The note: what there is to see, and for a while a message.
 
 use super::chrome::SEPARATOR;
 use super::{wrapped_to, write};
-use crate::engine::text::wrap::wrapped;
+use crate::engine::text::wrap::{columns, wrapped};
 use crate::lab::{Lab, MOST_COUNTED};
 use crate::tui::layout::ScreenLayout;
 use crate::tui::theme::Role;
@@ -15,9 +15,21 @@ const CRAMPED: &str = "80x24 shows more";
 /// Lines that a message may take on a small screen.
 const MOST_HINT_LINES: u16 = 4;
 
-/// Lines that the hint takes on a screen of this width while there is no message.
+/// Rows that the note takes on a screen of this width while there is no message.
 pub fn lines_of_note(lab: &Lab, width: u16) -> u16 {
-    lines_of(&lab.note(), width)
+    lines_of(whole_sentences(&lab.note(), width), width)
+}
+
+/// As many sentences of `note` as fit in one row of a screen of this width; all of it if not even the first fits.
+fn whole_sentences(note: &str, width: u16) -> &str {
+    let room = usize::from(width.saturating_sub(2));
+    if columns(note) <= room {
+        return note;
+    }
+    let ends = note.match_indices(". ").map(|(at, _)| &note[..=at]);
+    ends.filter(|begin| columns(begin) <= room)
+        .last()
+        .unwrap_or(note)
 }
 
 fn lines_of(text: &str, width: u16) -> u16 {
@@ -30,7 +42,7 @@ fn lines_of(text: &str, width: u16) -> u16 {
 pub fn place(lab: &Lab, layout: &ScreenLayout) -> Rect {
     let place = layout.note;
     let needed = if has_message(lab) {
-        lines_of(&said(lab).0, place.width)
+        lines_of(&said(lab, place.width).0, place.width)
     } else {
         0
     };
@@ -57,7 +69,7 @@ pub fn place(lab: &Lab, layout: &ScreenLayout) -> Rect {
 
 /// What is to be said now; else what there is to see. On a small screen, that there would be more, if there is room.
 pub fn draw(lab: &Lab, is_cramped: bool, area: Rect, buf: &mut Buffer) {
-    let (text, role) = said(lab);
+    let (text, role) = said(lab, area.width);
     let theme = &lab.view().theme;
     let width = area.width.saturating_sub(2) as usize;
     let lines = wrapped_to(&text, width, area.height as usize);
@@ -86,8 +98,8 @@ pub fn has_message(lab: &Lab) -> bool {
 
 const NOT_KEPT: &str = "session not kept";
 
-/// What stands in the line of hints. That the session is not kept stands there as long as it is so.
-fn said(lab: &Lab) -> (String, Role) {
+/// The text of the note on a screen of this width. That the session is not saved is said as long as it is so.
+fn said(lab: &Lab, width: u16) -> (String, Role) {
     let (popups, messages) = (lab.popups(), lab.messages());
     let message = match popups.count {
         Some(MOST_COUNTED) => Some(format!(
@@ -99,9 +111,9 @@ fn said(lab: &Lab) -> (String, Role) {
         None => lab.notice(),
     };
     match (message, messages.trouble()) {
-        (Some(text), Some(_)) => (format!("{NOT_KEPT}{SEPARATOR}{text}"), Role::Heading),
-        (Some(text), None) => (text, Role::Heading),
+        (Some(text), Some(_)) => (format!("{NOT_KEPT}{SEPARATOR}{text}"), Role::Text),
+        (Some(text), None) => (text, Role::Text),
         (None, Some(trouble)) => (trouble.to_owned(), Role::Off),
-        (None, None) => (lab.note().into_owned(), Role::Text),
+        (None, None) => (whole_sentences(&lab.note(), width).to_owned(), Role::Label),
     }
 }
