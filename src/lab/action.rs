@@ -41,8 +41,6 @@ pub enum Action {
     /// Does the entry that is selected in the help; `tui`, which has the entries, carries it out.
     DoEntry,
     Choose,
-    /// Begins to type the filter of the browser.
-    Filter,
     /// Changes what is typed: the field of a dialog, a filter, or the search of the help.
     InField(FieldEdit),
     /// Accepts what is typed into the dialog.
@@ -113,6 +111,10 @@ pub enum LessonKey {
     Notes,
     /// Selects the answer above or below, or scrolls.
     Move(Direction),
+    /// Selects the lesson of this number among those that are listed.
+    Select(usize),
+    /// Changes the text that filters the list of lessons.
+    Filter(FieldEdit),
     /// Gives the selected answer, asks for a number, or opens the selected lesson.
     Take,
     /// Marks the answer of this number, or asks for a number that begins with this digit.
@@ -143,6 +145,8 @@ pub enum Direction {
     Right,
     PageUp,
     PageDown,
+    First,
+    Last,
 }
 
 impl Direction {
@@ -152,7 +156,11 @@ impl Direction {
 
     /// Rows by which a key moves in a list; a page key moves by `page`.
     pub fn rows(self, page: isize) -> isize {
+        /// More rows than any list has.
+        const ALL_ROWS: isize = 1_000_000_000;
         match self {
+            Self::First => -ALL_ROWS,
+            Self::Last => ALL_ROWS,
             Self::Up | Self::Left => -1,
             Self::Down | Self::Right => 1,
             Self::PageUp => -page,

@@ -115,13 +115,15 @@ impl Browser {
         self.preview = None;
     }
 
-    /// Returns the entries whose names contain the filter.
+    /// Returns the entries whose names contain each word of the filter.
     pub fn shown(&self) -> Vec<&BrowserEntry> {
-        let wanted = self.filter.to_lowercase();
-        self.entries
-            .iter()
-            .filter(|entry| entry.name.to_lowercase().contains(&wanted))
-            .collect()
+        let filter = self.filter.to_lowercase();
+        let mut shown: Vec<_> = self.entries.iter().collect();
+        shown.retain(|entry| {
+            let name = entry.name.to_lowercase();
+            filter.split_whitespace().all(|word| name.contains(word))
+        });
+        shown
     }
 
     /// Returns the folder whose files are listed, where that is not the first one.
@@ -154,9 +156,11 @@ impl Browser {
         self.load_preview();
     }
 
-    /// Changes the filter, and selects the first entry that is then shown.
+    /// Changes the filter, and selects the first entry that is then shown. `/` begins a search in other panes: at the
+    /// beginning it means nothing here.
     pub fn filter_by(&mut self, change: impl FnOnce(&mut String)) {
         change(&mut self.filter);
+        self.filter = self.filter.trim_start_matches('/').to_owned();
         self.refilter();
     }
 

@@ -5,11 +5,11 @@ use super::answer::Refusal;
 use super::command::{Command, Export, FigureCommand, Save, SeekTarget};
 use super::edits::Edits;
 use super::files::{Files, run_up_to};
-use super::form::{InputField, InputForm};
+use super::form::{InputField, InputForm, edit_line, type_into};
 use super::player::{Player, WHERE};
 use super::settings::SETTINGS;
 use super::values::Values;
-use super::values::list::{ListedValue, ValueSource};
+use super::values::list::{ListedValue, Match, ValueSource};
 use super::view::{Pane, View};
 use crate::engine::export::CsvLayout;
 use crate::engine::journal::parameters::Parameter;
@@ -51,8 +51,13 @@ pub(super) enum DialogKind {
     SavePresent(String),
     /// A number that a room above the lab asks for.
     Number,
-    /// Other values of the settings. Nothing is typed here.
-    Settings,
+    /// Other values of the settings.
+    Settings {
+        /// What is typed: only settings that have it in their labels are listed.
+        filter: String,
+        /// The rows of all settings.
+        all: Vec<InputField>,
+    },
 }
 
 /// When a value that is typed takes effect.
@@ -165,7 +170,7 @@ impl Dialog {
                 let path = free_name("-from-here", "toml");
                 Ok(Self::save_present(player.present_as_text()?, path))
             }
-            Ask::Settings => Ok(Self::settings(view, 0)),
+            Ask::Settings => Ok(Self::settings(view, "", 0)),
             Ask::Place => Ok(Self::go_to()),
         }
     }
@@ -226,17 +231,63 @@ impl Dialog {
         Self::new(DialogKind::Number, title, &fields, [about])
     }
 
-    /// Lists the settings with the values that they have in `view`; the one of this number is selected.
-    pub(super) fn settings(view: &View, selected: usize) -> Self {
+    /// Lists the settings that have `filter` in their labels, with the values that they have in `view`; the row `selected` is
+    /// selected.
+    pub(super) fn settings(view: &View, filter: &str, selected: usize) -> Self {
         let info = "dots, colours, frames and mouse are remembered for the next time";
-        let mut dialog = Self::new(DialogKind::Settings, "settings", &[], [info]);
-        let fields = SETTINGS.iter();
-        dialog.form.fields = fields
+        let settings = SETTINGS.iter();
+        let all = settings
             .map(|setting| InputField::choice(setting.label, &(setting.value)(view)))
             .collect();
+        let filter = filter.to_owned();
+        let mut dialog = Self::new(DialogKind::Settings { filter, all }, "", &[], [info]);
         dialog.form.keys = KEYS_OF_SETTINGS;
-        dialog.form.selected = selected;
+        dialog.filter_settings(|_| {});
+        dialog.form.select(selected);
         dialog
+    }
+
+    /// Changes what filters the settings, and lists those that match it.
+    fn filter_settings(&mut self, change: impl FnOnce(&mut String)) {
+        let DialogKind::Settings { filter, all } = &mut self.question else {
+            return;
+        };
+        change(filter);
+        let matching = all
+            .iter()
+            .filter(|field| Match::find(&field.label, filter).is_some());
+        self.form.fields = matching.cloned().collect();
+        self.form.selected = 0;
+        self.form.title = if filter.is_empty() {
+            "settings: type to filter".to_owned()
+        } else {
+            format!("settings: {filter}_ ({})", self.form.fields.len())
+        };
+    }
+
+    /// Lists all settings again; returns whether some were left out.
+    pub(super) fn clear_filter(&mut self) -> bool {
+        let is_filtered = self
+            .setting_filter()
+            .is_some_and(|filter| !filter.is_empty());
+        if is_filtered {
+            self.filter_settings(String::clear);
+        }
+        is_filtered
+    }
+
+    /// Returns what filters the settings; `None` in another dialog.
+    pub(super) fn setting_filter(&self) -> Option<&str> {
+        match &self.question {
+            DialogKind::Settings { filter, .. } => Some(filter),
+            _ => None,
+        }
+    }
+
+    /// Returns the number of the selected setting among all of [`SETTINGS`].
+    pub(super) fn selected_setting(&self) -> Option<usize> {
+        let label = &self.form.fields.get(self.form.selected)?.label;
+        SETTINGS.iter().position(|setting| setting.label == label)
     }
 
     /// Creates a dialog with `fields`, each with its label and the text that it offers, and the lines `info` below them.
@@ -264,7 +315,7 @@ impl Dialog {
     }
 
     pub fn is_of_settings(&self) -> bool {
-        matches!(self.question, DialogKind::Settings)
+        self.setting_filter().is_some()
     }
 
     /// Returns whether the user has confirmed that the existing file `path` is to be replaced.
@@ -311,7 +362,7 @@ impl Dialog {
                 to_step: Some(*to_step),
                 force,
             }),
-            DialogKind::SavePresent(_) | DialogKind::Number | DialogKind::Settings => {
+            DialogKind::SavePresent(_) | DialogKind::Number | DialogKind::Settings { .. } => {
                 return Ok(None);
             }
         }))
@@ -333,15 +384,16 @@ impl Dialog {
     }
 
     pub(super) fn paste(&mut self, text: &str) {
-        self.edit(|form| form.paste(text));
+        if self.is_of_settings() {
+            self.filter_settings(|filter| type_into(filter, text));
+        } else {
+            self.edit(|form| form.paste(text));
+        }
     }
 
-    /// Changes what is typed, where anything is.
     fn edit(&mut self, change: impl FnOnce(&mut InputForm)) {
-        if !self.is_of_settings() {
-            change(&mut self.form);
-            self.show_estimate();
-        }
+        change(&mut self.form);
+        self.show_estimate();
     }
 
     pub(super) fn edit_field(&mut self, edit: FieldEdit) {
@@ -351,6 +403,13 @@ impl Dialog {
                 self.form.keys = effect.keys();
             }
             (_, FieldEdit::Next | FieldEdit::Previous) => self.form.edit_field(edit),
+            (DialogKind::Settings { .. }, FieldEdit::Home) => self.form.selected = 0,
+            (DialogKind::Settings { .. }, FieldEdit::End) => {
+                self.form.selected = self.form.fields.len().saturating_sub(1);
+            }
+            (DialogKind::Settings { .. }, edit) => {
+                self.filter_settings(|filter| edit_line(filter, edit));
+            }
             _ => self.edit(|form| form.edit_field(edit)),
         }
     }

@@ -129,6 +129,13 @@ impl InputForm {
         }
     }
 
+    /// Selects the field of this number, if there is one.
+    pub fn select(&mut self, field: usize) {
+        if field < self.fields.len() {
+            self.selected = field;
+        }
+    }
+
     /// Changes or moves within the selected field, or selects another: after the last comes the first.
     pub fn edit_field(&mut self, edit: FieldEdit) {
         let count = self.fields.len().max(1);
@@ -181,7 +188,7 @@ pub(super) fn type_into(typed: &mut String, text: &str) {
 }
 
 /// Changes `line`, which has no cursor: nothing moves in it.
-pub(super) fn edit_line(line: &mut String, edit: FieldEdit) {
+pub fn edit_line(line: &mut String, edit: FieldEdit) {
     match edit {
         FieldEdit::Type(typed) => type_into(line, typed.encode_utf8(&mut [0; 4])),
         FieldEdit::Erase => drop(line.pop()),

@@ -272,6 +272,20 @@ impl Lab {
         &self.view
     }
 
+    /// Returns what is open on top of the panes, or has the focus as a list does: it decides what keys mean.
+    pub fn mode(&self) -> Mode {
+        let is_list = self.view.sheet.as_ref().is_some_and(|sheet| sheet.is_list);
+        match self.popups.mode {
+            Mode::Lab if is_list && self.view.focus == view::Pane::Lesson => Mode::Lessons,
+            mode => mode,
+        }
+    }
+
+    /// Returns the time since the lab was opened, as it was last told.
+    pub fn now(&self) -> Duration {
+        self.now
+    }
+
     /// The view, to be changed by hand; the picture then counts as changed.
     pub fn view_mut(&mut self) -> &mut View {
         self.changed = true;

@@ -16,8 +16,8 @@ pub enum Mode {
     #[default]
     Lab,
     Browser,
-    /// The line in which the user types the browser's filter.
-    Filter,
+    /// The list of lessons, which stands beside the panes and has the focus.
+    Lessons,
     /// The line in which the user types a part of the name of a value.
     Find,
     /// The list of keys and words.
@@ -87,7 +87,6 @@ impl Popups {
             return Err("nothing is selected: Esc clears the filter".to_owned());
         };
         if entry.is_folder {
-            self.mode = Mode::Browser;
             let is_listed = self.browser.enter(|path| files.admit_reading(path).is_ok());
             return is_listed
                 .then_some(None)
@@ -111,19 +110,19 @@ impl Popups {
         }
     }
 
-    /// Closes the topmost of help, filters, browser and dialog; returns whether one of them was open. Of the help it first
-    /// clears the search. The filter of the values is the caller's to clear.
+    /// Closes the topmost of help, browser and dialog; returns whether one of them was open. The filter of a list is cleared
+    /// first. The filter of the values is the caller's to clear.
     pub(super) fn close(&mut self) -> bool {
         match self.mode {
-            Mode::Lab => return false,
+            Mode::Lab | Mode::Lessons => return false,
             Mode::Find => self.mode = Mode::Lab,
             Mode::Help if !self.help.text.is_empty() => self.help = HelpSearch::default(),
             Mode::Help => self.toggle_help(),
-            Mode::Filter => {
+            Mode::Browser if !self.browser.filter.is_empty() => {
                 self.browser.filter_by(String::clear);
-                self.mode = Mode::Browser;
             }
             Mode::Browser => self.mode = Mode::Lab,
+            Mode::Dialog if self.dialog.as_mut().is_some_and(Dialog::clear_filter) => {}
             Mode::Dialog => drop(self.take_dialog()),
         }
         true
@@ -132,9 +131,19 @@ impl Popups {
     /// Moves the selection of the browser or the help by `rows`.
     pub(super) fn shift(&mut self, rows: isize) {
         match self.mode {
-            Mode::Browser | Mode::Filter => self.browser.shift(rows),
+            Mode::Browser => self.browser.shift(rows),
             Mode::Help => self.help.shift(rows),
-            Mode::Lab | Mode::Find | Mode::Dialog => {}
+            Mode::Lab | Mode::Lessons | Mode::Find | Mode::Dialog => {}
+        }
+    }
+
+    /// Selects the row of this number, from 0, of the open list or dialog.
+    pub fn select(&mut self, row: usize) {
+        match (self.mode, &mut self.dialog) {
+            (Mode::Browser, _) => self.browser.select(row),
+            (Mode::Help, _) => self.help.selected = row,
+            (Mode::Dialog, Some(dialog)) => dialog.form.select(row),
+            _ => {}
         }
     }
 
@@ -152,7 +161,7 @@ impl Popups {
         match (&mut self.dialog, self.mode) {
             (Some(dialog), _) => dialog.paste(text),
             (None, Mode::Help) => self.help.search(|line| type_into(line, text)),
-            (None, Mode::Filter) => self.browser.filter_by(|line| type_into(line, text)),
+            (None, Mode::Browser) => self.browser.filter_by(|line| type_into(line, text)),
             _ => {
                 let place =
                     "what is pasted goes into fields and filters; rows of your own program go here";
@@ -200,7 +209,7 @@ mod tests {
         popups.open_dialog(Dialog::go_to());
         assert_eq!(popups.paste("400"), None);
         assert_eq!(popups.take_dialog().unwrap().form.text(0), "400");
-        popups.mode = Mode::Filter;
+        popups.mode = Mode::Browser;
         assert_eq!(popups.paste("x"), None);
         assert_eq!(popups.browser.filter, "x");
     }

@@ -101,7 +101,6 @@ impl Lab {
                 self.popups.mode = Mode::Find;
             }
             Action::Choose => self.open_chosen()?,
-            Action::Filter => self.popups.mode = Mode::Filter,
             Action::InField(edit) => self.edit_field(edit),
             Action::Accept if self.popups.shows_settings() => self.change_setting(true),
             Action::Accept => return Ok(self.accept()),
@@ -206,15 +205,18 @@ impl Lab {
 
     /// Changes the setting that is selected in the dialog, which then shows its new value.
     fn change_setting(&mut self, forward: bool) {
-        let Some(selected) = self.popups.dialog().map(|dialog| dialog.form.selected) else {
+        let Some(dialog) = self.popups.take_dialog() else {
             return;
         };
-        match self.settings.change(selected, forward, &mut self.view) {
-            Ok(command) => self.carry_out_all(command.as_slice()),
-            Err(trouble) => self.tell(trouble),
+        let (row, filter) = (dialog.form.selected, dialog.setting_filter().unwrap_or(""));
+        if let Some(setting) = dialog.selected_setting() {
+            match self.settings.change(setting, forward, &mut self.view) {
+                Ok(command) => self.carry_out_all(command.as_slice()),
+                Err(trouble) => self.tell(trouble),
+            }
         }
-        self.popups
-            .open_dialog(Dialog::settings(&self.view, selected));
+        let changed = Dialog::settings(&self.view, filter, row);
+        self.popups.open_dialog(changed);
     }
 
     /// Carries out the command that the open dialog asked for. If it is refused, the dialog stays and shows the reason.
@@ -312,10 +314,14 @@ impl Lab {
     /// Opens the entry that is selected in the browser: plays its run, or lists what is in the folder.
     fn open_chosen(&mut self) -> Result<(), String> {
         if let Some(name) = self.popups.choose(&self.files)? {
+            let was_edited = self.edits.runs.changed_from_file().is_some();
             let answer = self.carry_out(&Command::Open(name));
             if answer.is_ok() {
                 self.popups.mode = Mode::Lab;
                 self.carry_out_all(&[Command::Run]);
+                if was_edited {
+                    self.say("the run that you edited is kept: u brings it back");
+                }
             }
             self.tell_answer(answer);
         }

@@ -16,6 +16,8 @@ pub struct Sheet {
     /// What Enter does here, in one word; empty where it does nothing.
     pub enter: &'static str,
     pub has_next: bool,
+    /// Whether it is a list that what is typed filters.
+    pub is_list: bool,
     /// What stands in its frame instead of the title, where that is not empty: it may change while the page stays.
     pub framed: String,
     /// What stands in the lower line of its frame.

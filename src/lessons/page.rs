@@ -35,15 +35,21 @@ pub struct ClassOverlay {
     pub instead: Option<Vec<Paragraph>>,
 }
 
-/// Returns the list of the lessons called `names`, of which one is `selected`; `left` tells where some of them were left.
+/// Returns the list of the lessons called `names`, those that match `filter`, of which one is `selected`; `left` tells where
+/// some of them were left.
 pub(super) fn list(
     names: &[String],
+    filter: &str,
     selected: usize,
     left: &BTreeMap<String, LessonProgress>,
 ) -> Sheet {
     let mut sheet = Sheet {
-        title: "lessons".to_owned(),
+        title: match filter {
+            "" => "lessons: type to filter".to_owned(),
+            filter => format!("lessons: {filter}_ ({})", names.len()),
+        },
         enter: "open",
+        is_list: true,
         ..Sheet::default()
     };
     for (index, name) in names.iter().enumerate() {
@@ -72,10 +78,11 @@ pub(super) fn list(
             sheet.seen = Some((sheet.paragraphs.len() - 1, sheet.paragraphs.len() - 1));
         }
     }
-    let keys = "Up, Down choose; Enter opens; L goes back.";
-    sheet
-        .paragraphs
-        .push(Paragraph::new(SheetLineKind::Hint, keys));
+    if names.is_empty() {
+        let none = "no lesson has that in its title: Esc clears the filter";
+        let hint = Paragraph::new(SheetLineKind::Hint, none);
+        sheet.paragraphs.push(hint);
+    }
     sheet
 }
 

@@ -6,8 +6,10 @@ use super::predictions::LessonProgress;
 use super::{page, reading, shipped};
 use crate::lab::Lab;
 use crate::lab::action::{Direction, LessonKey};
+use crate::lab::form::edit_line;
 use crate::lab::sheet::Sheet;
 use crate::lab::storage::confined::Confined;
+use crate::lab::values::list::Match;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -37,10 +39,10 @@ enum LessonDialog {
     Nothing,
     /// The list of lessons, of which one is selected.
     List {
-        /// Its number, from 0.
+        /// Its number, from 0, among those that are listed.
         selected: usize,
-        /// The lesson that was open before.
-        from: Option<String>,
+        /// What is typed: only lessons that have it in their titles or names are listed.
+        filter: String,
     },
     Lesson(Box<OpenLesson>),
 }
@@ -164,16 +166,19 @@ impl Lessons {
     /// Does what `key` stands for. Returns the direction in which the page is to be scrolled, if that is what it means.
     pub fn on_key(&mut self, key: LessonKey, lab: &mut Lab) -> Option<Direction> {
         let mut scrolls = None;
-        let names = self.names();
+        let names = self.listed();
         match (&mut self.shown, key) {
-            (LessonDialog::List { from, .. }, LessonKey::List) => {
-                // Back to the page; the run was left as it was.
-                let from = from.take();
-                self.shown = LessonDialog::Nothing;
-                let open = from.map_or(Ok(()), |name| self.load(&name, lab));
-                tell(open, lab);
-            }
+            (LessonDialog::List { .. }, LessonKey::List) => {}
             (_, LessonKey::List) => self.open_list(lab),
+            (LessonDialog::List { selected, filter }, LessonKey::Filter(edit)) => {
+                edit_line(filter, edit);
+                *selected = 0;
+            }
+            (LessonDialog::List { selected, filter }, LessonKey::Leave) if !filter.is_empty() => {
+                filter.clear();
+                *selected = 0;
+            }
+            (LessonDialog::List { selected, .. }, LessonKey::Select(row)) => *selected = row,
             (LessonDialog::List { selected, .. }, LessonKey::Leave) => {
                 self.selected = *selected;
                 self.shown = LessonDialog::Nothing;
@@ -193,7 +198,7 @@ impl Lessons {
                 tell(name.map_or(Ok(()), |name| self.open(&name, None, lab)), lab);
             }
             (LessonDialog::List { .. }, _) => {
-                lab.refuse("Enter opens the selected lesson, L goes back, Esc leaves the lessons");
+                lab.refuse("Enter opens the selected lesson, Esc closes the list");
             }
             (LessonDialog::Nothing, _) => lab.refuse("no lesson is open: L lists them"),
             (LessonDialog::Lesson(open), key) => scrolls = open.on_key(key, lab),
@@ -215,7 +220,7 @@ impl Lessons {
         let selected = names.position(|name| Some(name) == here);
         self.shown = LessonDialog::List {
             selected: selected.unwrap_or(self.selected),
-            from: here,
+            filter: String::new(),
         };
     }
 
@@ -228,6 +233,21 @@ impl Lessons {
             if !names.contains(name) {
                 names.push(name.clone());
             }
+        }
+        names
+    }
+
+    /// Returns the names of the lessons that the list shows.
+    fn listed(&self) -> Vec<String> {
+        let mut names = self.names();
+        if let LessonDialog::List { filter, .. } = &self.shown
+            && !filter.is_empty()
+        {
+            names.retain(|name| {
+                let lesson = reading::open_again(name).ok();
+                let title = lesson.map_or(String::new(), |lesson| lesson.title);
+                Match::find(&format!("{title} {name}"), filter).is_some()
+            });
         }
         names
     }
@@ -301,10 +321,12 @@ impl Lessons {
     }
 
     fn sheet(&mut self, lab: &Lab) -> Option<Sheet> {
-        let names = self.names();
+        let names = self.listed();
         match &mut self.shown {
             LessonDialog::Nothing => None,
-            LessonDialog::List { selected, .. } => Some(page::list(&names, *selected, &self.left)),
+            LessonDialog::List { selected, filter } => {
+                Some(page::list(&names, filter, *selected, &self.left))
+            }
             LessonDialog::Lesson(open) => Some(page::sheet(open, &self.overlay, self.now, lab)),
         }
     }

@@ -11,7 +11,7 @@ use Key::{
     BackTab, Backspace, Char, Ctrl, Delete, Down, End, Enter, Esc, Home, Left, PageDown, PageUp,
     Right, ShiftDown, ShiftLeft, ShiftRight, ShiftUp, Tab, Up,
 };
-use Mode::{Browser, Dialog, Filter, Find, Help, Lab};
+use Mode::{Browser, Dialog, Find, Help, Lab, Lessons};
 
 /// A key, as no terminal library names it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -218,7 +218,7 @@ pub static BINDINGS: &[Binding] = &[
     does(&[Lab], &[Char('r')], restarted, "restart", "back to step 0; what was done stays").to(PLAY),
     does(&[Lab], &[Char('w')], wider, "window", "traces: show twice the time"),
     row(&[Lab], &[Char('o')], Action::Browse, "open", "open a preset or a file").to(OPEN_GROUP).worth(FooterPriority::Useful),
-    row(&[Lab], &[Char('L')], Action::Lesson(LessonKey::List), "lessons", "the list of lessons; again: back to where one was").worth(FooterPriority::Kept),
+    row(&[Lab], &[Char('L')], Action::Lesson(LessonKey::List), "lessons", "the list of lessons").worth(FooterPriority::Kept),
     row(&[Lab], &[Char('x')], Action::Ask(Ask::Export), "CSV", "write the run up to here as CSV").to(KEEP_GROUP).worth(FooterPriority::Useful),
     row(&[Lab], &[Enter], Action::Edit, "", "type the value that is selected").to(CHANGE_GROUP),
     does(&[Lab], &[Char('f')], |lab, _| one(lab.view().fill_toggled()), "", "fill the screen with the pane, or show all panes again").worth(FooterPriority::Useful),
@@ -234,46 +234,58 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Lab], &[Char('s')], Action::Ask(Ask::RunFile), "", "save the run file: scenario and all that was done").to(KEEP_GROUP),
     row(&[Lab], &[Char('S')], Action::Ask(Ask::Present), "", "save the present state as a scenario").to(KEEP_GROUP),
     row(&[Lab], &[Char('k')], Action::Class, "", "in a class: the teacher's acts; for a student: step aside, and back"),
-    row(&[Lab], &[Tab], Action::NextPane, "", "the next pane"),
-    row(&[Lab], &[BackTab], Action::PreviousPane, "", "the pane before"),
+    row(&[Lab, Lessons], &[Tab], Action::NextPane, "", "the next pane"),
+    row(&[Lab, Lessons], &[BackTab], Action::PreviousPane, "", "the pane before"),
     does(&[Lab], &[Char('d')], |lab, _| Ok(lab.view().three_d_toggled()), "", "fill the screen with the 3-D view, or show all panes again"),
     row(&[Lab], &[Char('v')], Action::Toggle(Pane::Step), "", "one time step, phase by phase, with its numbers; v takes it away again"),
     row(&[Lab], &[Char('M')], Action::ToDifference, "", "to the first step at which the rows of your own program differ, with its numbers (--measured mine.csv)").found_by("own code verify slip mistake"),
     row(&[Lab], &[Char('c')], Action::Ask(Ask::Settings), "", "settings: colours, dots, frames a second, the mouse, a bare screen, what is hidden").found_by("colors theme light dark background markers braille ascii fps health"),
     row(&[Lab], &[Char('/')], Action::FindValue, "", "find a value of the scenario by a part of its name").to(CHANGE_GROUP),
-    row(&[Lab, Browser, Filter, Find, Help], &[Up], Action::Move(Direction::Up, 1), "", "up: in lists and values; in 3-D the camera").to(CHANGE_GROUP),
-    row(&[Lab, Browser, Filter, Find, Help], &[Down], Action::Move(Direction::Down, 1), "", "down").to(CHANGE_GROUP),
+    row(&[Lab], &[Up], Action::Move(Direction::Up, 1), "", "values: the value above; 3-D: the camera up").to(CHANGE_GROUP),
+    row(&[Lab], &[Down], Action::Move(Direction::Down, 1), "", "values: the value below; 3-D: the camera down").to(CHANGE_GROUP),
     row(&[Lab], &[Left], Action::Move(Direction::Left, 1), "", "values: nudge down; 3-D: turn the camera left").to(CHANGE_GROUP),
     row(&[Lab], &[Right], Action::Move(Direction::Right, 1), "", "values: nudge up; 3-D: turn the camera right").to(CHANGE_GROUP),
     row(&[Lab], &[ShiftLeft], Action::Move(Direction::Left, SHIFT_FACTOR), "", "the same ten times; a count does it too: 10 Left").to(CHANGE_GROUP),
     row(&[Lab], &[ShiftRight], Action::Move(Direction::Right, SHIFT_FACTOR), "", "the same ten times").to(CHANGE_GROUP),
-    row(&[Lab, Browser, Find, Help], &[ShiftUp], Action::Move(Direction::Up, SHIFT_FACTOR), "", "ten lines up").to(CHANGE_GROUP),
-    row(&[Lab, Browser, Find, Help], &[ShiftDown], Action::Move(Direction::Down, SHIFT_FACTOR), "", "ten lines down").to(CHANGE_GROUP),
-    row(&[Browser, Filter, Help], &[PageUp], Action::Move(Direction::PageUp, 1), "", "a page up"),
-    row(&[Browser, Filter, Help], &[PageDown], Action::Move(Direction::PageDown, 1), "", "a page down"),
+    row(&[Lab, Browser, Find, Help], &[ShiftUp], Action::Move(Direction::Up, SHIFT_FACTOR), "", "ten rows up").to(CHANGE_GROUP),
+    row(&[Lab, Browser, Find, Help], &[ShiftDown], Action::Move(Direction::Down, SHIFT_FACTOR), "", "ten rows down").to(CHANGE_GROUP),
     does(&[Lab], &[Char('W')], narrower, "", "traces: show half the time"),
-    row(&[Browser, Filter], &[Enter], Action::Choose, "open", "open what is selected").worth(FooterPriority::Kept),
-    row(&[Browser], &[Char('/')], Action::Filter, "filter", "type a part of a name"),
+    row(&[Browser], &[Enter], Action::Choose, "open", "open the selected row").worth(FooterPriority::Kept),
+    row(&[Browser, Find, Help], &[Up, Ctrl('p')], Action::Move(Direction::Up, 1), "", "the row above"),
+    row(&[Browser, Find, Help], &[Down, Ctrl('n')], Action::Move(Direction::Down, 1), "", "the row below"),
+    row(&[Browser, Find, Help], &[Home], Action::Move(Direction::First, 1), "", "the first row"),
+    row(&[Browser, Find, Help], &[End], Action::Move(Direction::Last, 1), "", "the last row"),
+    row(&[Browser, Find, Help], &[PageUp], Action::Move(Direction::PageUp, 1), "", "a page up"),
+    row(&[Browser, Find, Help], &[PageDown], Action::Move(Direction::PageDown, 1), "", "a page down"),
+    row(&[Lessons], &[Enter], Action::Lesson(LessonKey::Take), "open", "open the selected lesson where it was left").worth(FooterPriority::Kept),
+    row(&[Lessons], &[Up, Ctrl('p')], Action::Lesson(LessonKey::Move(Direction::Up)), "", "the lesson above"),
+    row(&[Lessons], &[Down, Ctrl('n')], Action::Lesson(LessonKey::Move(Direction::Down)), "", "the lesson below"),
+    row(&[Lessons], &[Home], Action::Lesson(LessonKey::Move(Direction::First)), "", "the first lesson"),
+    row(&[Lessons], &[End], Action::Lesson(LessonKey::Move(Direction::Last)), "", "the last lesson"),
+    row(&[Lessons], &[PageUp], Action::Lesson(LessonKey::Move(Direction::PageUp)), "", "ten lessons up"),
+    row(&[Lessons], &[PageDown], Action::Lesson(LessonKey::Move(Direction::PageDown)), "", "ten lessons down"),
+    row(&[Lessons], &[Backspace, Ctrl('h')], Action::Lesson(LessonKey::Filter(FieldEdit::Erase)), "", "erase the last character of the filter"),
+    row(&[Lessons], &[Ctrl('u')], Action::Lesson(LessonKey::Filter(FieldEdit::Clear)), "", "clear the filter"),
     row(&[Find], &[Left], Action::Move(Direction::Left, 1), "nudge", "nudge the value down"),
     row(&[Find], &[Right], Action::Move(Direction::Right, 1), "", "nudge the value up"),
     row(&[Find], &[Enter], Action::Edit, "type it", "type the value that is found"),
     row(&[Help], &[Enter], Action::DoEntry, "do it", "do the entry that is selected"),
-    row(&[Filter, Find, Help, Dialog], &[Backspace, Ctrl('h')], Action::InField(FieldEdit::Erase), "", "take the last character away"),
-    row(&[Dialog], &[Enter], Action::Accept, "take it", "take what is typed").worth(FooterPriority::Kept),
-    row(&[Dialog], &[Delete, Ctrl('d')], Action::InField(FieldEdit::Delete), "", "take the character at the cursor away"),
-    row(&[Filter, Find, Help, Dialog], &[Ctrl('u')], Action::InField(FieldEdit::Clear), "", "take all of it away"),
+    row(&[Browser, Find, Help, Dialog], &[Backspace, Ctrl('h')], Action::InField(FieldEdit::Erase), "", "erase the character before the cursor"),
+    row(&[Dialog], &[Enter], Action::Accept, "apply", "apply what is typed; in the settings: change the selected one").worth(FooterPriority::Kept),
+    row(&[Dialog], &[Delete, Ctrl('d')], Action::InField(FieldEdit::Delete), "", "erase the character at the cursor"),
+    row(&[Browser, Find, Help, Dialog], &[Ctrl('u')], Action::InField(FieldEdit::Clear), "", "erase all of it"),
     row(&[Dialog], &[Left, Ctrl('b')], Action::InField(FieldEdit::Left), "", "the cursor to the left"),
     row(&[Dialog], &[Right, Ctrl('f')], Action::InField(FieldEdit::Right), "", "the cursor to the right"),
     row(&[Dialog], &[Home, Ctrl('a')], Action::InField(FieldEdit::Home), "", "to the beginning"),
     row(&[Dialog], &[End, Ctrl('e')], Action::InField(FieldEdit::End), "", "to the end"),
-    row(&[Dialog], &[Down, Tab], Action::InField(FieldEdit::Next), "", "the next line"),
-    row(&[Dialog], &[Up, BackTab], Action::InField(FieldEdit::Previous), "", "the line before"),
-    row(&[Lab, Browser, Filter, Find, Help, Dialog], &[Esc], Action::Close, "", "close what lies on top; first it clears what is searched for").to(LEAVE),
-    row(&[Lab, Browser, Help], &[Char('?')], Action::Help, "help", "this list, and away again: type to search it").to(LEAVE).worth(FooterPriority::Kept),
-    row(&[Lab, Browser, Filter, Find, Help, Dialog], &[Ctrl('l')], Action::Redraw, "", "draw the whole screen again").to(LEAVE),
-    row(&[Lab, Browser, Filter, Find, Help, Dialog], &[Ctrl('z')], Action::Suspend, "", "back to the shell; fg returns").to(LEAVE),
-    row(&[Lab, Browser], &[Char('q')], Action::Quit, "quit", "leave the lab: exit").to(LEAVE),
-    row(&[Lab, Browser, Filter, Find, Help, Dialog], &[Ctrl('c')], Action::Quit, "", "leave the lab").to(LEAVE),
+    row(&[Dialog], &[Tab, Down, Ctrl('n')], Action::InField(FieldEdit::Next), "", "the next field; in the field of a value: from now on, or from the start"),
+    row(&[Dialog], &[BackTab, Up, Ctrl('p')], Action::InField(FieldEdit::Previous), "", "the field before"),
+    row(&[Lab, Browser, Lessons, Find, Help, Dialog], &[Esc], Action::Close, "", "close the top window; of a list that is filtered, clear the filter first").to(LEAVE),
+    row(&[Lab, Help], &[Char('?')], Action::Help, "help", "this list, and away again: type to search it").to(LEAVE).worth(FooterPriority::Kept),
+    row(&[Lab, Browser, Lessons, Find, Help, Dialog], &[Ctrl('l')], Action::Redraw, "", "draw the whole screen again").to(LEAVE),
+    row(&[Lab, Browser, Lessons, Find, Help, Dialog], &[Ctrl('z')], Action::Suspend, "", "back to the shell; fg returns").to(LEAVE),
+    row(&[Lab], &[Char('q')], Action::Quit, "quit", "leave the lab: exit").to(LEAVE),
+    row(&[Lab, Browser, Lessons, Find, Help, Dialog], &[Ctrl('c')], Action::Quit, "", "leave the lab").to(LEAVE),
 ];
 
 /// What `key` means in `mode` where the pane in focus adds these `keys`, which come before the others.
@@ -289,23 +301,51 @@ pub fn meaning(
     let action = match (bound, mode, key) {
         (Some(row), _, _) => return Some(row.does),
         (None, Lab, Char(digit)) => Action::Digit(digit.to_digit(10)? as u8),
-        (None, Filter | Find | Help | Dialog, Char(typed)) => {
+        (None, Browser | Find | Help | Dialog, Char(typed)) => {
             Action::InField(FieldEdit::Type(typed))
         }
+        (None, Lessons, Char(typed)) => Action::Lesson(LessonKey::Filter(FieldEdit::Type(typed))),
         _ => return None,
     };
     Some(KeyEffect::Action(action))
 }
 
-/// What is to be said of `key`, which means nothing in `mode`.
+/// Returns the message about `key`, which means nothing in `mode`: where it means something, or what there is to press.
 pub fn refusal(mode: Mode, key: Key) -> String {
-    match (mode, key) {
-        (Filter, _) => format!("no key {key} here; Enter opens, Esc clears the filter"),
-        (Find, _) => format!("no key {key} here; Enter types the value, Esc shows all values"),
-        (Help, _) => format!("no key {key} here; Enter does the entry, Esc closes"),
-        (Dialog, _) => format!("no key {key} here; Enter takes what is typed, Esc leaves it"),
-        _ => format!("no key {key} here; ? lists them"),
+    let here = match mode {
+        Lab => "? lists the keys",
+        Browser => "Enter opens, Esc closes",
+        Lessons => "Enter opens, Esc closes the list",
+        Find => "Enter edits the value, Esc shows all values",
+        Help => "Enter does the entry, Esc closes",
+        Dialog => "Enter applies what is typed, Esc cancels",
+    };
+    match elsewhere(mode, key) {
+        Some(place) => format!("{key} is a key {place}; {here}"),
+        None => format!("no key {key} here; {here}"),
     }
+}
+
+/// Returns where `key` means something, and how to get there; `None` if it means nothing anywhere else.
+fn elsewhere(mode: Mode, key: Key) -> Option<String> {
+    let of_pane = panes::rows().find(|pane| pane.keys.iter().any(|row| row.keys.contains(&key)));
+    if let Some(pane) = of_pane.filter(|_| mode == Lab) {
+        let way = match pane.id {
+            Pane::Lesson => "L lists the lessons",
+            Pane::Step => "v opens it",
+            Pane::Parameters => "e turns to it",
+            Pane::Traces | Pane::Above | Pane::ThreeD => "Tab turns to it",
+        };
+        return Some(format!("of the pane \"{}\": {way}", pane.title));
+    }
+    let mut others = BINDINGS.iter().filter(|row| !row.modes.contains(&mode));
+    let other = others.find(|row| row.keys.contains(&key))?;
+    Some(match other.modes[0] {
+        Lab => "of the lab".to_owned(),
+        Browser | Lessons | Help => "of lists (o, L, ?, c)".to_owned(),
+        Find => "of the search for a value (/)".to_owned(),
+        Dialog => "of dialogs, where text is typed".to_owned(),
+    })
 }
 
 impl std::fmt::Display for Key {
@@ -336,7 +376,7 @@ mod tests {
             let is_bound = !row.keys.is_empty() && !row.modes.is_empty();
             assert!(is_bound && !row.help.is_empty(), "{row:?}");
         }
-        for mode in [Lab, Browser, Filter, Find, Help, Dialog] {
+        for mode in [Lab, Browser, Lessons, Find, Help, Dialog] {
             let keys: Vec<_> = BINDINGS
                 .iter()
                 .filter(|row| row.modes.contains(&mode))

@@ -1,8 +1,9 @@
 //! The mouse: what a press, a drag or the wheel does where it points. Nothing needs it; every act has keys too.
 
-use super::keymap::{KeyEffect, Mode, narrower, wider, zoomed_in, zoomed_out};
+use super::keymap::{Key, KeyEffect, Mode, narrower, wider, zoomed_in, zoomed_out};
 use super::layout::ScreenLayout;
-use super::panes::{PlotInputs, browser, chrome, timeline::Timeline, traces::Traces};
+use super::panes::form::FormPane;
+use super::panes::{PlotInputs, browser, chrome, help, lesson, timeline::Timeline, traces::Traces};
 use super::press::press;
 use super::screen;
 use crate::engine::run::Clock;
@@ -11,10 +12,13 @@ use crate::lab::command::{Command, CursorTo, SeekTarget};
 use crate::lab::view::Pane;
 use crate::lab::{Lab, LabRequest};
 use ratatui::layout::{Position, Rect};
+use std::time::Duration;
 
 /// Degrees by which the 3-D view turns where it is dragged by a column, and by a row, which is twice as high.
 const DEGREES_A_COLUMN: f64 = 3.0;
 const DEGREES_A_ROW: f64 = 6.0;
+/// The longest time between the two presses of a double click.
+const DOUBLE_CLICK: Duration = Duration::from_millis(500);
 /// Lines that one notch of the wheel moves a list by.
 const LINES: usize = 3;
 
@@ -50,6 +54,8 @@ enum Held {
 #[derive(Debug, Default)]
 pub struct Pointer {
     held: Option<Held>,
+    /// Where and when the button was pressed last.
+    pressed: Option<(Position, Duration)>,
 }
 
 impl Pointer {
@@ -76,10 +82,9 @@ impl Pointer {
             let key = chrome::key_at(lab, layout.keys, at.x)?;
             return press(key, lab);
         }
-        match lab.popups().mode {
-            Mode::Lab => {}
-            Mode::Browser | Mode::Filter => return press_in_browser(layout, at, lab),
-            Mode::Help | Mode::Find | Mode::Dialog => return None,
+        let is_double = self.is_double(at, lab.now());
+        if lab.popups().mode != Mode::Lab {
+            return press_in_list(layout, at, is_double, lab);
         }
         if layout.overview.contains(at) {
             self.held = Some(Held::Place);
@@ -89,13 +94,27 @@ impl Pointer {
         }
         let (pane, place) = pane_at(layout, at)?;
         lab.turn_to(pane);
-        if pane == Pane::Traces {
+        if lab.mode() == Mode::Lessons {
+            return press_in_lessons(place, at, is_double, lab);
+        } else if pane == Pane::Traces {
             self.held = Some(Held::Cursor);
             read_off(place, at, lab);
         } else if pane == Pane::ThreeD {
             self.held = Some(Held::Camera(at));
         }
         None
+    }
+
+    /// Whether a press at `at` and `now` follows one at the same cell as its second half. A third is a first again.
+    fn is_double(&mut self, at: Position, now: Duration) -> bool {
+        let first = self.pressed.replace((at, now));
+        let is_double = first.is_some_and(|(place, before)| {
+            place == at && now.saturating_sub(before) < DOUBLE_CLICK
+        });
+        if is_double {
+            self.pressed = None;
+        }
+        is_double
     }
 
     fn drag(&mut self, layout: &ScreenLayout, at: Position, lab: &mut Lab) {
@@ -144,15 +163,48 @@ fn read_off(place: Rect, at: Position, lab: &mut Lab) {
     }
 }
 
-/// Selects the entry at `at`, or opens it if it is selected already.
-fn press_in_browser(layout: &ScreenLayout, at: Position, lab: &mut Lab) -> Option<LabRequest> {
-    let row = browser::row_at(&lab.popups().browser, screen::popup_place(lab, layout), at)?;
-    if lab.popups().browser.selected == row {
-        return lab.update(Action::Choose);
-    }
+/// Selects the row at `at` of the list or dialog that is open. A double click does what Enter does there; text that is typed
+/// into a dialog is not applied by it.
+fn press_in_list(
+    layout: &ScreenLayout,
+    at: Position,
+    is_double: bool,
+    lab: &mut Lab,
+) -> Option<LabRequest> {
+    let place = screen::popup_place(lab, layout);
+    let popups = lab.popups();
+    let (row, is_opened) = match (popups.mode, popups.dialog()) {
+        (Mode::Browser, _) => (browser::row_at(&popups.browser, place, at)?, true),
+        (Mode::Help, _) => (help::row_at(lab, place, at)?, true),
+        (Mode::Dialog, Some(dialog)) => {
+            let (form, theme) = (&dialog.form, &lab.view().theme);
+            let field = FormPane { form, theme }.field_at(place, at)?;
+            (field, dialog.is_of_settings())
+        }
+        _ => return None,
+    };
     lab.clear();
-    lab.popups_mut().browser.select(row);
+    lab.popups_mut().select(row);
+    if is_double && is_opened {
+        return press(Key::Enter, lab);
+    }
     None
+}
+
+/// Selects the lesson at `at` in the list that has the area `place`, or opens it by a double click.
+fn press_in_lessons(
+    place: Rect,
+    at: Position,
+    is_double: bool,
+    lab: &mut Lab,
+) -> Option<LabRequest> {
+    let row = lesson::choice_at(lab, place, at)?;
+    let key = if is_double {
+        LessonKey::Take
+    } else {
+        LessonKey::Select(row)
+    };
+    lab.update(Action::Lesson(key))
 }
 
 fn wheel(layout: &ScreenLayout, at: Position, up: bool, lab: &mut Lab) -> Option<LabRequest> {
@@ -174,6 +226,9 @@ fn wheel(layout: &ScreenLayout, at: Position, up: bool, lab: &mut Lab) -> Option
         Pane::Traces => KeyEffect::Commands(wider),
         Pane::Above | Pane::ThreeD if up => KeyEffect::Commands(zoomed_in),
         Pane::Above | Pane::ThreeD => KeyEffect::Commands(zoomed_out),
+        Pane::Lesson if lab.mode() == Mode::Lessons => {
+            KeyEffect::Action(Action::Lesson(LessonKey::Move(line)))
+        }
         Pane::Lesson => KeyEffect::Action(Action::Lesson(LessonKey::Move(page))),
         _ if lab.view().focus == pane => lines,
         _ => return None,

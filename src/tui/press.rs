@@ -6,7 +6,7 @@ use crate::lab::action::{Action, LessonKey};
 use crate::lab::{Lab, LabRequest};
 
 pub fn press(key: Key, lab: &mut Lab) -> Option<LabRequest> {
-    let mode = lab.popups().mode;
+    let mode = lab.mode();
     let mut own = panes::row(lab.view().focus).keys.iter();
     if own.any(|row| row.modes.contains(&mode) && row.keys.contains(&key)) {
         lab.view_mut().is_touched = true;

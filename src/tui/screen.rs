@@ -108,14 +108,14 @@ pub fn draw_pane(lab: &Lab, pane: Pane, area: Rect, buf: &mut Buffer) {
 fn draw_popup(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
     match lab.popups().mode {
-        Mode::Lab | Mode::Find => {}
+        Mode::Lab | Mode::Lessons | Mode::Find => {}
         Mode::Dialog => {
             if let Some(dialog) = lab.popups().dialog() {
                 let form = &dialog.form;
                 FormPane { form, theme }.render(area, buf);
             }
         }
-        Mode::Browser | Mode::Filter => browser::draw(lab, area, buf),
+        Mode::Browser => browser::draw(lab, area, buf),
         Mode::Help => help::draw(lab, area, buf),
     }
 }

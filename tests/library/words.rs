@@ -255,7 +255,7 @@ fn a_file_in_a_folder_is_opened_with_enter() {
     std::fs::write(folder.path().join("runs/mine.toml"), title).unwrap();
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.lab.files_mut().work_in(folder.path());
-    stage.press("o/runs").shows("Enter lists its files");
+    stage.press("oruns").shows("Enter lists its files");
     stage.press("\n");
     stage.shows("file of").shows("mine.toml").shows("../");
     for _ in 0..200 {

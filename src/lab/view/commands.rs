@@ -253,8 +253,8 @@ impl View {
         let mut camera = self.camera;
         match direction {
             Direction::Left | Direction::Right => camera.turn(degrees, 0.0),
-            Direction::Up | Direction::PageUp => camera.turn(0.0, degrees),
-            Direction::Down | Direction::PageDown => camera.turn(0.0, -degrees),
+            Direction::Up | Direction::PageUp | Direction::First => camera.turn(0.0, degrees),
+            Direction::Down | Direction::PageDown | Direction::Last => camera.turn(0.0, -degrees),
         }
         Command::look("camera", camera)
     }

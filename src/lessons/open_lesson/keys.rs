@@ -35,7 +35,7 @@ impl OpenLesson {
             LessonKey::Move(direction) => return Some(direction),
             LessonKey::Take => self.confirm_answer(lab),
             LessonKey::Digit(digit) => self.answer_by_digit(digit, lab),
-            LessonKey::List | LessonKey::Leave => {}
+            LessonKey::List | LessonKey::Leave | LessonKey::Select(_) | LessonKey::Filter(_) => {}
         }
         None
     }

@@ -7,7 +7,6 @@ use crate::engine::text::wrap::wrapped;
 use crate::lab::Lab;
 use crate::lab::browser::Browser;
 use crate::lab::view::theme::Theme;
-use crate::tui::keymap::Mode;
 use crate::tui::split::{split_columns, split_rows};
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
@@ -36,8 +35,7 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
         below.width
     };
     let [places, rest] = split_columns(below, width);
-    let is_typed = lab.popups().mode == Mode::Filter;
-    filter_line(browser, is_typed, theme, top, buf);
+    filter_line(browser, theme, top, buf);
     list(browser, theme, places, buf);
     preview(browser, theme, rest, buf);
 }
@@ -59,21 +57,22 @@ pub fn row_at(browser: &Browser, area: Rect, at: Position) -> Option<usize> {
 
 /// The keys of the list, and how many files of the folder it contains, as much as fits in `width` columns.
 fn keys(files: usize, others: usize, width: usize) -> String {
-    const BROWSER_KEYS: &str = "/ filters by name, Enter opens";
+    const BROWSER_KEYS: &str = "type to filter, Enter opens";
     let with_files = format!("{BROWSER_KEYS}; files here: {files} with a run, {others} without");
     longest([with_files, BROWSER_KEYS.to_owned()], width)
 }
 
-fn filter_line(browser: &Browser, is_typed: bool, theme: &Theme, area: Rect, buf: &mut Buffer) {
-    let shown = browser.shown().len();
-    let (text, role) = match (is_typed, browser.filter.as_str()) {
-        (true, filter) => (format!("/{filter}_  ({shown})"), Role::Heading),
-        (_, "") => {
-            let (files, others) = (browser.files(), browser.others);
+fn filter_line(browser: &Browser, theme: &Theme, area: Rect, buf: &mut Buffer) {
+    let (text, role) = match browser.filter.as_str() {
+        "" => {
             let room = area.width.saturating_sub(2) as usize;
-            (keys(files, others, room), Role::Label)
+            let text = keys(browser.files(), browser.others, room);
+            (text, Role::Label)
         }
-        (_, filter) => (format!("/{filter}  ({shown})"), Role::Text),
+        filter => {
+            let shown = browser.shown().len();
+            (format!("{filter}_  ({shown})"), Role::Heading)
+        }
     };
     write(area, (1, 0), &text, theme.style(role), buf);
 }

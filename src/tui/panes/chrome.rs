@@ -266,7 +266,7 @@ fn fitted(mut items: Vec<FooterItem>, width: u16) -> (Vec<FooterItem>, u16) {
 
 /// The keys that the footer names where there is room for all; `goes_on` says whether the page has more to be scrolled to.
 fn footer(lab: &Lab, goes_on: bool) -> Vec<FooterItem> {
-    let mode = lab.popups().mode;
+    let mode = lab.mode();
     let of_pane = super::keys_of(lab);
     let of_mode = of_pane.clone().filter(|row| row.modes.contains(&mode));
     // The keys of a page and of a pane that was asked for differ in meaning from those of the run, touched or not.
@@ -289,9 +289,10 @@ fn footer(lab: &Lab, goes_on: bool) -> Vec<FooterItem> {
     let esc_word = match mode {
         Mode::Lab if lab.view().filled && lab.view().sheet.is_some() => Some("to the page"),
         Mode::Lab => None,
-        Mode::Help if lab.popups().help.text.is_empty() => Some("close"),
-        Mode::Help | Mode::Filter | Mode::Find => Some("clear"),
-        Mode::Browser | Mode::Dialog => Some("close"),
+        Mode::Help if !lab.popups().help.text.is_empty() => Some("clear"),
+        Mode::Browser if !lab.popups().browser.filter.is_empty() => Some("clear"),
+        Mode::Find => Some("clear"),
+        Mode::Help | Mode::Browser | Mode::Lessons | Mode::Dialog => Some("close"),
     };
     let esc = esc_word.map(|word| FooterItem {
         keys: vec![Key::Esc],

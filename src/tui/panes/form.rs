@@ -1,13 +1,13 @@
 //! A form, over the bottom of the panes.
 
-use super::{popup_rule, wrapped_to, write};
+use super::{below_rule, popup_rule, wrapped_to, write};
 use crate::engine::text::wrap::{columns, wrapped};
 use crate::lab::form::{InputField, InputForm};
 use crate::lab::view::theme::Theme;
 use crate::tui::split::{split_columns, split_rows};
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Position, Rect};
 use ratatui::widgets::{Clear, Widget};
 
 const FORM_WIDTH: u16 = 80;
@@ -28,19 +28,14 @@ enum FormLine<'a> {
 
 impl Widget for FormPane<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
-        let width = area.width.min(FORM_WIDTH);
-        let area = Rect {
-            x: area.x + (area.width - width) / 2,
-            width,
-            ..area
-        };
-        if area.is_empty() {
+        let Some(PlacedForm {
+            lines,
+            place,
+            is_framed,
+        }) = self.placed(area)
+        else {
             return;
-        }
-        let is_framed = area.height >= LEAST_FRAMED && width >= LEAST_FRAMED;
-        let border = if is_framed { 1 } else { 0 };
-        let lines = self.lines(width, (area.height - border) as usize);
-        let [_, place] = split_rows(area, area.height - lines.len() as u16 - border);
+        };
         let inside = if is_framed {
             popup_rule(&self.form.title, place, self.theme, buf)
         } else {
@@ -60,7 +55,49 @@ impl Widget for FormPane<'_> {
     }
 }
 
+/// The lines of a form, and where it stands.
+struct PlacedForm<'a> {
+    lines: Vec<FormLine<'a>>,
+    place: Rect,
+    /// Whether there is room for its title.
+    is_framed: bool,
+}
+
 impl FormPane<'_> {
+    /// The number of the field at the cell `at` of the screen where the form is drawn on `area`.
+    pub fn field_at(&self, area: Rect, at: Position) -> Option<usize> {
+        let placed = self.placed(area)?;
+        let inside = if placed.is_framed {
+            below_rule(placed.place)
+        } else {
+            placed.place
+        };
+        let line = inside.contains(at).then(|| usize::from(at.y - inside.y))?;
+        match placed.lines.get(line)? {
+            FormLine::Field(index, _) => Some(*index),
+            FormLine::Text(..) => None,
+        }
+    }
+
+    /// The form at the bottom of `area`; `None` if there is no room.
+    fn placed(&self, area: Rect) -> Option<PlacedForm<'_>> {
+        let width = area.width.min(FORM_WIDTH);
+        let x = area.x + (area.width - width) / 2;
+        let middle = Rect { x, width, ..area };
+        if middle.is_empty() {
+            return None;
+        }
+        let is_framed = middle.height >= LEAST_FRAMED && width >= LEAST_FRAMED;
+        let border = if is_framed { 1 } else { 0 };
+        let lines = self.lines(width, (middle.height - border) as usize);
+        let [_, place] = split_rows(middle, middle.height - lines.len() as u16 - border);
+        Some(PlacedForm {
+            lines,
+            place,
+            is_framed,
+        })
+    }
+
     /// The lines that fit in `height`: first the selected field and a line of the complaint, then the other fields, the
     /// rest of the complaint, the keys and the information.
     fn lines(&self, width: u16, height: usize) -> Vec<FormLine<'_>> {

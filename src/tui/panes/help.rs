@@ -1,7 +1,7 @@
 //! The help: keys and words, searched by typing; Enter does the key that is selected. Keys are grouped by their
 //! purpose, and the words are those of the glossary.
 
-use super::{popup_rule, rows, write};
+use super::{below_rule, popup_rule, rows, write};
 use crate::engine::text::wrap::{columns, wrapped};
 use crate::lab::action::Action;
 use crate::lab::values::list::Match;
@@ -10,7 +10,7 @@ use crate::lab::{Lab, LabRequest, Mode};
 use crate::tui::keymap::{BINDINGS, Binding, KeyEffect, PURPOSES};
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Position, Rect};
 
 /// Column of keys and words, and the columns between them and their texts.
 const NAMES_COLUMN: usize = 2;
@@ -74,13 +74,8 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
         let text = "nothing has that in it: Esc clears the search";
         write(inside, (1, 0), text, theme.style(Role::Text), buf);
     }
-    let selected = lab
-        .popups()
-        .help
-        .selected
-        .min(found.len().saturating_sub(1));
-    let lines = help_lines(&found, search.is_empty(), inside.width as usize);
-    let first = first_shown(&lines, selected, inside.height as usize);
+    let selected = selected_of(&found, lab);
+    let (lines, first) = shown_lines(&found, lab, inside);
     for (line, place) in lines.iter().skip(first).zip(inside.rows()) {
         for (x, text, role) in &line.pieces {
             write(place, (*x as u16, 0), text, theme.style(*role), buf);
@@ -92,6 +87,30 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
             }
         }
     }
+}
+
+fn selected_of(found: &[HelpEntry], lab: &Lab) -> usize {
+    let selected = lab.popups().help.selected;
+    selected.min(found.len().saturating_sub(1))
+}
+
+/// The lines of the entries `found`, and the number of the first one that is shown on `inside`.
+fn shown_lines(found: &[HelpEntry], lab: &Lab, inside: Rect) -> (Vec<HelpLine>, usize) {
+    let is_grouped = lab.popups().help.text.is_empty();
+    let lines = help_lines(found, is_grouped, inside.width as usize);
+    let first = first_shown(&lines, selected_of(found, lab), inside.height as usize);
+    (lines, first)
+}
+
+/// The number of the entry at the cell `at` of the screen where the help is drawn on `area`.
+pub fn row_at(lab: &Lab, area: Rect, at: Position) -> Option<usize> {
+    let inside = below_rule(area);
+    if !inside.contains(at) {
+        return None;
+    }
+    let found = find_entries(&lab.popups().help.text);
+    let (lines, first) = shown_lines(&found, lab, inside);
+    lines.get(first + usize::from(at.y - inside.y))?.entry
 }
 
 /// One line of the screen: texts, and the columns where they begin.
@@ -215,8 +234,11 @@ pub struct HelpEntry {
 
 /// The groups of the keys of other modes, in order.
 const PLACES: [(Mode, &str); 5] = [
-    (Mode::Browser, "in the list of presets and files"),
-    (Mode::Filter, "while a part of a name is typed"),
+    (
+        Mode::Browser,
+        "in lists: presets and files, lessons, help, settings",
+    ),
+    (Mode::Lessons, "in the list of lessons"),
     (Mode::Find, "while a value is searched for"),
     (Mode::Help, "in this list"),
     (Mode::Dialog, "in a dialog"),

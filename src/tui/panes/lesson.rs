@@ -11,7 +11,7 @@ use crate::lab::view::{Pane, View};
 use crate::tui::keymap::{Binding, Key, Mode, row};
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Position, Rect};
 use ratatui::style::{Modifier, Style};
 use std::iter::Peekable;
 
@@ -44,6 +44,8 @@ const LESSON_PANE_KEYS: &[Binding] = &[
 
 /// A line of the page: its first column, and its pieces.
 struct LessonLine {
+    /// The number of its paragraph; `None` for an empty line between two.
+    paragraph: Option<usize>,
     x: u16,
     pieces: Vec<(String, Style)>,
 }
@@ -129,6 +131,25 @@ pub fn has_more(lab: &Lab, place: Rect) -> bool {
     })
 }
 
+/// The number of the answer, or of the entry of a list, at the cell `at` of the screen where the page of `lab` has the area
+/// `place`.
+pub fn choice_at(lab: &Lab, place: Rect, at: Position) -> Option<usize> {
+    let (sheet, inside) = (lab.view().sheet.as_ref()?, below_rule(place));
+    if !inside.contains(at) {
+        return None;
+    }
+    let page = ScrolledPage::new(sheet, inside, lab.view());
+    let line = page.first + usize::from(at.y - inside.y);
+    let paragraph = page.lines.get(line)?.paragraph?;
+    let choices = sheet.paragraphs.iter().take(paragraph + 1);
+    let up_to_here = choices.filter(|other| matches!(other.kind, SheetLineKind::Choice { .. }));
+    let is_choice = matches!(
+        sheet.paragraphs.get(paragraph)?.kind,
+        SheetLineKind::Choice { .. }
+    );
+    is_choice.then(|| up_to_here.count() - 1)
+}
+
 struct ScrolledPage {
     lines: Vec<LessonLine>,
     first: usize,
@@ -143,6 +164,7 @@ impl ScrolledPage {
         for (index, paragraph) in sheet.paragraphs.iter().enumerate() {
             if before.is_some_and(|before| are_apart(before, &paragraph.kind)) {
                 lines.push(LessonLine {
+                    paragraph: None,
                     x: 0,
                     pieces: Vec::new(),
                 });
@@ -151,7 +173,11 @@ impl ScrolledPage {
             let is_ascii = view.marker == Marker::Ascii;
             let plain = is_ascii.then(|| paragraph.in_ascii());
             let paragraph = plain.as_ref().unwrap_or(paragraph);
-            lines.extend(lines_of(paragraph, inside.width, &view.theme));
+            let of_paragraph = lines_of(paragraph, inside.width, &view.theme);
+            lines.extend(of_paragraph.into_iter().map(|line| LessonLine {
+                paragraph: Some(index),
+                ..line
+            }));
             before = Some(&sheet.paragraphs[index].kind);
             if sheet.seen.is_some_and(|(first, _)| first == index) {
                 seen.0 = begin;
@@ -236,6 +262,7 @@ fn lines_of(paragraph: &Paragraph, width: u16, theme: &Theme) -> Vec<LessonLine>
             pieces.insert(0, (mark.clone(), style));
         }
         lines.push(LessonLine {
+            paragraph: None,
             x: if is_marked { indent } else { hanging },
             pieces,
         });
