@@ -29,6 +29,8 @@ pub enum Action {
     PreviousPane,
     /// Shows this pane, one that is shown on request, beside another one and moves the focus there, or takes it away.
     Toggle(Pane),
+    /// Moves the focus to the 3-D view, or from there to the path from above.
+    ThreeD,
     /// Goes to the first step at which rows of the user's own program differ from the run, with the step pane.
     ToDifference,
     /// Moves a selection, or nudges the selected value. Where arrows mean a command in a pane, its row in `tui` says which. So many times as far as one press.

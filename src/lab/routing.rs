@@ -67,6 +67,7 @@ impl Lab {
             Action::Edit => self.ask(Ask::Value)?,
             Action::NextPane => self.view.shift_focus(true),
             Action::PreviousPane => self.view.shift_focus(false),
+            Action::ThreeD => self.view.toggle_three_d(),
             Action::ToDifference => {
                 let commands = self.comparison.to_difference(&self.view)?;
                 self.carry_out_all(&commands);

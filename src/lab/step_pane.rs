@@ -212,12 +212,19 @@ impl StepPane {
 }
 
 impl View {
-    /// Returns the command that shows why the axle goes sideways, or the first phase again.
-    pub fn why_toggled(&self) -> Command {
+    /// Returns the commands that show why the axle goes sideways, in the step pane, or there the first phase again.
+    pub fn why_sideways(&self) -> Vec<Command> {
+        let is_open = self.shows(Pane::Step);
         let page = match self.look.phase {
-            StepPageChoice::Why => self.page_before,
+            StepPageChoice::Why if is_open => self.page_before,
             _ => StepPageChoice::Why,
         };
-        Command::look("phase", page)
+        let mut commands = if is_open {
+            Vec::new()
+        } else {
+            self.toggled(Pane::Step)
+        };
+        commands.push(Command::look("phase", page));
+        commands
     }
 }

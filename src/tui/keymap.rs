@@ -3,7 +3,7 @@
 
 pub use crate::lab::Mode;
 use crate::lab::action::{Action, Ask, Direction, FieldEdit, LessonKey, SHIFT_FACTOR, repeated};
-use crate::lab::command::{Command, PushChoice, SeekTarget};
+use crate::lab::command::{Command, CursorTo, PushChoice, SeekTarget};
 use crate::lab::view::Pane;
 use crate::lab::{KeyCommands, Lab as TheLab, LabRequest};
 use crate::tui::panes::{self, Arrows};
@@ -236,8 +236,9 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Lab], &[Char('k')], Action::Class, "", "in a class: the teacher's acts; for a student: step aside, and back"),
     row(&[Lab, Lessons], &[Tab], Action::NextPane, "", "the next pane"),
     row(&[Lab, Lessons], &[BackTab], Action::PreviousPane, "", "the pane before"),
-    does(&[Lab], &[Char('d')], |lab, _| Ok(lab.view().three_d_toggled()), "", "fill the screen with the 3-D view, or show all panes again"),
+    row(&[Lab], &[Char('d')], Action::ThreeD, "", "the 3-D view, or back to the path from above"),
     row(&[Lab], &[Char('v')], Action::Toggle(Pane::Step), "", "one time step, phase by phase, with its numbers; v takes it away again"),
+    does(&[Lab], &[Char('y')], |lab, _| Ok(lab.view().why_sideways()), "", "why the axle goes sideways, not down, in the numbers of one time step"),
     row(&[Lab], &[Char('M')], Action::ToDifference, "", "to the first step at which the rows of your own program differ, with its numbers (--measured mine.csv)").found_by("own code verify slip mistake"),
     row(&[Lab], &[Char('c')], Action::Ask(Ask::Settings), "", "settings: colours, dots, frames a second, the mouse, a bare screen, what is hidden").found_by("colors theme light dark background markers braille ascii fps health"),
     row(&[Lab], &[Char('/')], Action::FindValue, "", "find a value of the scenario by a part of its name").to(CHANGE_GROUP),
@@ -249,6 +250,11 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Lab], &[ShiftRight], Action::Move(Direction::Right, SHIFT_FACTOR), "", "the same ten times").to(CHANGE_GROUP),
     row(&[Lab, Browser, Find, Help], &[ShiftUp], Action::Move(Direction::Up, SHIFT_FACTOR), "", "ten rows up").to(CHANGE_GROUP),
     row(&[Lab, Browser, Find, Help], &[ShiftDown], Action::Move(Direction::Down, SHIFT_FACTOR), "", "ten rows down").to(CHANGE_GROUP),
+    does(&[Lab], &[Char('<')], |lab, count| one(lab.view().stepped_cursor(-i64::from(repeated(count)), lab.player())), "", "the cursor one step to the left; 10< ten"),
+    does(&[Lab], &[Char('>')], |lab, count| one(lab.view().stepped_cursor(repeated(count).into(), lab.player())), "", "the cursor one step to the right"),
+    does(&[Lab], &[Char('(')], |_, _| one(Command::Cursor(CursorTo::TurnBefore)), "", "the cursor to the last turn of the tilt before it"),
+    does(&[Lab], &[Char(')')], |_, _| one(Command::Cursor(CursorTo::NextTurn)), "", "the cursor to the next turn of the tilt"),
+    does(&[Lab], &[Char('|')], |_, _| one(Command::Cursor(CursorTo::Mark)), "", "mark the turn at the cursor; at another turn, count the swings between: period, mean, and theory's"),
     does(&[Lab], &[Char('W')], narrower, "", "traces: show half the time"),
     row(&[Browser], &[Enter], Action::Choose, "open", "open the selected row").worth(FooterPriority::Kept),
     row(&[Browser, Find, Help], &[Up, Ctrl('p')], Action::Move(Direction::Up, 1), "", "the row above"),

@@ -47,6 +47,7 @@ mod readouts;
 mod reference;
 mod refusals;
 mod replay;
+mod rerun;
 mod rooms;
 mod run_until;
 mod scenes;

@@ -263,16 +263,6 @@ impl View {
     pub fn fill_toggled(&self) -> Command {
         Command::Fill((!self.filled).then_some(self.focus))
     }
-
-    /// The commands that fill the screen with the 3-D view, or show all panes again, with the page or the traces in focus.
-    pub fn three_d_toggled(&self) -> Vec<Command> {
-        if !self.is_filled_by(Pane::ThreeD) {
-            return vec![Command::Fill(Some(Pane::ThreeD))];
-        }
-        let has_page = self.may_show(Pane::Lesson);
-        let next = if has_page { Pane::Lesson } else { Pane::Traces };
-        vec![Command::Fill(Some(next)), Command::Fill(None)]
-    }
 }
 
 /// Refuses a length of time that is less than two time steps.

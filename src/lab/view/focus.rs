@@ -72,6 +72,17 @@ impl View {
         self.is_touched = true;
     }
 
+    /// Moves the focus to the 3-D view, which takes the place of the path from above where there is room for one; or from
+    /// there back, in a lesson to its page.
+    pub(in crate::lab) fn toggle_three_d(&mut self) {
+        if self.focus == Pane::ThreeD {
+            self.turn_to(Pane::Above);
+            self.turn_to_sheet();
+        } else {
+            self.turn_to(Pane::ThreeD);
+        }
+    }
+
     /// Moves the focus from the parameters to the first other pane that can have it; returns whether it did.
     pub fn leave_parameters(&mut self) -> bool {
         let mut others = self.focusable().into_iter();

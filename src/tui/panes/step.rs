@@ -51,7 +51,7 @@ const STEP_PANE_KEYS: &[Binding] = &[
     does(&[Mode::Lab], &[Key::Char('.')], |lab, count| lab.step_pane().other_phase(repeated(count), lab.view(), lab.player()), "next phase", "the next phase of the time step; after the last, the next time step"),
     does(&[Mode::Lab], &[Key::Char(',')], |lab, count| lab.step_pane().other_phase(-repeated(count), lab.view(), lab.player()), "back", "the phase before; before the first, the time step before"),
     row(&[Mode::Lab], &[Key::Char('v')], Action::Toggle(Pane::Step), "close", "the panes without the time step again"),
-    does(&[Mode::Lab], &[Key::Char('y')], |lab, _| one(lab.view().why_toggled()), "why sideways", "why the axle goes sideways, not down; y shows the phases again"),
+    does(&[Mode::Lab], &[Key::Char('y')], |lab, _| Ok(lab.view().why_sideways()), "why sideways", "why the axle goes sideways, not down; y shows the phases again"),
     row(&[Mode::Lab], &[Key::Down], Action::Move(Direction::Down, 1), "add up", "add up the table point by point: one more"),
     row(&[Mode::Lab], &[Key::Up], Action::Move(Direction::Up, 1), "", "one point fewer"),
     row(&[Mode::Lab], &[Key::PageDown], Action::Move(Direction::PageDown, 1), "", "ten points more"),

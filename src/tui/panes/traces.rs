@@ -8,7 +8,6 @@ mod plot;
 
 use super::{PaneRow, PlotInputs, below_rule, longest, rule, write};
 use crate::lab::action::{Action, Direction, repeated, signed};
-use crate::lab::command::{Command, CursorTo};
 use crate::lab::playback::marks::Marks;
 use crate::lab::view::Pane;
 use crate::tui::dots::{Dots, Ink};
@@ -64,11 +63,6 @@ pub const TRACES_ROW: PaneRow = PaneRow {
 const TRACES_PANE_KEYS: &[Binding] = &[
     row(&[Mode::Lab], &[Key::Left], Action::Move(Direction::Left, 1), "cursor", "the cursor to the left: its values are shown; Esc takes it away"),
     row(&[Mode::Lab], &[Key::Right], Action::Move(Direction::Right, 1), "", "the cursor to the right"),
-    does(&[Mode::Lab], &[Key::Char('<')], |lab, count| one(lab.view().stepped_cursor(-i64::from(repeated(count)), lab.player())), "", "the cursor one step to the left; 10< ten"),
-    does(&[Mode::Lab], &[Key::Char('>')], |lab, count| one(lab.view().stepped_cursor(repeated(count).into(), lab.player())), "", "the cursor one step to the right"),
-    does(&[Mode::Lab], &[Key::Char('(')], |_, _| one(Command::Cursor(CursorTo::TurnBefore)), "", "the cursor to the last turn of the tilt before it"),
-    does(&[Mode::Lab], &[Key::Char(')')], |_, _| one(Command::Cursor(CursorTo::NextTurn)), "", "the cursor to the next turn of the tilt"),
-    does(&[Mode::Lab], &[Key::Char('|')], |_, _| one(Command::Cursor(CursorTo::Mark)), "", "mark the turn at the cursor; at another turn, count the swings between: period, mean, and theory's"),
     row(&[Mode::Lab], &[Key::Enter], Action::GoToCursor, "", "go to the step at the cursor; without one, to the values"),
     does(&[Mode::Lab], &[Key::Char('w')], wider, "", "show twice the time"),
     does(&[Mode::Lab], &[Key::Char('W')], narrower, "zoom", "show half the time"),
