@@ -234,7 +234,7 @@ impl Dialog {
     /// Lists the settings that have `filter` in their labels, with the values that they have in `view`; the row `selected` is
     /// selected.
     pub(super) fn settings(view: &View, filter: &str, selected: usize) -> Self {
-        let info = "dots, colours, frames and mouse are remembered for the next time";
+        let info = "markers, colors, background, frames and mouse are kept for the next time";
         let settings = SETTINGS.iter();
         let all = settings
             .map(|setting| InputField::choice(setting.label, &(setting.value)(view)))

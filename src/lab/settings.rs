@@ -55,7 +55,7 @@ pub(super) const SETTINGS: [LabSetting; 8] = [
     row("screen", |view| if view.look.bare { "bare: two panes, title and time" } else { "everything" }.to_owned(), |view, _| {
         Changed::By(Command::look("bare", !view.look.bare))
     }),
-    row("dots", |view| view.marker.name().to_owned(), |view, forward| {
+    row("markers", |view| format!("{}  {}", view.marker.name(), view.marker.preview()), |view, forward| {
         view.marker = next(&Marker::ALL, view.marker, forward);
         Changed::Remembered("marker", view.marker.name().into())
     }),

@@ -6,12 +6,13 @@ use crate::lab::view::theme::Theme;
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
+use ratatui::symbols::pixel::OCTANTS;
 
 impl Marker {
     /// Dots in a cell, across and down.
     pub fn dots(self) -> (usize, usize) {
         match self {
-            Self::Braille => (2, 4),
+            Self::Braille | Self::Octant => (2, 4),
             Self::HalfBlock => (1, 2),
             Self::Dot | Self::Ascii => (1, 1),
         }
@@ -29,6 +30,7 @@ impl Marker {
         const BRAILLE: [[u8; 2]; 4] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
         match self {
             Self::Braille => BRAILLE[y % 4][x % 2],
+            Self::Octant => 1 << (2 * (y % 4) + x % 2),
             _ => 1 << (y % 2),
         }
     }
@@ -37,6 +39,7 @@ impl Marker {
     fn sign(self, layer: usize, bits: u8) -> char {
         match (self, layer) {
             (Self::Braille, _) => char::from_u32(0x2800 + u32::from(bits)).unwrap_or(' '),
+            (Self::Octant, _) => OCTANTS[usize::from(bits)],
             (Self::HalfBlock, 0) => half_block(bits),
             (Self::Dot, 0) => '•',
             (Self::Ascii, 0) => '*',
@@ -59,7 +62,12 @@ fn half_block(bits: u8) -> char {
 /// `symbol` in ASCII, for terminals whose locale is not UTF-8: a stand-in of the same width.
 pub fn ascii(symbol: &str) -> &'static str {
     match symbol {
-        "─" => "-",
+        "─" | "╴" => "-",
+        "▕" | "▏" => "|",
+        "◊" => "+",
+        "↑" => "^",
+        "↓" => "v",
+        "±" => "~",
         "█" | "▀" | "■" | "━" | "┃" | "┏" | "┓" | "┗" | "┛" => "#",
         "│" => "|",
         "┌" | "┐" | "└" | "┘" | "├" | "┤" => "+",
@@ -90,7 +98,7 @@ pub fn ascii(symbol: &str) -> &'static str {
     }
 }
 
-/// The layer of a dot. Layers differ not in colour alone: where dots are large, their characters differ too.
+/// The layer of a dot. Layers differ not in color alone: where dots are large, their characters differ too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ink {
     /// The run's own motion. It hides the layers under it; the dashes of the exact motion hide it.
@@ -103,7 +111,7 @@ pub enum Ink {
     Ghost,
 }
 
-/// Dots that are drawn, and out of how many: dashes and dots tell the runs apart without colours.
+/// Dots that are drawn, and out of how many: dashes and dots tell the runs apart without colors.
 pub type Dashes = (usize, usize);
 
 pub const EXACT_DASHES: Dashes = (2, 4);
@@ -113,8 +121,8 @@ pub const PINNED_DASHES: Dashes = (5, 7);
 /// The run before an edit: single dots, closer where the dots of `marker` are as large as cells.
 pub fn of_run_before(marker: Marker) -> Dashes {
     match marker {
-        Marker::Braille => (1, 3),
-        _ => (1, 2),
+        Marker::Braille | Marker::Octant => (1, 3),
+        Marker::HalfBlock | Marker::Dot | Marker::Ascii => (1, 2),
     }
 }
 

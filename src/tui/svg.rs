@@ -1,4 +1,4 @@
-//! The picture of the lab as SVG, in color, for a slide: dots of Braille are drawn, everything else is text.
+//! The picture of the lab as SVG, in color, for a slide: dots and lines are drawn, everything else is text.
 
 use super::screen;
 use crate::engine::text::printable::xml;
@@ -7,81 +7,102 @@ use crate::lab::view::theme::Background;
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Modifier};
+use ratatui::symbols::pixel::OCTANTS;
 use std::fmt::Write; // which cannot fail on a `String`
 
 /// A cell, px.
-const CELL_WIDTH_PX: u32 = 8;
-const HEIGHT: u32 = 16;
-/// From a cell's upper edge to the line on which letters stand, px.
-const BASE: u32 = 12;
-/// Fonts whose letters are as wide as a cell at this size, px.
+const CELL_WIDTH: u32 = 8;
+const CELL_HEIGHT: u32 = 16;
+/// From a cell's upper edge to the baseline of its letter, px.
+const BASELINE: u32 = 12;
+/// Fonts whose letters are about as wide as a cell at this size, px. The width of each text is set as well.
 const CELL_FONTS: &str = "DejaVu Sans Mono,Menlo,Consolas,Liberation Mono,monospace";
-const SIZE: f64 = 13.3;
+const FONT_SIZE: f64 = 13.3;
 
 /// The picture of `lab` on a screen of this width and height.
-pub fn svg(lab: &Lab, (columns, lines): (u16, u16), background: Background) -> String {
-    let area = Rect::new(0, 0, columns, lines);
+pub fn svg(lab: &Lab, (columns, rows): (u16, u16), background: Background) -> String {
+    let area = Rect::new(0, 0, columns, rows);
     let mut buf = Buffer::empty(area);
-    screen::draw(lab, false, area, &mut buf);
-    let paper = match background {
-        Background::Dark => ["#e4e4e4", "#1b1d21"],
-        Background::Light => ["#1d1f23", "#ffffff"],
+    screen::draw(lab, true, area, &mut buf);
+    let page = match background {
+        Background::Dark => PageColors {
+            ink: "#e4e4e4",
+            paper: "#1b1d21",
+        },
+        Background::Light => PageColors {
+            ink: "#1d1f23",
+            paper: "#ffffff",
+        },
     };
-    let [width, height] = [
-        u32::from(columns) * CELL_WIDTH_PX,
-        u32::from(lines) * HEIGHT,
-    ];
+    let width = u32::from(columns) * CELL_WIDTH;
+    let height = u32::from(rows) * CELL_HEIGHT;
     let title = xml(&lab.player().run().scenario().file.title);
     let mut out = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
-         font-family=\"{CELL_FONTS}\" font-size=\"{SIZE}\">\n<title>{title}</title>\n\
+         font-family=\"{CELL_FONTS}\" font-size=\"{FONT_SIZE}\">\n<title>{title}</title>\n\
          <rect width=\"{width}\" height=\"{height}\" fill=\"{}\"/>\n",
-        paper[1]
+        page.paper
     );
-    for y in 0..lines {
+    for y in 0..rows {
         let row: Vec<(u32, &Cell)> = (0..columns)
-            .filter_map(|x| Some((u32::from(x) * CELL_WIDTH_PX, buf.cell((x, y))?)))
+            .filter_map(|x| Some((u32::from(x) * CELL_WIDTH, buf.cell((x, y))?)))
             .collect();
-        for run in row.chunk_by(|a, b| look_of(a.1) == look_of(b.1)) {
-            put(&mut out, run, u32::from(y) * HEIGHT, paper);
+        for cells in row.chunk_by(|a, b| look_of(a.1) == look_of(b.1)) {
+            put(&mut out, cells, u32::from(y) * CELL_HEIGHT, page);
         }
     }
     out + "</svg>\n"
 }
 
-fn look_of(cell: &Cell) -> (CellMark, Color, Color, Modifier) {
-    (mark(cell), cell.fg, cell.bg, cell.modifier)
+/// The colors of text and background where the terminal's own are meant, #rrggbb.
+#[derive(Clone, Copy)]
+struct PageColors {
+    ink: &'static str,
+    paper: &'static str,
+}
+
+fn look_of(cell: &Cell) -> (CellKind, Color, Color, Modifier) {
+    (kind(cell), cell.fg, cell.bg, cell.modifier)
 }
 
 #[derive(Clone, Copy, PartialEq)]
-enum CellMark {
+enum CellKind {
     Blank,
-    Dots,
+    /// Dots, lines and blocks.
+    Shape,
     Letter,
 }
 
-fn mark(cell: &Cell) -> CellMark {
+fn kind(cell: &Cell) -> CellKind {
     match cell.symbol().chars().next() {
-        None | Some(' ') => CellMark::Blank,
-        Some('\u{2800}'..='\u{28ff}') => CellMark::Dots,
-        Some(_) => CellMark::Letter,
+        None | Some(' ') => CellKind::Blank,
+        Some(symbol) if !shape(symbol).is_empty() => CellKind::Shape,
+        Some(_) => CellKind::Letter,
     }
 }
 
-/// Cells that look alike, each with its left edge, in the line whose upper edge is at `top`.
-fn put(out: &mut String, cells: &[(u32, &Cell)], top: u32, paper: [&'static str; 2]) {
+/// Draws cells that look alike, each with its left edge, in the row whose upper edge is at `top`.
+fn put(out: &mut String, cells: &[(u32, &Cell)], top: u32, page: PageColors) {
     let Some((left, first)) = cells.first() else {
         return;
     };
-    let mut colors = [hex(first.fg, paper[0]), hex(first.bg, paper[1])];
+    let (mut ink, mut ground) = (hex(first.fg, page.ink), hex(first.bg, page.paper));
     if first.modifier.contains(Modifier::REVERSED) {
-        colors.reverse();
+        std::mem::swap(&mut ink, &mut ground);
     }
-    let [ink, ground] = colors;
-    if ground != paper[1] {
-        let width = cells.len() as u32 * CELL_WIDTH_PX;
-        *out +=
-            &format!("<path fill=\"{ground}\" d=\"M{left} {top}h{width}v{HEIGHT}h-{width}z\"/>\n");
+    let width = cells.len() as u32 * CELL_WIDTH;
+    if ground != page.paper {
+        let _ = writeln!(
+            out,
+            "<path fill=\"{ground}\" d=\"M{left} {top}h{width}v{CELL_HEIGHT}h-{width}z\"/>"
+        );
+    }
+    if first.modifier.contains(Modifier::UNDERLINED) {
+        let y = top + CELL_HEIGHT - 2;
+        let _ = writeln!(
+            out,
+            "<path fill=\"{ink}\" d=\"M{left} {y}h{width}v1h-{width}z\"/>"
+        );
     }
     let dim = if first.modifier.contains(Modifier::DIM) {
         " opacity=\".65\""
@@ -93,38 +114,71 @@ fn put(out: &mut String, cells: &[(u32, &Cell)], top: u32, paper: [&'static str;
     } else {
         ""
     };
-    match mark(first) {
-        CellMark::Blank => {}
-        CellMark::Dots => {
-            let dots: String = cells
+    match kind(first) {
+        CellKind::Blank => {}
+        CellKind::Shape => {
+            let path: String = cells
                 .iter()
-                .map(|(left, cell)| dots(cell, *left, top))
+                .flat_map(|(left, cell)| {
+                    let symbol = cell.symbol().chars().next().unwrap_or(' ');
+                    let bars = shape(symbol).into_iter();
+                    bars.map(move |[x, y, w, h]| format!("M{} {}h{w}v{h}h-{w}z", left + x, top + y))
+                })
                 .collect();
-            let _ = writeln!(out, "<path fill=\"{ink}\"{dim} d=\"{dots}\"/>");
+            let _ = writeln!(out, "<path fill=\"{ink}\"{dim} d=\"{path}\"/>");
         }
-        CellMark::Letter => {
+        CellKind::Letter => {
             let text: String = cells.iter().map(|(_, cell)| cell.symbol()).collect();
-            let (y, text) = (top + BASE, xml(&text));
+            let (y, text) = (top + BASELINE, xml(&text));
             let _ = writeln!(
                 out,
-                "<text x=\"{left}\" y=\"{y}\" fill=\"{ink}\"{bold}{dim}>{text}</text>"
+                "<text x=\"{left}\" y=\"{y}\" textLength=\"{width}\" fill=\"{ink}\"{bold}{dim}>{text}</text>"
             );
         }
     }
 }
 
-/// The dots of a Braille letter as the data of a path.
-fn dots(cell: &Cell, left: u32, top: u32) -> String {
-    let bits = cell.symbol().chars().next().map_or(0, u32::from);
-    let dots = (0..8).filter(|dot| bits >> dot & 1 == 1).map(|dot| {
-        let [column, line] = if dot < 6 {
-            [dot / 3, dot % 3]
-        } else {
-            [dot - 6, 3]
-        };
-        format!("M{} {}h2v2h-2z", left + 4 * column + 1, top + 4 * line + 1)
-    });
-    dots.collect()
+/// The rectangles that draw `symbol`, each with its left and upper edge, width and height in px; none for a letter.
+fn shape(symbol: char) -> Vec<[u32; 4]> {
+    match symbol {
+        '\u{2800}'..='\u{28ff}' => braille(u32::from(symbol) - 0x2800),
+        '─' => vec![[0, 8, 8, 1]],
+        '━' => vec![[0, 7, 8, 3]],
+        '╴' => vec![[0, 8, 4, 1]],
+        '│' => vec![[4, 0, 1, 16]],
+        '┃' => vec![[3, 0, 3, 16]],
+        '┼' => vec![[0, 8, 8, 1], [4, 0, 1, 16]],
+        '├' => vec![[4, 8, 4, 1], [4, 0, 1, 16]],
+        '┤' => vec![[0, 8, 4, 1], [4, 0, 1, 16]],
+        '┬' => vec![[0, 8, 8, 1], [4, 8, 1, 8]],
+        '┴' => vec![[0, 8, 8, 1], [4, 0, 1, 8]],
+        '▏' => vec![[0, 0, 1, 16]],
+        '▕' => vec![[7, 0, 1, 16]],
+        _ => OCTANTS
+            .iter()
+            .position(|octant| *octant == symbol)
+            .map_or(Vec::new(), |bits| {
+                (0..8)
+                    .filter(|dot| bits >> dot & 1 == 1)
+                    .map(|dot| [4 * (dot % 2), 4 * (dot / 2), 4, 4])
+                    .collect()
+            }),
+    }
+}
+
+/// The dots of the Braille pattern with these `bits`.
+fn braille(bits: u32) -> Vec<[u32; 4]> {
+    (0..8)
+        .filter(|dot| bits >> dot & 1 == 1)
+        .map(|dot| {
+            let [column, row] = if dot < 6 {
+                [dot / 3, dot % 3]
+            } else {
+                [dot - 6, 3]
+            };
+            [4 * column + 1, 4 * row + 1, 2, 2]
+        })
+        .collect()
 }
 
 /// The color of a cell, #rrggbb; `otherwise` if it is the terminal's own.

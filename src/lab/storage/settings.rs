@@ -23,7 +23,7 @@ const SETTINGS_HEADER: &str = "# What was chosen in the lab. gyrolab writes this
 
 #[rustfmt::skip]
 pub const SETTINGS_KEYS: &[SchemaRow] = &[
-    may("marker", OneOf(&["braille", "half-block", "dot", "ascii"]), "what dots are made of"),
+    may("marker", OneOf(&["braille", "octant", "half-block", "dot", "ascii"]), "characters that dots are drawn with"),
     may("color", OneOf(&["auto", "always", "never", "16", "256", "truecolor"]), "how many colors the lab uses"),
     may("background", OneOf(&["dark", "light"]), "the background of the terminal"),
     may("fps", Whole(1, 60), "frames a second at most"),

@@ -31,6 +31,11 @@ impl View {
         self.is_touched |= self.filled;
     }
 
+    /// Whether the title of `pane` shows the focus: not before the user has turned to a pane.
+    pub fn marks_focus_of(&self, pane: Pane) -> bool {
+        self.focus == pane && self.is_touched
+    }
+
     pub fn is_filled_by(&self, pane: Pane) -> bool {
         self.filled && self.focus == pane
     }

@@ -1,10 +1,12 @@
-//! The user's choice of dots and colors. `tui` has the dots and colors themselves.
+//! The user's choice of markers and colors. `tui` has the dots and colors themselves.
 
-/// The kinds of dots.
+/// The characters that dots are drawn with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Marker {
     /// Two by four dots in a cell.
     Braille,
+    /// Two by four dots in a cell, without gaps between them (Unicode 16). Few fonts have them.
+    Octant,
     /// Two halves of a cell, one above the other.
     HalfBlock,
     /// One round point in a cell.
@@ -15,15 +17,23 @@ pub enum Marker {
 
 impl Marker {
     /// Every marker, in the order in which the settings go through them.
-    pub const ALL: [Self; 4] = [Self::Braille, Self::HalfBlock, Self::Dot, Self::Ascii];
+    pub const ALL: [Self; 5] = [
+        Self::Braille,
+        Self::Octant,
+        Self::HalfBlock,
+        Self::Dot,
+        Self::Ascii,
+    ];
 
-    /// Whether a terminal can show it that can show `other`: Braille needs most, then half blocks and points, then ASCII.
+    /// Whether a terminal that shows `other` shows this one too. Octants need most, then Braille, then half blocks and
+    /// points, then ASCII.
     pub fn needs_no_more_than(self, other: Self) -> bool {
         self.need() <= other.need()
     }
 
     fn need(self) -> u8 {
         match self {
+            Self::Octant => 3,
             Self::Braille => 2,
             Self::HalfBlock | Self::Dot => 1,
             Self::Ascii => 0,
@@ -33,9 +43,21 @@ impl Marker {
     pub fn name(self) -> &'static str {
         match self {
             Self::Braille => "braille",
+            Self::Octant => "octant",
             Self::HalfBlock => "half-block",
             Self::Dot => "dot",
             Self::Ascii => "ascii",
+        }
+    }
+
+    /// A wave drawn with it, which shows whether the terminal's font has its characters.
+    pub fn preview(self) -> &'static str {
+        match self {
+            Self::Braille => "⠔⠉⠑⢄⣀⠤",
+            Self::Octant => "𜴐🮂𜴄𜶀▂𜴧",
+            Self::HalfBlock => "█▀▀▄▄▄",
+            Self::Dot => "••••••",
+            Self::Ascii => "**..**",
         }
     }
 }

@@ -173,7 +173,7 @@ fn round_rule(
     buf: &mut Buffer,
 ) -> Option<Rect> {
     let title = round_title(row.title, zoom, seen.reading, area.width);
-    let has_focus = seen.view.focus == row.id;
+    let has_focus = seen.view.marks_focus_of(row.id);
     let inside = rule(&title, None, has_focus, area, &seen.view.theme, buf);
     (inside.height >= 2 && inside.width > 0).then_some(inside)
 }

@@ -97,7 +97,7 @@ impl Widget for Traces<'_> {
         rule(
             &title,
             None,
-            self.0.view.focus == TRACES_ROW.id,
+            self.0.view.marks_focus_of(TRACES_ROW.id),
             area,
             theme,
             buf,
