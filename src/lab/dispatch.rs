@@ -123,6 +123,12 @@ impl Lab {
         self.player
             .change_run(change, scenario, self.edits.runs.present().end_s);
         self.view.keep_cursor(&self.player);
+        if matches!(
+            change,
+            RunChange::BeginsAnew { .. } | RunChange::Returns { .. }
+        ) {
+            self.view.mark = None; // it is a turn of the run that was left
+        }
         self.edits.follow(&self.player);
         let now = self.player.run().scenario();
         let names_other_data =
