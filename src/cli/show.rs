@@ -118,6 +118,7 @@ pub(super) fn print_picture(
         lab.take_commands(commands);
         done = lab.finish_script_while(interruption.meter());
     }
+    lab.look_for_advice();
     let picture = args.picture(&lab);
     match output {
         Some(output) => interruption.keep(output, &picture)?,

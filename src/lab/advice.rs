@@ -46,6 +46,13 @@ impl Adviser {
         }
     }
 
+    /// Looks for advice if the numbers are doubtful, and waits for it.
+    pub(super) fn look_now(&mut self, player: &Player) {
+        if is_believed(player) == Some(false) {
+            self.offer = offered(&advise(&to_be_mended(player)), player);
+        }
+    }
+
     /// Takes the answer of the search, if it has just come. Returns whether it has.
     pub(super) fn advance(&mut self, player: &Player) -> bool {
         let has_come = self.search.as_mut().is_some_and(BackgroundJob::take_news);

@@ -137,7 +137,12 @@ impl Lab {
         self.edits.follow(&self.player);
     }
 
-    /// From now on looks in the background for a scheme or time step that would make doubtful numbers right.
+    /// Looks for what would make an unreliable run reliable, and waits for it: a picture shows it.
+    pub fn look_for_advice(&mut self) {
+        self.adviser.look_now(&self.player);
+    }
+
+    /// From now on looks in the background for a scheme or time step that would make an unreliable run reliable.
     pub fn take_advice(&mut self) {
         self.adviser.is_on = true;
         self.read_now(); // a run that stands still is not read again by itself

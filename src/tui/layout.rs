@@ -10,7 +10,7 @@ use crate::lab::view::{HideablePart, Pane, View};
 use ratatui::layout::Rect;
 
 /// The size of the whole lab, columns and rows. Below it, parts are left out.
-const FULL_LAB: (u16, u16) = (80, 24);
+pub const FULL_LAB: (u16, u16) = (80, 24);
 /// From this size on the values are a band below the views of the path.
 const LARGE_LAB: (u16, u16) = (160, 44);
 /// From this width on two panes are side by side.
@@ -372,4 +372,94 @@ fn traces_columns(width: u16) -> u16 {
     let share = TRACES_SHARE.0 + (TRACES_SHARE.1 - TRACES_SHARE.0) * beyond / 40;
     let columns = (u32::from(width) * share / 1000) as u16;
     columns.clamp(TRACES_COLUMNS.0, TRACES_COLUMNS.1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::scenario::Document;
+    use crate::lab::view::theme::{Marker, Theme};
+
+    fn view() -> View {
+        let scenario = Document::open("method-2").unwrap().scenario().unwrap();
+        View::new(&scenario, Marker::Braille, Theme::PLAIN)
+    }
+
+    fn shown(width: u16, height: u16, has_overview: bool, view: &View) -> ScreenLayout {
+        let mut seen = view.clone();
+        seen.window.has_overview = has_overview;
+        ScreenLayout::new(Rect::new(0, 0, width, height), &seen, 1, true)
+    }
+
+    /// The columns and rows of every pane.
+    fn sizes(layout: &ScreenLayout) -> Vec<(Pane, u16, u16)> {
+        let panes = layout.panes.iter();
+        panes
+            .map(|(pane, area)| (*pane, area.width, area.height))
+            .collect()
+    }
+
+    #[test]
+    fn the_three_arrangements_are_as_designed() {
+        use Pane::{Above, Parameters, ThreeD, Traces};
+        let view = view();
+        let small = shown(80, 24, true, &view);
+        let columns = [(Traces, 28, 16), (Above, 26, 16), (Parameters, 24, 16)];
+        assert_eq!(sizes(&small), columns);
+        assert_eq!(small.overview, Rect::new(0, 17, 80, 4));
+        let medium = shown(120, 40, true, &view);
+        let stacked = [
+            (Traces, 50, 31),
+            (Above, 38, 14),
+            (ThreeD, 38, 16),
+            (Parameters, 30, 31),
+        ];
+        assert_eq!(sizes(&medium), stacked);
+        let large = shown(200, 50, true, &view);
+        let band = [
+            (Traces, 84, 40),
+            (Above, 57, 26),
+            (ThreeD, 57, 26),
+            (Parameters, 115, 13),
+        ];
+        assert_eq!(sizes(&large), band);
+        // Without an overview the panes have its rows, but for the scrub line.
+        for (width, height, rows) in [(80, 24, 19), (120, 40, 35), (200, 50, 45)] {
+            let layout = shown(width, height, false, &view);
+            assert_eq!(layout.panes[0].1.height, rows, "{width}x{height}");
+            assert_eq!(layout.overview.height, 1);
+        }
+    }
+
+    #[test]
+    fn parts_do_not_overlap_and_the_verdict_and_the_keys_stay_to_the_last() {
+        let view = view();
+        for width in (10..=220).step_by(3) {
+            for height in 6..=60 {
+                let layout = shown(width, height, height % 2 == 0, &view);
+                let panes = layout.panes.iter().map(|(_, area)| *area);
+                let rows = [layout.header, layout.overview, layout.verdict, layout.keys];
+                let note = Some(layout.note).filter(|note| *note != layout.verdict);
+                let all: Vec<_> = panes.chain(rows).chain(note).collect();
+                let screen = Rect::new(0, 0, width, height);
+                for (index, area) in all.iter().enumerate() {
+                    let is_free = all[..index].iter().all(|other| !other.intersects(*area));
+                    assert!(is_free, "{width}x{height}: {layout:?}");
+                    assert_eq!(area.intersection(screen), *area, "{width}x{height}");
+                }
+                assert_eq!((layout.verdict.height, layout.keys.height), (1, 1));
+            }
+        }
+    }
+
+    #[test]
+    fn a_view_of_the_path_comes_with_the_focus_where_there_is_room_for_one() {
+        let mut view = view();
+        view.turn_to(Pane::ThreeD);
+        assert!(shown(80, 24, true, &view).place_of(Pane::ThreeD).is_some());
+        view.turn_to(Pane::Parameters);
+        let layout = shown(80, 24, true, &view);
+        assert!(layout.place_of(Pane::ThreeD).is_some());
+        assert!(layout.place_of(Pane::Above).is_none());
+    }
 }

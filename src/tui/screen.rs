@@ -15,7 +15,7 @@ use crate::tui::theme::Role;
 use crossterm::style;
 use ratatui::backend::{Backend, ClearType, CrosstermBackend};
 use ratatui::buffer::Buffer;
-use ratatui::layout::{Margin, Rect};
+use ratatui::layout::Rect;
 use ratatui::widgets::Widget;
 use std::{io, mem};
 
@@ -83,21 +83,11 @@ pub fn draw(lab: &Lab, keys: bool, area: Rect, buf: &mut Buffer) {
 
 fn point_at(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let style = lab.view().theme.style(Role::Push);
-    let inside = area.inner(Margin::new(1, 1));
-    for position in area.positions().filter(|at| !inside.contains(*at)) {
-        let Some(cell) = buf.cell_mut(position) else {
-            continue;
-        };
-        let heavy = match cell.symbol() {
-            "─" => "━",
-            "│" => "┃",
-            "┌" => "┏",
-            "┐" => "┓",
-            "└" => "┗",
-            "┘" => "┛",
-            _ => continue,
-        };
-        cell.set_symbol(heavy).set_style(style);
+    for position in split_rows(area, 1)[0].positions() {
+        let cell = buf.cell_mut(position);
+        if let Some(cell) = cell.filter(|cell| cell.symbol() == "─") {
+            cell.set_symbol("━").set_style(style);
+        }
     }
 }
 
@@ -120,10 +110,22 @@ fn draw_popup(lab: &Lab, area: Rect, buf: &mut Buffer) {
     }
 }
 
-/// The area of what lies on top of the panes: all of theirs, without the lines that a message takes of it.
+/// The area of a popup: the panes and the overview, without the rows that a message takes. A dialog leaves the page of a
+/// lesson in view, and the overview.
 pub(super) fn popup_place(lab: &Lab, layout: &ScreenLayout) -> Rect {
-    let panes = layout.panes.iter().map(|(_, area)| *area);
-    let body = panes.reduce(Rect::union).unwrap_or_default();
+    let is_dialog = lab.popups().mode == Mode::Dialog;
+    let is_alone = layout.panes.len() == 1;
+    let panes = layout
+        .panes
+        .iter()
+        .filter(|(pane, _)| !is_dialog || is_alone || *pane != Pane::Lesson)
+        .map(|(_, area)| *area);
+    let covered = panes.reduce(Rect::union).unwrap_or_default();
+    let body = if is_dialog || layout.overview.is_empty() {
+        covered
+    } else {
+        covered.union(layout.overview)
+    };
     let message = hint::place(lab, layout);
     if message.is_empty() {
         body

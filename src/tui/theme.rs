@@ -296,3 +296,150 @@ pub fn theme(choice: ColorChoice, variable: impl Fn(&str) -> Option<String>) -> 
         },
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TRACES: &[Role] = &[
+        Role::Run,
+        Role::RunEarlier,
+        Role::Fill,
+        Role::Exact,
+        Role::Previous,
+        Role::Cursor,
+    ];
+    const VIEWS: &[Role] = &[
+        Role::Run,
+        Role::RunEarlier,
+        Role::Exact,
+        Role::Previous,
+        Role::AngularMomentum,
+        Role::AngularVelocity,
+        Role::Torque,
+        Role::RimNear,
+        Role::RimFar,
+        Role::Cursor,
+    ];
+
+    fn theme(palette: Palette, background: Background) -> Theme {
+        Theme {
+            palette,
+            background,
+        }
+    }
+
+    #[test]
+    fn no_two_kinds_of_data_in_a_pane_share_a_color() {
+        for palette in [Palette::Xterm256, Palette::TrueColor] {
+            for background in Background::ALL {
+                for roles in [TRACES, VIEWS] {
+                    let theme = theme(palette, background);
+                    let colors: Vec<_> = roles.iter().map(|role| theme.style(*role).fg).collect();
+                    for (index, color) in colors.iter().enumerate() {
+                        let is_shared = colors[..index].contains(color);
+                        assert!(!is_shared, "{:?} on {background:?}", roles[index]);
+                    }
+                }
+            }
+        }
+    }
+
+    /// With 16 colors, gray furniture and the earlier run with its fill may share one.
+    #[test]
+    fn sixteen_colors_tell_the_curves_and_the_arrows_apart() {
+        let roles = [
+            Role::Run,
+            Role::RunEarlier,
+            Role::Exact,
+            Role::AngularMomentum,
+            Role::AngularVelocity,
+            Role::Torque,
+        ];
+        for background in Background::ALL {
+            let theme = theme(Palette::Ansi16, background);
+            let mut seen = Vec::new();
+            for role in roles {
+                let color = theme.style(role).fg;
+                assert!(!seen.contains(&color), "{role:?} on {background:?}");
+                seen.push(color);
+            }
+        }
+    }
+
+    #[test]
+    fn words_and_curves_are_legible_on_both_backgrounds() {
+        for (background, paper) in [(Background::Dark, 0x1b1d21), (Background::Light, 0xffffff)] {
+            for role in [
+                Role::Label,
+                Role::Run,
+                Role::Exact,
+                Role::AngularMomentum,
+                Role::AngularVelocity,
+                Role::Torque,
+                Role::Cursor,
+            ] {
+                let shades = ink(role, background).unwrap();
+                let contrast = contrast(shades.rgb, paper);
+                assert!(contrast >= 4.0, "{role:?} on {background:?}: {contrast}");
+            }
+        }
+    }
+
+    /// Contrast of two colors, 0xrrggbb, as WCAG 2 defines it, from the luminance of sRGB.
+    fn contrast(one: u32, other: u32) -> f64 {
+        let [a, b] = [one, other].map(|rgb| {
+            let [_, red, green, blue] = rgb.to_be_bytes().map(|byte| {
+                let part = f64::from(byte) / 255.0;
+                if part <= 0.04045 {
+                    part / 12.92
+                } else {
+                    libm::pow((part + 0.055) / 1.055, 2.4)
+                }
+            });
+            0.2126 * red + 0.7152 * green + 0.0722 * blue + 0.05
+        });
+        (a / b).max(b / a)
+    }
+
+    #[test]
+    fn a_plain_theme_has_no_color() {
+        for role in TRACES.iter().chain(VIEWS).chain(&[Role::Badge, Role::Off]) {
+            let style = Theme::PLAIN.style(*role);
+            assert_eq!((style.fg, style.bg), (None, None), "{role:?}");
+        }
+        let badge = Theme::PLAIN.style(Role::Badge).add_modifier;
+        assert!(badge.contains(Modifier::REVERSED));
+    }
+
+    #[test]
+    fn the_palette_is_what_the_terminal_says() {
+        for (variables, palette) in [
+            (&[("TERM", "xterm-256color")][..], Palette::Xterm256),
+            (
+                &[("TERM", "xterm-256color"), ("COLORTERM", "truecolor")],
+                Palette::TrueColor,
+            ),
+            (
+                &[("TERM", "screen-256color"), ("COLORTERM", "truecolor")],
+                Palette::Xterm256,
+            ),
+            (&[("TERM", "xterm-direct")], Palette::TrueColor),
+            (&[("TERM", "linux")], Palette::Ansi16),
+            (&[("TERM", "vt100")], Palette::Plain),
+            (
+                &[("TERM", "xterm-256color"), ("NO_COLOR", "1")],
+                Palette::Plain,
+            ),
+            (&[], Palette::Plain),
+        ] {
+            let variable = |name: &str| {
+                let mut all = variables.iter();
+                all.find(|(key, _)| *key == name)
+                    .map(|(_, value)| (*value).to_owned())
+            };
+            let found = super::theme(ColorChoice::Auto, variable).palette;
+            assert_eq!(found, palette, "{variables:?}");
+        }
+    }
+}

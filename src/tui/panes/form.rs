@@ -7,7 +7,7 @@ use crate::lab::view::theme::Theme;
 use crate::tui::split::{split_columns, split_rows};
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
-use ratatui::layout::{Position, Rect};
+use ratatui::layout::{Margin, Position, Rect};
 use ratatui::widgets::{Clear, Widget};
 
 const FORM_WIDTH: u16 = 80;
@@ -36,10 +36,11 @@ impl Widget for FormPane<'_> {
         else {
             return;
         };
+        // A blank column at each side sets the form off from the panes.
+        Clear.render(place.outer(Margin::new(1, 0)).intersection(area), buf);
         let inside = if is_framed {
             popup_rule(&self.form.title, place, self.theme, buf)
         } else {
-            Clear.render(place, buf);
             place
         };
         for (line, place) in lines.iter().zip(inside.rows()) {
@@ -171,7 +172,7 @@ impl FormPane<'_> {
         let role = if is_marked {
             Role::Selected
         } else {
-            Role::Text
+            Role::Editable
         };
         let style = self.theme.style(role);
         let shown: String = chars[first..].iter().collect();

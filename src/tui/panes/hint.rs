@@ -2,9 +2,9 @@
 
 use super::chrome::SEPARATOR;
 use super::{wrapped_to, write};
-use crate::engine::text::wrap::{columns, wrapped};
+use crate::engine::text::wrap::wrapped;
 use crate::lab::{Lab, MOST_COUNTED};
-use crate::tui::layout::ScreenLayout;
+use crate::tui::layout::{FULL_LAB, ScreenLayout};
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -20,14 +20,13 @@ pub fn lines_of_note(lab: &Lab, width: u16) -> u16 {
     lines_of(whole_sentences(&lab.note(), width), width)
 }
 
-/// As many sentences of `note` as fit in one row of a screen of this width; all of it if not even the first fits.
+/// As many sentences of `note` as fit in one row of a screen of this width, in two of a narrow one; all of it if not even
+/// the first fits.
 fn whole_sentences(note: &str, width: u16) -> &str {
-    let room = usize::from(width.saturating_sub(2));
-    if columns(note) <= room {
-        return note;
-    }
+    let most_rows = if width < FULL_LAB.0 { 2 } else { 1 };
     let ends = note.match_indices(". ").map(|(at, _)| &note[..=at]);
-    ends.filter(|begin| columns(begin) <= room)
+    ends.chain([note])
+        .filter(|begin| lines_of(begin, width) <= most_rows)
         .last()
         .unwrap_or(note)
 }
