@@ -224,7 +224,7 @@ fn advice_is_taken_by_one_key() {
     stage.commands("go_to = '40 s'");
     wait_for_advice(&mut stage);
     let line = health(&stage);
-    assert!(line.contains("mends it"), "{line}");
+    assert!(line.contains("rerun with"), "{line}");
     stage.press("a");
     stage.shows("from the start; the run before is dotted");
     assert_eq!(stage.lab.player().run().now().time_s, 40.0);
@@ -232,8 +232,8 @@ fn advice_is_taken_by_one_key() {
     assert_eq!(stage.lab.player().run().scenario().file.push.len(), 1);
     assert_eq!(ghost_s(&stage.lab), Some(40.0));
     let mended = health(&stage);
-    assert!(!mended.contains("mends it"), "{mended}");
-    stage.press("a").shows("there is nothing to mend");
+    assert!(!mended.contains("rerun with"), "{mended}");
+    stage.press("a").shows("nothing to fix");
     stage.press("u").wait(0.1);
     assert_eq!(stage.lab.player().motion().time_step_s, 0.1);
     assert_eq!(stage.step(), 400);
@@ -285,7 +285,7 @@ fn advice_is_taken_by_a_command_and_holds() {
     assert_ne!(health.is_believed(), Some(false));
     let again = &crate::support::desk::commands("take_advice = true")[0];
     let refusal = desk.carry_out(again).unwrap_err().to_string();
-    assert!(refusal.starts_with("there is nothing to mend"), "{refusal}");
+    assert!(refusal.starts_with("nothing to fix"), "{refusal}");
 }
 
 #[test]

@@ -587,19 +587,18 @@ fn shown_panes_share_the_screen_at_every_width() {
 }
 
 #[test]
-fn a_pane_is_pointed_at_by_a_heavy_frame() {
+fn a_pane_is_pointed_at_by_a_heavy_rule() {
     let mut desk = opened_with(&[]);
-    assert!(!picture(&desk, (80, 24)).contains('┏'));
+    let rule = |desk: &Desk| picture(desk, (80, 24)).lines().nth(1).unwrap().to_owned();
+    assert!(!rule(&desk).contains('━'));
     desk.commands("point_at = 'above'");
-    let shown = picture(&desk, (80, 24));
-    let corner = shown.lines().nth(1).and_then(|line| line.find('┏'));
-    let light = shown.lines().nth(1).and_then(|line| line.find('┌'));
+    let shown = rule(&desk);
     assert!(
-        corner > light,
-        "the traces, at the left, are not pointed at:\n{shown}"
+        shown.find('━') > shown.find('─'),
+        "the traces are not pointed at:\n{shown}"
     );
     desk.commands("point_at = 'none'");
-    assert!(!picture(&desk, (80, 24)).contains('┏'));
+    assert!(!rule(&desk).contains('━'));
 }
 
 #[test]

@@ -1,11 +1,12 @@
-//! Every key of the table, in every pane and on screens of four sizes: the frames stay whole, nothing stands outside of
-//! them, and what is said below them is not cut off within a word.
+//! Every key of the table, in every pane and on screens of four sizes: each pane keeps its rule, nothing is drawn between
+//! panes, and no message is cut off within a word.
 
 use crate::support::stage::Stage;
 use gyrolab::lab::Mode;
 use gyrolab::lab::view::Pane;
 use gyrolab::tui::keymap::{BINDINGS, Binding, Key};
 use gyrolab::tui::panes::{self, hint};
+use gyrolab::tui::screen;
 use ratatui::layout::Rect;
 use std::time::Duration;
 
@@ -15,14 +16,6 @@ const SAID: Duration = Duration::from_secs(30);
 /// The screen as columns of rows.
 struct Picture {
     rows: Vec<Vec<char>>,
-}
-
-/// A frame, all four of its sides on the screen.
-struct Frame {
-    left: usize,
-    right: usize,
-    top: usize,
-    bottom: usize,
 }
 
 impl Picture {
@@ -47,42 +40,10 @@ impl Picture {
         sign.copied().unwrap_or(' ')
     }
 
-    /// The frames, or where one is broken.
-    fn frames(&self) -> Result<Vec<Frame>, String> {
-        let mut frames = Vec::new();
-        for (y, row) in self.rows.iter().enumerate() {
-            for (x, _) in row.iter().enumerate().filter(|(_, sign)| **sign == '┌') {
-                let right = (x + 1..row.len()).find(|right| matches!(row[*right], '┐' | '┌'));
-                let right = right
-                    .filter(|right| row[*right] == '┐')
-                    .ok_or(format!("the frame at {x}, {y} has no right corner"))?;
-                let mut rows = y + 1..self.rows.len();
-                let bottom = rows
-                    .find(|bottom| self.at(x, *bottom) != '│')
-                    .unwrap_or(self.rows.len());
-                let corners = (self.at(x, bottom), self.at(right, bottom));
-                if corners != ('└', '┘') {
-                    return Err(format!("the frame at {x}, {y} ends in {corners:?}"));
-                }
-                let is_gap = |row: &usize| !"│▲▼".contains(self.at(right, *row));
-                if let Some(gap) = (y + 1..bottom).find(is_gap) {
-                    return Err(format!("the frame at {x}, {y} is broken in row {gap}"));
-                }
-                frames.push(Frame {
-                    left: x,
-                    right,
-                    top: y,
-                    bottom,
-                });
-            }
-        }
-        Ok(frames)
-    }
-
-    /// All words, with one blank between two of them, without frames.
+    /// All words, with one blank between two of them.
     fn words(&self) -> String {
         let rows = self.rows.iter().map(|row| row.iter().collect::<String>());
-        squeezed(&rows.collect::<Vec<_>>().join(" ").replace('│', " "))
+        squeezed(&rows.collect::<Vec<_>>().join(" "))
     }
 }
 
@@ -100,22 +61,22 @@ fn trouble(stage: &Stage) -> Option<String> {
         return Some("there is no title".to_owned());
     }
     if !is_ascii && is_plain {
-        let frames = match picture.frames() {
-            Ok(frames) => frames,
-            Err(broken) => return Some(broken),
-        };
-        let end = frames.iter().map(|frame| frame.bottom).max().unwrap_or(0);
-        for y in 1..=end {
-            let outside = (0..picture.rows[y].len()).find(|x| {
-                let is_in = |frame: &Frame| {
-                    (frame.left..=frame.right).contains(x)
-                        && (frame.top..=frame.bottom).contains(&y)
-                };
-                picture.at(*x, y) != ' ' && !frames.iter().any(is_in)
-            });
-            if let Some(x) = outside {
-                let sign = picture.at(x, y);
-                return Some(format!("{sign:?} at {x}, {y} is outside of the frames"));
+        let places = screen::layout(&stage.lab, true, stage.size).panes;
+        for (pane, place) in &places {
+            let mut rule = place.columns().map(|column| column.x.into());
+            if !rule.any(|x| "─━".contains(picture.at(x, place.y.into()))) {
+                return Some(format!("{} has no rule", pane.id()));
+            }
+        }
+        for (left, right) in places
+            .iter()
+            .flat_map(|one| places.iter().map(move |it| (one.1, it.1)))
+        {
+            let gap = usize::from(left.right());
+            let is_beside = usize::from(right.x) == gap + 1;
+            let mut rows = left.top().max(right.top())..left.bottom().min(right.bottom());
+            if is_beside && let Some(y) = rows.find(|y| picture.at(gap, (*y).into()) != ' ') {
+                return Some(format!("something is drawn between panes at {gap}, {y}"));
             }
         }
     }
@@ -138,7 +99,7 @@ fn footer_trouble(stage: &Stage, picture: &Picture) -> Option<String> {
     };
     let words = |row: &Binding| {
         let otherwise = match row.footer {
-            "pause" => "go on",
+            "pause" => "run",
             "next phase" => "next step",
             "why sideways" => "phases",
             "take it" => "change",

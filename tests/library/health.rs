@@ -720,5 +720,5 @@ fn the_lab_advises_where_the_nutation_does_not_hold() {
     stage.commands("pause = true\ngo_to = 3000").wait(1.0);
     stage.press("a").shows("dt 0.002 s from the start");
     stage.wait(1.0);
-    stage.press("a").shows("there is nothing to mend");
+    stage.press("a").shows("nothing to fix");
 }

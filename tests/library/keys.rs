@@ -1,7 +1,7 @@
 //! The keys: the footer, the settings behind one key, the search of the help, and every key that a text names.
 
 use crate::support::stage::{LARGE, SMALL, Stage};
-use crate::support::words::has;
+use crate::support::words::has_all;
 use gyrolab::lab::Mode;
 use gyrolab::tui::keymap::{BINDINGS, Key};
 use gyrolab::tui::panes;
@@ -23,19 +23,18 @@ fn footer_begins(stage: &Stage, words: &str) {
 fn the_footer_has_the_keys_of_a_pane_once_that_was_touched() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.commands("pause = true");
-    let first = " space go on . step p push t exact e edit x export f fill o open ? help";
+    let first = " space run . , step p push t exact e edit o open L lessons x CSV ? help";
     footer_begins(&stage, first);
-    has(footer(&stage), "q quit");
     stage.key(Key::Left);
     stage.wait(6.0);
     footer_begins(&stage, " Left cursor W zoom [ pan");
-    has(footer(&stage), " space . p t e x f o ? help q quit");
+    has_all(&footer(&stage), ["space run", "L lessons", "? help"]);
     // From the values, back to the run.
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.press("e");
     footer_begins(&stage, " / find");
     stage.key(Key::Esc);
-    footer_begins(&stage, " space pause . step");
+    footer_begins(&stage, " space pause . , step");
 }
 
 #[test]

@@ -107,11 +107,11 @@ fn numbers_that_are_no_longer_finite_are_told_with_what_helps() {
         stage.commands("go_to = 20").wait(1.0);
         stage.lab.notice().unwrap_or_default()
     };
-    let mends = "a: srkn11b, dt 0.01 s mends it";
+    let cure = "a: rerun with srkn11b, dt 0.01 s";
     let back = ", u takes the last edit back";
     let edit = "set = { 'motion.gravity_m_per_s2' = 9 }";
-    assert_eq!(end("", true), format!("{begin}{mends}"));
-    assert_eq!(end(edit, true), format!("{begin}{mends}{back}"));
+    assert_eq!(end("", true), format!("{begin}{cure}"));
+    assert_eq!(end(edit, true), format!("{begin}{cure}{back}"));
     let may = "a shorter time step or another scheme may mend it (e)";
     assert_eq!(end("", false), format!("{begin}{may}"));
     assert_eq!(end(edit, false), format!("{begin}{may}{back}"));
@@ -127,7 +127,7 @@ fn what_mends_a_run_that_broke_down_is_told_as_soon_as_it_is_found() {
     stage
         .shows("no longer finite at step 3: a shorter time step or another scheme may mend it (e)");
     await_advice(&stage);
-    stage.wait(0.1).shows("srkn11b, dt 0.01 s mends it");
+    stage.wait(0.1).shows("a rerun with srkn11b, dt 0.01 s");
 }
 
 /// A run that stands still is not read again by itself: the search has to begin as soon as it may.
@@ -142,7 +142,7 @@ fn advice_is_looked_for_where_the_lab_opens_paused() {
     stage.lab.take_advice();
     assert!(stage.lab.adviser().is_seeking());
     await_advice(&stage);
-    stage.wait(0.1).shows("a: dt 0.002 s mends it");
+    stage.wait(0.1).shows("a dt 0.002 s");
 }
 
 #[test]
@@ -151,7 +151,9 @@ fn a_time_step_that_is_in_force_mends_from_the_start() {
     stage.commands("pause = true\ngo_to = 300\nset = { 'motion.time_step_s' = 0.002 }");
     stage.lab.take_advice();
     await_advice(&stage);
-    stage.wait(0.1).shows("dt 0.002 s from the start mends it");
+    stage
+        .wait(0.1)
+        .shows("a rerun with dt 0.002 s from the start");
 }
 
 #[test]

@@ -203,21 +203,21 @@ fn a_mouse_outside_or_one_that_is_the_terminals_does_nothing() {
 fn health_predictions_and_all_but_two_panes_are_hidden_in_the_settings() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.wait(3.0).commands("pause = true");
-    stage.shows("turns a step").shows("predicted");
-    stage.press("c\n\u{1b}").shows_no("turns a step");
-    stage.press("c\n\u{1b}").shows("turns a step");
+    stage.shows("times per step").shows("predicted");
+    stage.press("c\n\u{1b}").shows_no("times per step");
+    stage.press("c\n\u{1b}").shows("times per step");
     stage.press("c↓→\u{1b}").shows_no("predicted");
     stage.press("c↓←\u{1b}").shows("predicted");
     stage.press("c↓↓\n\u{1b}").wait(6.0);
     stage.shows("from above").shows("over time");
-    stage.shows(" Method 2 ");
-    for words in "parameters,q quit,turns a step,almost a circle,scheme,step 6".split(',') {
+    stage.shows("Method 2 ");
+    for words in "values,L lessons,times per step,lmost a circle,report,step 6".split(',') {
         stage.shows_no(words);
     }
-    let title = format!(" Method 2{:>70}", "t     60.0 s");
+    let title = format!("Method 2{:>71}", "t     60.0 s");
     assert_eq!(stage.picture().lines().next().unwrap().trim_end(), title);
     stage.press("c↓↓\n\u{1b}").shows("parameters");
-    stage.shows("q quit");
+    stage.shows("L lessons");
 }
 
 #[test]

@@ -117,11 +117,11 @@ fn what_to_try_next_is_not_on_the_screen_already() {
 fn a_long_message_and_a_warning_are_both_read_on_a_small_screen() {
     let mut stage = Stage::open("method-2", &[], Rect::new(0, 0, 40, 12));
     stage.commands("pause = true\ngo_to = 100");
-    stage.shows("strobed").press("e");
+    stage.shows("NOT RELIABLE").press("e");
     stage.shows("Up, Down choose a value; Left, Right");
     stage.shows("nudge it; Enter types it; u undoes");
-    stage.shows("strobed");
-    stage.wait(6.0).shows_no("nudge it").shows("strobed");
+    stage.shows("NOT RELIABLE");
+    stage.wait(6.0).shows_no("nudge it").shows("NOT RELIABLE");
 }
 
 #[test]

@@ -154,9 +154,10 @@ fn dots(times: usize) -> String {
 
 #[test]
 fn pictures_of_markers_and_small_screens() {
-    insta::assert_snapshot!("half_blocks", picture("cusps", SMALL, 3.0, &dots(1)));
-    insta::assert_snapshot!("points", picture("cusps", SMALL, 3.0, &dots(2)));
-    insta::assert_snapshot!("ascii", picture("cusps", SMALL, 3.0, &dots(3)));
+    insta::assert_snapshot!("octants", picture("cusps", SMALL, 3.0, &dots(1)));
+    insta::assert_snapshot!("half_blocks", picture("cusps", SMALL, 3.0, &dots(2)));
+    insta::assert_snapshot!("points", picture("cusps", SMALL, 3.0, &dots(3)));
+    insta::assert_snapshot!("ascii", picture("cusps", SMALL, 3.0, &dots(4)));
     for (name, width, height) in [("two_panes", 60, 16), ("one_pane", 30, 10)] {
         let size = Rect::new(0, 0, width, height);
         insta::assert_snapshot!(name, picture("cusps", size, 3.0, ""));
@@ -169,7 +170,7 @@ fn a_teacher_stops_steps_and_goes_on() {
     stage.wait(1.0);
     assert_eq!(stage.step(), 200);
     stage.press(" ").wait(1.0).shows("paused");
-    stage.shows("space go on");
+    stage.shows("space run");
     assert_eq!(stage.step(), 200);
     stage.press(".").wait(0.1);
     assert_eq!(stage.step(), 201);
@@ -219,9 +220,9 @@ fn a_note_that_may_not_hold_any_more_is_not_shown() {
     let set = ["motion.time_step_s=0.01", "start.tilt_deg=30"];
     let mut stage = Stage::open("method-2", &set, SMALL);
     stage.shows("differs from the preset method-2: dt 0.01 s, not 0.1, start.tilt_deg 30, not");
-    stage.shows_no("almost a circle");
-    stage.commands("open = 'method-2'").shows("almost a circle");
-    Stage::open("method-2", &["motion.steps=50", "view.speed=2"], SMALL).shows("almost a circle");
+    stage.shows_no("lmost a circle");
+    stage.commands("open = 'method-2'").shows("lmost a circle");
+    Stage::open("method-2", &["motion.steps=50", "view.speed=2"], SMALL).shows("lmost a circle");
     let set = ["motion.time_step_s=0.01", "view.look_at=\"mine\""];
     Stage::open("method-2", &set, SMALL).shows("mine");
 }
@@ -276,7 +277,7 @@ fn steps_asked_for_by_the_million_do_not_hold_up_the_keys() {
 fn the_exact_motion_and_the_distance_from_it() {
     let mut stage = Stage::open("method-2", &["motion.time_step_s=0.05"], SMALL);
     stage.wait(0.2).commands("pause = true").shows_no("e exact");
-    stage.commands("exact = true").wait(6.0).shows(" off exact");
+    stage.commands("exact = true").wait(6.0).shows(" m off");
     stage.shows("e exact");
     let health = &stage.lab.player().reading.readouts.health;
     let distance = health.deviation.unwrap().distance_m;
@@ -332,11 +333,12 @@ fn esc_closes_one_thing_at_a_time_and_never_leaves() {
 #[test]
 fn any_pane_fills_the_screen_and_comes_back() {
     let mut stage = Stage::open("method-2", &[], SMALL);
-    for pane in ["axle top over time", "from above", "parameters"] {
+    for pane in ["z (m)", "from above", "values"] {
+        let panes = |stage: &Stage| screen::layout(&stage.lab, true, SMALL).panes.len();
         stage.press("f").shows(pane);
-        assert_eq!(stage.picture().matches('┌').count(), 1);
+        assert_eq!(panes(&stage), 1);
         stage.press("f");
-        assert_eq!(stage.picture().matches('┌').count(), 3);
+        assert_eq!(panes(&stage), 3);
         stage.press("\t");
     }
     stage.press("d").shows(" 3-D ").press("\u{1b}");
@@ -347,18 +349,17 @@ fn any_pane_fills_the_screen_and_comes_back() {
 fn resizing_at_any_moment_shows_what_there_is_room_for() {
     let mut stage = Stage::open("method-2", &[], LARGE);
     stage.wait(1.0).shows(" 3-D ").shows("parameters");
-    for (width, height, shown, hidden) in [
-        (100, 30, "parameters", " 3-D "),
-        (60, 20, "from above", "parameters"),
-    ] {
+    for (width, height, shown, hidden) in
+        [(100, 30, "values", "3-D"), (60, 20, "from above", "values")]
+    {
         stage.size = Rect::new(0, 0, width, height);
         screen::fit(&mut stage.lab, stage.size);
         stage.shows(shown).shows_no(hidden);
     }
-    stage.shows("almost a circle").shows("makes that swing");
+    stage.shows("lmost a circle").shows("swing of z");
     stage.size = Rect::new(0, 0, 79, 23);
     screen::fit(&mut stage.lab, stage.size);
-    stage.shows("almost a circle").shows("80x24 shows more");
+    stage.shows("lmost a circle").shows("80x24 shows more");
 }
 
 #[test]
@@ -374,7 +375,7 @@ fn nothing_changes_while_it_stands_still() {
 fn a_notice_goes_with_time_and_at_the_next_key() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.press(" w").shows("the traces show").wait(5.2);
-    stage.shows_no("the traces show").shows("almost a circle");
+    stage.shows_no("the traces show").shows("lmost a circle");
     stage.press("w").shows("the traces show").press("f");
     stage.shows_no("the traces show").press("f↑");
     stage.shows("the upper strip shows");
@@ -412,7 +413,7 @@ fn at_speed_numbers_and_pictures_are_of_one_moment() {
 #[test]
 fn what_would_mend_a_run_is_found_on_the_side() {
     let mut stage = Stage::open("method-2", &[], SMALL);
-    stage.shows("0 m off exact");
+    stage.shows("checking ...");
     stage.lab.take_advice();
     stage.wait(5.0).commands("pause = true");
     for _ in 0..600 {
@@ -421,8 +422,8 @@ fn what_would_mend_a_run_is_found_on_the_side() {
             break;
         }
     }
-    stage.shows("m off exact").shows(" mends it");
-    stage.commands("open = 'wobble-push'").shows_no(" mends it");
+    stage.shows(" m off").shows("a dt 0.002 s");
+    stage.commands("open = 'wobble-push'").shows_no("a dt ");
 }
 
 #[test]
@@ -467,7 +468,7 @@ fn the_header_keeps_the_clock_before_the_title() {
         stage.wait(1.0).commands("pause = true");
         let header = stage.picture().lines().next().unwrap().to_owned();
         has_all(&header, ["20.0 s", "step 200", "paused"]);
-        let has_room = header.contains("report · dt 0.1 s");
+        let has_room = header.contains("report   dt 0.1 s");
         assert!(width < 79 || has_room, "{header}");
     }
 }
@@ -480,8 +481,7 @@ fn the_help_says_everything_at_every_size() {
         let mut seen = String::new();
         for _ in 0..250 {
             let picture = stage.picture();
-            let lines = picture.lines().filter(|line| line.contains('│'));
-            seen.extend(lines.map(|line| line.trim_matches('│').trim().to_owned() + " "));
+            seen.extend(picture.lines().map(|line| line.trim().to_owned() + " "));
             stage.press("↓");
         }
         let seen = seen.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -513,7 +513,7 @@ fn a_sign_on_the_path_in_space_shows_which_way_the_top_goes() {
 fn half_blocks_need_no_rare_glyphs() {
     for keys in ["t", "d", "?", "oloops"] {
         let mut stage = Stage::open("method-2", &[], LARGE);
-        stage.wait(2.0).press(&dots(1)).press(keys);
+        stage.wait(2.0).press(&dots(2)).press(keys);
         let picture = stage.picture();
         assert_eq!(
             picture

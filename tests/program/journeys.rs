@@ -24,7 +24,7 @@ const AS_LEFT: &str = "as it was left";
 fn paused_at(ground: &Ground, step: u64) -> Terminal {
     let step = step.to_string();
     let lab = ground.open(&format!("--paused --at {step}"));
-    lab.wait_for("q quit");
+    lab.wait_for("L lessons");
     lab
 }
 
@@ -130,7 +130,7 @@ fn a_value_is_nudged_and_typed_refused_and_taken_back() {
         set(&mut lab, value);
         lab.wait_for(why);
         lab.wait_for(&format!("dt, s {value}_")); // it stays, to be corrected
-        lab.ask(ESC, "q quit");
+        lab.ask(ESC, "L lessons");
         lab.wait_for("►dt 0.05 s");
     }
     set(&mut lab, "-1");
@@ -175,7 +175,7 @@ fn an_export_is_the_run_that_was_saved() {
         lab.ask(every, words);
     }
     lab.press(ESC);
-    lab.wait_for("q quit");
+    lab.wait_for("L lessons");
     assert_eq!(ground.files(), ["state"], "what is left of a cancelled one");
     let csv = exported(&mut lab, "run.csv");
     saved(&mut lab, "run.toml");
@@ -186,7 +186,7 @@ fn an_export_is_the_run_that_was_saved() {
     fs::write(ground.file("mine.csv"), "mine").unwrap();
     lab.ask("x", "file method-2.csv_");
     lab.press(ESC);
-    lab.wait_for("q quit");
+    lab.wait_for("L lessons");
     lab.ask("x", "export steps 0 to 285");
     answer(&mut lab, "mine.csv");
     lab.wait_for("exists: Enter again replaces it");
@@ -401,7 +401,7 @@ fn a_screen_that_is_small_for_a_moment_is_drawn_again() {
     for small in [(1, 1), (79, 1), (40, 10), (1, 24)].repeat(3) {
         lab.resize(small);
         lab.resize((80, 24));
-        for words in ["Method 2", "parameters", "q quit"] {
+        for words in ["Method 2", "parameters", "L lessons"] {
             lab.wait_for(words);
         }
     }
@@ -466,7 +466,7 @@ fn after_a_panic_there_is_all_that_was_done() {
     let panic = ("GYROLAB_PANIC_AFTER_MS", "3000");
     let variables = [("TERM", "xterm"), ("LANG", "C.UTF-8"), panic];
     let mut lab = ground.open_with("--paused --at 30", &variables);
-    lab.wait_for("q quit");
+    lab.wait_for("L lessons");
     push(&mut lab);
     steps(&mut lab, "5.", 35);
     assert_eq!(lab.wait_for_end().exit_code(), 101);
@@ -491,7 +491,7 @@ fn a_shell_stops_it_and_brings_it_back() {
     lab.wait_for("shell>");
     let program = env!("CARGO_BIN_EXE_gyrolab");
     lab.press(&format!("{program} --paused --at 30\r"));
-    lab.wait_for("q quit");
+    lab.wait_for("L lessons");
     push(&mut lab);
     lab.press(CTRL_Z);
     lab.has_given_the_terminal_back();
@@ -500,7 +500,7 @@ fn a_shell_stops_it_and_brings_it_back() {
     lab.press("echo the shell $((6 * 7))\r");
     lab.wait_for("the shell 42");
     lab.press("fg\r");
-    lab.wait_for("q quit");
+    lab.wait_for("L lessons");
     lab.wait_for_step(30);
     steps(&mut lab, "5.", 35);
     lab.press("q");

@@ -237,7 +237,7 @@ const NO_COLOR: [(&str, &str); 3] = [("TERM", "xterm"), ("LANG", "C.UTF-8"), ("N
 /// The lab where NO_COLOR is set.
 fn without_colours(ground: &Ground) -> Terminal {
     let lab = ground.open_with("method-2 --paused", &NO_COLOR);
-    lab.wait_for("q quit");
+    lab.wait_for("L lessons");
     lab
 }
 
@@ -250,17 +250,17 @@ fn colours_that_were_turned_off_and_on_again_are_no_choice() {
     };
     let is_coloured = |lab: &Terminal| lab.sent_text().contains("\u{1b}[38;");
     let mut lab = ground.open("method-2 --paused");
-    lab.wait_for("q quit");
+    lab.wait_for("L lessons");
     lab.ask("c\x1b[B\x1b[B\x1b[B\x1b[B\r", "colours off");
     lab.ask("\r", "colours on");
-    lab.ask("\x1b", "q quit");
+    lab.ask("\x1b", "L lessons");
     lab.quit();
     has_kept("auto");
     let mut lab = without_colours(&ground);
     assert!(!is_coloured(&lab));
     // What is remembered does not win over NO_COLOR either; the user's own file does.
     lab.ask("c\x1b[B\x1b[B\x1b[B\x1b[B\r", "colours on");
-    lab.ask("\x1b", "q quit");
+    lab.ask("\x1b", "L lessons");
     lab.quit();
     has_kept("always");
     let mut lab = without_colours(&ground);

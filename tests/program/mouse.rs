@@ -22,7 +22,7 @@ fn cell(lab: &Terminal, words: &str) -> (u16, u16) {
 #[test]
 fn what_is_pressed_is_done() {
     let mut lab = Terminal::open("--paused --at 900");
-    lab.wait_for("q quit");
+    lab.wait_for("L lessons");
     lab.wait_until("the mouse", |lab| lab.sent_text().contains(MOUSE_ON));
     // The traces: the cursor.
     lab.ask(&press(6, 18), "┌ step ");
@@ -48,7 +48,7 @@ fn what_is_pressed_is_done() {
     // The wheel over the traces shows less time.
     lab.press(" ");
     lab.ask("\u{1b}[<64;6;6M", "the traces show 5 s");
-    let (x, y) = cell(&lab, "q quit");
+    let (x, y) = cell(&lab, "L lessons");
     lab.press(&press(x, y));
     assert_eq!(lab.wait_for_end().exit_code(), 0);
     lab.has_given_the_terminal_back();
@@ -57,7 +57,7 @@ fn what_is_pressed_is_done() {
 #[test]
 fn hostile_places_do_nothing() {
     let mut lab = Terminal::open("--paused --at 10");
-    lab.wait_for("q quit");
+    lab.wait_for("L lessons");
     let before = lab.screen();
     for place in [
         "0;0",
@@ -89,14 +89,14 @@ fn hostile_places_do_nothing() {
 #[test]
 fn the_mouse_can_stay_with_the_terminal() {
     let mut lab = Terminal::open("--paused --no-mouse");
-    lab.wait_for("q quit");
+    lab.wait_for("L lessons");
     lab.ask(".", "step 1");
     assert!(!lab.sent_text().contains(MOUSE_ON));
     lab.ask("c\x1b[A\r", "mouse acts on the lab");
     lab.wait_until("the mouse", |lab| lab.sent_text().contains(MOUSE_ON));
     lab.ask("\r", "mouse selects the terminal's text");
     lab.wait_until("the mouse back", |lab| lab.sent_text().contains(MOUSE_OFF));
-    lab.ask("\x1b", "q quit");
+    lab.ask("\x1b", "L lessons");
     lab.quit();
     lab.has_given_the_terminal_back();
 }
@@ -104,13 +104,13 @@ fn the_mouse_can_stay_with_the_terminal() {
 #[test]
 fn without_a_name_the_lab_goes_on_at_the_end() {
     let mut lab = Terminal::open("--paused --at 2290");
-    lab.wait_for("q quit");
+    lab.wait_for("L lessons");
     lab.press(" ");
     lab.wait_until("a step beyond the end", |lab| lab.step() > Some(2400));
     lab.wait_for("t draws the exact motion");
     lab.quit();
     let mut lab = Terminal::open("method-2 --paused --at 2290");
-    lab.wait_for("q quit");
+    lab.wait_for("L lessons");
     lab.ask(" ", "end of the run: space goes on");
     lab.wait_for_step(2300);
     lab.quit();

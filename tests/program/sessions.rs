@@ -16,7 +16,7 @@ const AS_LEFT: &str = "as it was left";
 fn seventy_six_acts_each_earlier_than_the_one_before_are_come_back_to() {
     let ground = Ground::new();
     let mut lab = ground.open("method-2 --paused");
-    lab.wait_for("q quit");
+    lab.wait_for("L lessons");
     lab.press("157g");
     lab.wait_for_step(157);
     for step in (81..157).rev() {
@@ -56,7 +56,7 @@ fn on_a_full_disk_the_trouble_stays_and_nothing_is_promised() {
 fn on_a_full_disk_the_end_names_the_step_that_the_disk_has() {
     let ground = Ground::new();
     let mut lab = ground.open("--paused --at 30");
-    lab.wait_for("q quit");
+    lab.wait_for("L lessons");
     lab.quit();
     let mut lab = ground.open_shell();
     lab.wait_for("shell>");
@@ -111,7 +111,7 @@ fn sessions_are_listed_and_one_is_taken_by_its_name() {
     let ground = Ground::new();
     for (preset, step) in [("cusps", "20"), ("method-2", "30")] {
         let mut lab = ground.open(&format!("{preset} --paused --at {step}"));
-        lab.wait_for("q quit");
+        lab.wait_for("L lessons");
         lab.quit();
     }
     let mut first = ground.open("--resume 1");
@@ -148,7 +148,7 @@ fn confined(ground: &Ground) -> Terminal {
     }
     let folder = inside.to_str().unwrap();
     let lab = ground.open(&format!("--folder {folder} --paused --at 30"));
-    lab.wait_for("q quit");
+    lab.wait_for("L lessons");
     lab
 }
 

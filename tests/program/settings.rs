@@ -21,15 +21,15 @@ fn configure(ground: &Ground, text: &str) {
 
 fn open(ground: &Ground, args: &[&str]) -> Terminal {
     let lab = ground.open(&[&PLAIN, args].concat());
-    lab.wait_for("q quit");
+    lab.wait_for("L lessons");
     lab
 }
 
 fn is_ascii(lab: &Terminal) -> bool {
-    lab.screen().contains("+-") && !lab.screen().contains('┌')
+    lab.screen().contains("--") && !lab.screen().contains('─')
 }
 
-fn has_colours(lab: &Terminal) -> bool {
+fn has_colors(lab: &Terminal) -> bool {
     lab.sent_text().contains(BLUE)
 }
 
@@ -37,16 +37,16 @@ fn has_colours(lab: &Terminal) -> bool {
 fn what_was_chosen_is_there_at_the_next_start() {
     let ground = Ground::new();
     let mut lab = open(&ground, &[]);
-    assert!(!is_ascii(&lab) && has_colours(&lab));
-    lab.ask("c\x1b[B\x1b[B\x1b[B\x1b[D", "dots ascii");
-    lab.ask("\x1b[B\x1b[C", "colours off");
+    assert!(!is_ascii(&lab) && has_colors(&lab));
+    lab.ask("c\x1b[B\x1b[B\x1b[B\x1b[D", "markers ascii");
+    lab.ask("\x1b[B\x1b[D\x1b[D", "colors off");
     lab.ask("\x1b[B\x1b[B\r", "frames a second 30 at most");
-    lab.ask("\x1b", "q quit");
+    lab.ask("\x1b", "L lessons");
     lab.quit();
     let text = fs::read_to_string(remembered(&ground)).unwrap();
     has_all(
         &text,
-        ["marker = \"ascii\"", "colour = \"never\"", "fps = 30"],
+        ["marker = \"ascii\"", "color = \"never\"", "fps = 30"],
     );
     assert_eq!(ground.mode("state/gyrolab/settings.toml"), 0o600);
     for args in [&[][..], &["--resume"]] {
@@ -54,17 +54,17 @@ fn what_was_chosen_is_there_at_the_next_start() {
             [] => open(&ground, &[]),
             args => ground.open(args),
         };
-        lab.wait_for("q quit");
-        assert!(is_ascii(&lab) && !has_colours(&lab), "{}", lab.screen());
+        lab.wait_for("L lessons");
+        assert!(is_ascii(&lab) && !has_colors(&lab), "{}", lab.screen());
         lab.quit();
     }
     // An option wins.
     let mut lab = open(&ground, &["--markers", "braille", "--color", "always"]);
-    assert!(!is_ascii(&lab) && has_colours(&lab));
+    assert!(!is_ascii(&lab) && has_colors(&lab));
     lab.quit();
     // A picture does not depend on what was chosen.
     let shown = ground.run("show method-2");
-    assert!(stdout(&shown).contains('┌'));
+    assert!(stdout(&shown).contains('─'));
 }
 
 #[test]
@@ -73,9 +73,9 @@ fn the_users_own_file_wins_and_is_never_written() {
     let text = "marker = 'ascii'\ncolour = 'never' # mine\nfps = 5\n";
     configure(&ground, text);
     let mut lab = open(&ground, &[]);
-    assert!(is_ascii(&lab) && !has_colours(&lab));
-    lab.ask("c\x1b[B\x1b[B\x1b[B\r", "dots braille");
-    lab.ask("\x1b", "q quit");
+    assert!(is_ascii(&lab) && !has_colors(&lab));
+    lab.ask("c\x1b[B\x1b[B\x1b[B\r", "markers braille");
+    lab.ask("\x1b", "L lessons");
     lab.quit();
     assert!(
         fs::read_to_string(remembered(&ground))
@@ -88,7 +88,7 @@ fn the_users_own_file_wins_and_is_never_written() {
     let file = ground.config().join("gyrolab/config.toml");
     assert_eq!(fs::read_to_string(file).unwrap(), text);
     let shown = ground.run("show method-2");
-    assert!(stdout(&shown).contains('┌'));
+    assert!(stdout(&shown).contains('─'));
 }
 
 #[test]
@@ -101,7 +101,7 @@ fn broken_files_are_told_and_keep_nobody_out() {
     let mut lab = open(&ground, &[]);
     lab.wait_for("config.toml:2: fbs: unknown key: did you mean fps?; config.toml:4: mouse");
     lab.wait_for("not used; mend it");
-    assert!(!has_colours(&lab));
+    assert!(!has_colors(&lab));
     assert!(is_ascii(&lab));
     lab.quit();
     assert!(lab.sent_text().contains("gyrolab/config.toml:2: fbs"));
@@ -114,8 +114,8 @@ fn broken_files_are_told_and_keep_nobody_out() {
         let mut lab = open(&ground, &[]);
         lab.wait_for("settings.toml:1: ");
         lab.wait_for("not used");
-        lab.ask("c\x1b[B\x1b[B\x1b[B\r", "dots half-block");
-        lab.ask("\x1b", "q quit");
+        lab.ask("c\x1b[B\x1b[B\x1b[B\r\r", "markers half-block");
+        lab.ask("\x1b", "L lessons");
         lab.quit();
         let mut lab = open(&ground, &[]);
         assert!(!lab.words().contains("not used"), "{}", lab.screen());
@@ -131,8 +131,8 @@ fn a_confined_lab_remembers_in_its_folder_and_reads_no_other() {
     fs::create_dir(ground.file("inside")).unwrap();
     let mut lab = open(&ground, &["--folder", "inside"]);
     assert!(!is_ascii(&lab));
-    lab.ask("c\x1b[B\x1b[B\x1b[B\r", "dots half-block");
-    lab.ask("\x1b", "q quit");
+    lab.ask("c\x1b[B\x1b[B\x1b[B\r\r", "markers half-block");
+    lab.ask("\x1b", "L lessons");
     lab.quit();
     let kept = ground.read("inside/.gyrolab/settings.toml");
     assert!(
@@ -145,11 +145,11 @@ fn a_confined_lab_remembers_in_its_folder_and_reads_no_other() {
 fn dots_that_this_terminal_cannot_show_are_not_taken_from_another() {
     let ground = Ground::new();
     let mut lab = open(&ground, &["--markers", "ascii"]);
-    lab.ask("c\x1b[B\x1b[B\x1b[B\r", "dots braille");
-    lab.ask("\x1b", "q quit");
+    lab.ask("c\x1b[B\x1b[B\x1b[B\r", "markers braille");
+    lab.ask("\x1b", "L lessons");
     lab.quit();
     let mut lab = ground.open_with(&PLAIN, &[("TERM", "xterm"), ("LANG", "C")]);
-    lab.wait_for("q quit");
+    lab.wait_for("L lessons");
     assert!(is_ascii(&lab));
     lab.quit();
 }

@@ -9,7 +9,7 @@ use std::time::Duration;
 /// The lab in a new working directory, once its keys are on the screen.
 fn opened(args: impl Args) -> Terminal {
     let terminal = Terminal::open(args);
-    terminal.wait_for("q quit");
+    terminal.wait_for("L lessons");
     terminal
 }
 
@@ -76,9 +76,9 @@ fn a_window_of_any_size_is_drawn_within_little_memory() {
 fn a_panic_in_the_background_waits_for_the_end_to_be_told() {
     let variables = [("TERM", "xterm"), ("GYROLAB_PANIC_ASIDE_AFTER_MS", "300")];
     let mut terminal = Terminal::open_with(&[], &variables);
-    terminal.wait_for("q quit");
+    terminal.wait_for("L lessons");
     thread::sleep(Duration::from_secs(1));
-    terminal.wait_for("q quit");
+    terminal.wait_for("L lessons");
     assert!(!terminal.sent_text().contains(LEAVES_ALTERNATE_SCREEN));
     assert!(!terminal.sent_text().contains("asked for"));
     terminal.quit();
@@ -104,13 +104,13 @@ fn a_line_lost_without_a_signal_ends_it_and_keeps_the_session() {
     for args in [&["--paused"][..], &[]] {
         let ground = Ground::new();
         let mut terminal = ground.open_uncontrolled(args);
-        terminal.wait_for("q quit");
+        terminal.wait_for("L lessons");
         terminal.press("120g");
         terminal.wait_until("the step", |terminal| terminal.step() >= Some(120));
         terminal.lose_line();
         assert_eq!(terminal.wait_for_end().exit_code(), 1);
         let mut again = ground.open("--resume");
-        again.wait_for("q quit");
+        again.wait_for("L lessons");
         again.wait_until("the step where it was left", |again| {
             again.step() >= Some(120)
         });
@@ -181,7 +181,7 @@ fn a_paste_into_a_field_is_cut_and_says_so() {
 fn rows_that_are_pasted_are_judged_until_they_are_taken_back() {
     let ground = Ground::new();
     let mut terminal = ground.open("method-1 --paused");
-    terminal.wait_for("q quit");
+    terminal.wait_for("L lessons");
     let rows = "step,x_m,y_m,z_m\r0,0,0,1.131\r1,0,0,1.131\r";
     terminal.press(&format!("\u{1b}[200~{rows}"));
     thread::sleep(Duration::from_millis(1500));
@@ -191,7 +191,7 @@ fn rows_that_are_pasted_are_judged_until_they_are_taken_back() {
     terminal.quit();
     // They are there again, and one undo takes them back.
     let mut again = ground.open("--resume");
-    again.wait_for("q quit");
+    again.wait_for("L lessons");
     again.ask("M", "step 1");
     again.ask("u", "undone");
     again.ask("M", "no rows of a program");
@@ -219,7 +219,7 @@ fn without_threads_the_lab_opens_acts_and_ends() {
     ];
     for (signal, code) in [("", 0), ("TERM", 143), ("INT", 130)] {
         let mut terminal = Terminal::open_with(&["--paused"], &variables);
-        terminal.wait_for("q quit");
+        terminal.wait_for("L lessons");
         terminal.ask("30.", "step 30");
         terminal.resize((100, 30));
         terminal.ask("x\r", "cannot write");
@@ -238,7 +238,7 @@ fn without_threads_the_lab_opens_acts_and_ends() {
 fn nothing_is_saved_where_it_could_hang_the_lab_or_write_over_the_picture() {
     let mut terminal = Terminal::open("--paused --at 10");
     terminal.ground().make_fifo("fifo");
-    terminal.wait_for("q quit");
+    terminal.wait_for("L lessons");
     for (key, title) in [
         ("s", "save the run file"),
         ("S", "save the present state"),
@@ -276,7 +276,7 @@ fn ctrl_l_draws_all_of_it_again() {
     thread::sleep(Duration::from_millis(300));
     terminal.forget();
     terminal.press("\u{c}");
-    terminal.wait_for("q quit");
+    terminal.wait_for("L lessons");
     terminal.wait_for("Method 2");
 }
 
@@ -300,7 +300,7 @@ fn ctrl_z_is_refused_where_the_process_group_is_orphaned() {
     let ground = Ground::new();
     // A shell without job control that leads the session, as sshd starts it, is in the group of the lab.
     let mut terminal = ground.open_command("--paused; true");
-    terminal.wait_for("q quit");
+    terminal.wait_for("L lessons");
     terminal.ask(CTRL_Z, NO_SHELL);
     terminal.ask(".", "step 1 ");
     terminal.quit();
@@ -312,13 +312,13 @@ fn a_script_in_a_shell_with_job_control_is_suspended_with_its_lab() {
     shell.wait_for("shell>");
     let program = env!("CARGO_BIN_EXE_gyrolab");
     shell.press(&format!("sh -c '{program} --paused; true'\r"));
-    shell.wait_for("q quit");
+    shell.wait_for("L lessons");
     shell.press(CTRL_Z);
     shell.has_given_the_terminal_back();
     shell.ask("\r", "shell>");
     shell.forget();
     shell.press("fg\r");
-    shell.wait_for("q quit");
+    shell.wait_for("L lessons");
     shell.press("q");
     shell.has_given_the_terminal_back();
 }
@@ -331,7 +331,7 @@ fn a_sigcont_soon_after_a_sigtstp_leaves_the_lab_running() {
     shell.wait_for("shell>");
     let program = env!("CARGO_BIN_EXE_gyrolab");
     shell.press(&format!("{program} --paused\r"));
-    shell.wait_for("q quit");
+    shell.wait_for("L lessons");
     let found = shell
         .ground()
         .shell(&format!("pgrep -P {}", shell.child.process_id().unwrap()));
@@ -342,17 +342,17 @@ fn a_sigcont_soon_after_a_sigtstp_leaves_the_lab_running() {
         assert!(shell.ground().shell(&both).status.success());
         shell.wait_until("a picture or a prompt", |shell| {
             let words = shell.words();
-            words.contains("q quit") || words.contains("shell>")
+            words.contains("L lessons") || words.contains("shell>")
         });
         let is_running = !shell.sent_text().contains("shell>");
         if !is_running {
             shell.press("fg\r");
-            shell.wait_for("q quit");
+            shell.wait_for("L lessons");
         }
         is_running
     });
     assert!(is_left_running);
-    shell.wait_for("q quit");
+    shell.wait_for("L lessons");
     shell.ask(".", "step 1 ");
     // The terminal may have been given back before the last `forget`, so that is not counted here.
     shell.forget();
@@ -364,7 +364,7 @@ fn a_sigcont_soon_after_a_sigtstp_leaves_the_lab_running() {
 fn no_color_means_no_colour_and_the_selection_still_shows() {
     let variables = [("TERM", "xterm"), ("LANG", "C.UTF-8"), ("NO_COLOR", "1")];
     let mut terminal = Terminal::open_with(&["--paused"], &variables);
-    terminal.wait_for("q quit");
+    terminal.wait_for("L lessons");
     terminal.press("o");
     terminal.wait_for("> method-2");
     let sent = terminal.sent_text();
@@ -380,7 +380,7 @@ fn a_locale_without_utf8_gets_ascii() {
         [("TERM", "linux"), ("LANG", "POSIX")],
     ] {
         let terminal = Terminal::open_with(&["--paused", "--at", "100"], &variables);
-        terminal.wait_for("q quit");
+        terminal.wait_for("L lessons");
         assert!(terminal.sent().is_ascii());
     }
 }
@@ -440,7 +440,7 @@ fn what_is_wrong_on_the_command_line_is_refused_in_words() {
 #[test]
 fn a_time_step_is_gone_through_phase_by_phase() {
     let mut lab = Terminal::open("--paused");
-    lab.wait_for("q quit");
+    lab.wait_for("L lessons");
     lab.ask("v", "No time step has been taken yet");
     lab.ask(".", "step 1: 1 of 7, inertia");
     lab.ask(".", "step 1: 2 of 7, angular velocity");
