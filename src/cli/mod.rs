@@ -261,7 +261,7 @@ fn misspelt_command() -> Option<String> {
 }
 
 /// Prints what clap has to say instead of going on: help, or why it takes no such arguments. clap repeats the arguments
-/// as they are: where one holds a character that could steer a terminal, the text is printed escaped and without colours.
+/// as they are: where one holds a character that could steer a terminal, the text is printed escaped and without colors.
 fn misused(error: &clap::Error) -> ExitCode {
     let is_hostile =
         std::env::args_os().any(|argument| argument.to_string_lossy().contains(is_steering));

@@ -50,7 +50,7 @@ const fn row(
 /// Every setting. The first three belong to the run and its lesson; the others are remembered for the next time.
 #[rustfmt::skip]
 pub(super) const SETTINGS: [LabSetting; 8] = [
-    row("line about the numbers", |view| shown(view, HideablePart::Health), |view, _| hide_or_show(view, HideablePart::Health)),
+    row("verdict", |view| shown(view, HideablePart::Health), |view, _| hide_or_show(view, HideablePart::Health)),
     row("what theory predicts", |view| shown(view, HideablePart::Predicted), |view, _| hide_or_show(view, HideablePart::Predicted)),
     row("screen", |view| if view.look.bare { "bare: two panes, title and time" } else { "everything" }.to_owned(), |view, _| {
         Changed::By(Command::look("bare", !view.look.bare))

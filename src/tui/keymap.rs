@@ -240,7 +240,7 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Lab], &[Char('v')], Action::Toggle(Pane::Step), "", "one time step, phase by phase, with its numbers; v takes it away again"),
     does(&[Lab], &[Char('y')], |lab, _| Ok(lab.view().why_sideways()), "", "why the axle goes sideways, not down, in the numbers of one time step"),
     row(&[Lab], &[Char('M')], Action::ToDifference, "", "to the first step at which the rows of your own program differ, with its numbers (--measured mine.csv)").found_by("own code verify slip mistake"),
-    row(&[Lab], &[Char('c')], Action::Ask(Ask::Settings), "", "settings: colours, dots, frames a second, the mouse, a bare screen, what is hidden").found_by("colors theme light dark background markers braille ascii fps health"),
+    row(&[Lab], &[Char('c')], Action::Ask(Ask::Settings), "", "settings: markers, colors, frames a second, the mouse, a bare screen, what is hidden").found_by("colors theme light dark background markers braille ascii fps health"),
     row(&[Lab], &[Char('/')], Action::FindValue, "", "find a value of the scenario by a part of its name").to(CHANGE_GROUP),
     row(&[Lab], &[Up], Action::Move(Direction::Up, 1), "", "values: the value above; 3-D: the camera up").to(CHANGE_GROUP),
     row(&[Lab], &[Down], Action::Move(Direction::Down, 1), "", "values: the value below; 3-D: the camera down").to(CHANGE_GROUP),

@@ -6,6 +6,7 @@ use crate::support::words::has;
 use gyrolab::lab::Lab;
 use gyrolab::lab::playback::ghost::Ghost;
 use gyrolab::tui::keymap::Key;
+use gyrolab::tui::screen;
 
 fn time_s(desk: &Desk) -> f64 {
     desk.lab.player().run().now().time_s
@@ -198,11 +199,11 @@ fn a_pinned_run_that_is_edited_is_kept_as_it_was() {
     assert!(!desk.lab.comparison().is_pinned());
 }
 
-/// The line about the numbers.
-fn health(stage: &Stage) -> String {
+/// The row of the verdict.
+fn verdict(stage: &Stage) -> String {
+    let row = screen::layout(&stage.lab, true, stage.size).verdict.y;
     let picture = stage.picture();
-    let line = picture.lines().rev().find(|line| line.contains("energy"));
-    line.unwrap_or_default().to_owned()
+    picture.lines().nth(row.into()).unwrap().to_owned()
 }
 
 /// Waits until the search for advice, which goes on in the background, has found some.
@@ -223,7 +224,7 @@ fn advice_is_taken_by_one_key() {
     stage.commands("pause = true\npush = { point = 'top', force_N = [0, 0, -100], for_s = 2 }");
     stage.commands("go_to = '40 s'");
     wait_for_advice(&mut stage);
-    let line = health(&stage);
+    let line = verdict(&stage);
     assert!(line.contains("rerun with"), "{line}");
     stage.press("a");
     stage.shows("from the start; the run before is dotted");
@@ -231,7 +232,7 @@ fn advice_is_taken_by_one_key() {
     assert!(stage.lab.player().motion().time_step_s < 0.1);
     assert_eq!(stage.lab.player().run().scenario().file.push.len(), 1);
     assert_eq!(ghost_s(&stage.lab), Some(40.0));
-    let mended = health(&stage);
+    let mended = verdict(&stage);
     assert!(!mended.contains("rerun with"), "{mended}");
     stage.press("a").shows("nothing to fix");
     stage.press("u").wait(0.1);
@@ -324,7 +325,7 @@ fn the_line_about_the_numbers_is_right_as_soon_as_an_edit_is_made() {
             wait_for_advice(&mut stage);
         }
         stage.commands(edit);
-        let line = health(&stage);
+        let line = verdict(&stage);
         assert!(line.contains(&turns), "{edit}: {line}");
         assert!(!line.contains("a takes it"), "{edit}: {line}");
     }

@@ -35,7 +35,7 @@ fn the_help_does_the_entry_that_is_found() {
 }
 
 #[test]
-fn the_help_finds_how_curves_are_drawn_and_the_colours() {
+fn the_help_finds_how_curves_are_drawn_and_the_colors() {
     for word in ["dashed", "dotted", "light", "dark"] {
         let mut stage = open(SMALL);
         stage.press(&format!("?{word}"));

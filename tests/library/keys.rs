@@ -42,7 +42,7 @@ fn one_dialog_holds_the_settings_with_their_values() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.commands("pause = true").press("c");
     for words in [
-        "line about the numbers",
+        "verdict",
         "what theory predicts",
         "screen",
         "braille",
@@ -52,8 +52,8 @@ fn one_dialog_holds_the_settings_with_their_values() {
     ] {
         stage.shows(words);
     }
-    stage.press("↓↓↓→").shows("half-block").press("x←←");
-    stage.shows("ascii").shows_no("half-block");
+    stage.press("↓↓↓→").shows("octant  𜴐").press("←←");
+    stage.shows("ascii").shows_no("octant");
     stage.press("↓↓↓").press("\n").shows("30 at most");
     stage.press("\n").shows("2 at most").press("←");
     stage.shows("30 at most");

@@ -235,41 +235,41 @@ fn the_manual_has_the_keys_of_the_lab_and_the_values_of_options() {
 const NO_COLOR: [(&str, &str); 3] = [("TERM", "xterm"), ("LANG", "C.UTF-8"), ("NO_COLOR", "1")];
 
 /// The lab where NO_COLOR is set.
-fn without_colours(ground: &Ground) -> Terminal {
+fn without_colors(ground: &Ground) -> Terminal {
     let lab = ground.open_with("method-2 --paused", &NO_COLOR);
     lab.wait_for("L lessons");
     lab
 }
 
 #[test]
-fn colours_that_were_turned_off_and_on_again_are_no_choice() {
+fn colors_that_were_turned_off_and_on_again_are_no_choice() {
     let ground = Ground::new();
     let has_kept = |choice: &str| {
         let settings = ground.read("state/gyrolab/settings.toml");
-        has(settings, format!("colour = \"{choice}\""));
+        has(settings, format!("color = \"{choice}\""));
     };
-    let is_coloured = |lab: &Terminal| lab.sent_text().contains("\u{1b}[38;");
+    let is_colored = |lab: &Terminal| lab.sent_text().contains("\u{1b}[38;");
     let mut lab = ground.open("method-2 --paused");
     lab.wait_for("L lessons");
-    lab.ask("c\x1b[B\x1b[B\x1b[B\x1b[B\r", "colours off");
-    lab.ask("\r", "colours on");
+    lab.ask("c\x1b[B\x1b[B\x1b[B\x1b[B\x1b[D", "colors off");
+    lab.ask("\x1b[C", "colors 16");
     lab.ask("\x1b", "L lessons");
     lab.quit();
     has_kept("auto");
-    let mut lab = without_colours(&ground);
-    assert!(!is_coloured(&lab));
+    let mut lab = without_colors(&ground);
+    assert!(!is_colored(&lab));
     // What is remembered does not win over NO_COLOR either; the user's own file does.
-    lab.ask("c\x1b[B\x1b[B\x1b[B\x1b[B\r", "colours on");
+    lab.ask("c\x1b[B\x1b[B\x1b[B\x1b[B\r", "colors 16");
     lab.ask("\x1b", "L lessons");
     lab.quit();
-    has_kept("always");
-    let mut lab = without_colours(&ground);
-    assert!(!is_coloured(&lab));
+    has_kept("16");
+    let mut lab = without_colors(&ground);
+    assert!(!is_colored(&lab));
     lab.quit();
     std::fs::create_dir_all(ground.config().join("gyrolab")).unwrap();
     ground.write("config/gyrolab/config.toml", "colour = 'always'\n");
-    let mut lab = without_colours(&ground);
-    assert!(is_coloured(&lab));
+    let mut lab = without_colors(&ground);
+    assert!(is_colored(&lab));
     lab.quit();
 }
 

@@ -57,7 +57,7 @@ impl Ground {
     }
 
     fn spawn(&self, mut command: CommandBuilder, variables: &[(&str, &str)]) -> Terminal {
-        for name in ["LC_ALL", "LC_CTYPE", "NO_COLOR", "COLORFGBG"] {
+        for name in ["LC_ALL", "LC_CTYPE", "NO_COLOR", "COLORFGBG", "COLORTERM"] {
             command.env_remove(name);
         }
         command.env("XDG_STATE_HOME", self.state());

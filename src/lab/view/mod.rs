@@ -1,8 +1,8 @@
 //! How a run is shown: which panes, which of them has the focus, how much time the traces show, and which dots and
-//! colours. `tui` draws accordingly. No number of a run depends on it.
+//! colors. `tui` draws accordingly. No number of a run depends on it.
 //!
 //! [`pane`] names the parts of the screen, `focus` moves between them; `commands` carries out the commands of the view;
-//! [`theme`] has the choices of dots and colours, [`step`] the pages of the step pane.
+//! [`theme`] has the choices of markers and colors, [`step`] the pages of the step pane.
 
 mod commands;
 mod focus;
