@@ -45,6 +45,7 @@ impl Browser {
         self.passed.clear();
         self.first = folder.to_owned();
         self.open = name.to_owned();
+        self.filter.clear();
         self.list(folder, may_be_read);
         self.refilter();
     }

@@ -54,8 +54,8 @@ enum Held {
 #[derive(Debug, Default)]
 pub struct Pointer {
     held: Option<Held>,
-    /// Where and when the button was pressed last.
-    pressed: Option<(Position, Duration)>,
+    /// Where and when a row of a list was selected by the last press.
+    selected: Option<(Position, Duration)>,
 }
 
 impl Pointer {
@@ -84,7 +84,7 @@ impl Pointer {
         }
         let is_double = self.is_double(at, lab.now());
         if lab.popups().mode != Mode::Lab {
-            return press_in_list(layout, at, is_double, lab);
+            return self.press_in_list(layout, at, is_double, lab);
         }
         if layout.overview.contains(at) {
             self.held = Some(Held::Place);
@@ -95,7 +95,7 @@ impl Pointer {
         let (pane, place) = pane_at(layout, at)?;
         lab.turn_to(pane);
         if lab.mode() == Mode::Lessons {
-            return press_in_lessons(place, at, is_double, lab);
+            return self.press_in_lessons(place, at, is_double, lab);
         } else if pane == Pane::Traces {
             self.held = Some(Held::Cursor);
             read_off(place, at, lab);
@@ -105,16 +105,56 @@ impl Pointer {
         None
     }
 
-    /// Whether a press at `at` and `now` follows one at the same cell as its second half. A third is a first again.
+    /// Whether a press at `at` and `now` is the second of a double click, of which the first has selected a row.
     fn is_double(&mut self, at: Position, now: Duration) -> bool {
-        let first = self.pressed.replace((at, now));
-        let is_double = first.is_some_and(|(place, before)| {
-            place == at && now.saturating_sub(before) < DOUBLE_CLICK
-        });
-        if is_double {
-            self.pressed = None;
+        let first = self.selected.take();
+        first
+            .is_some_and(|(place, before)| place == at && now.saturating_sub(before) < DOUBLE_CLICK)
+    }
+
+    /// Selects the row at `at` of the list or dialog that is open. A double click does what Enter does there, with the row
+    /// that it has selected; the list may have moved under it. Text that is typed into a dialog is not applied by it.
+    fn press_in_list(
+        &mut self,
+        layout: &ScreenLayout,
+        at: Position,
+        is_double: bool,
+        lab: &mut Lab,
+    ) -> Option<LabRequest> {
+        let popups = lab.popups();
+        if is_double && (popups.mode != Mode::Dialog || popups.shows_settings()) {
+            return press(Key::Enter, lab);
         }
-        is_double
+        let place = screen::popup_place(lab, layout);
+        let row = match (popups.mode, popups.dialog()) {
+            (Mode::Browser, _) => browser::row_at(&popups.browser, place, at)?,
+            (Mode::Help, _) => help::row_at(lab, place, at)?,
+            (Mode::Dialog, Some(dialog)) => {
+                let (form, theme) = (&dialog.form, &lab.view().theme);
+                FormPane { form, theme }.field_at(place, at)?
+            }
+            _ => return None,
+        };
+        lab.clear();
+        lab.popups_mut().select(row);
+        self.selected = Some((at, lab.now()));
+        None
+    }
+
+    /// Selects the lesson at `at` in the list that has the area `place`; a double click opens the one that it has selected.
+    fn press_in_lessons(
+        &mut self,
+        place: Rect,
+        at: Position,
+        is_double: bool,
+        lab: &mut Lab,
+    ) -> Option<LabRequest> {
+        if is_double {
+            return lab.update(Action::Lesson(LessonKey::Take));
+        }
+        let row = lesson::choice_at(lab, place, at)?;
+        self.selected = Some((at, lab.now()));
+        lab.update(Action::Lesson(LessonKey::Select(row)))
     }
 
     fn drag(&mut self, layout: &ScreenLayout, at: Position, lab: &mut Lab) {
@@ -161,50 +201,6 @@ fn read_off(place: Rect, at: Position, lab: &mut Lab) {
         let to = CursorTo::Place(SeekTarget::Time(time_s));
         lab.carry_out_now(&Command::Cursor(to));
     }
-}
-
-/// Selects the row at `at` of the list or dialog that is open. A double click does what Enter does there; text that is typed
-/// into a dialog is not applied by it.
-fn press_in_list(
-    layout: &ScreenLayout,
-    at: Position,
-    is_double: bool,
-    lab: &mut Lab,
-) -> Option<LabRequest> {
-    let place = screen::popup_place(lab, layout);
-    let popups = lab.popups();
-    let (row, is_opened) = match (popups.mode, popups.dialog()) {
-        (Mode::Browser, _) => (browser::row_at(&popups.browser, place, at)?, true),
-        (Mode::Help, _) => (help::row_at(lab, place, at)?, true),
-        (Mode::Dialog, Some(dialog)) => {
-            let (form, theme) = (&dialog.form, &lab.view().theme);
-            let field = FormPane { form, theme }.field_at(place, at)?;
-            (field, dialog.is_of_settings())
-        }
-        _ => return None,
-    };
-    lab.clear();
-    lab.popups_mut().select(row);
-    if is_double && is_opened {
-        return press(Key::Enter, lab);
-    }
-    None
-}
-
-/// Selects the lesson at `at` in the list that has the area `place`, or opens it by a double click.
-fn press_in_lessons(
-    place: Rect,
-    at: Position,
-    is_double: bool,
-    lab: &mut Lab,
-) -> Option<LabRequest> {
-    let row = lesson::choice_at(lab, place, at)?;
-    let key = if is_double {
-        LessonKey::Take
-    } else {
-        LessonKey::Select(row)
-    };
-    lab.update(Action::Lesson(key))
 }
 
 fn wheel(layout: &ScreenLayout, at: Position, up: bool, lab: &mut Lab) -> Option<LabRequest> {

@@ -227,7 +227,7 @@ fn advice_is_taken_by_one_key() {
     let line = verdict(&stage);
     assert!(line.contains("rerun with"), "{line}");
     stage.press("a");
-    stage.shows("from the start; the run before is dotted");
+    stage.shows("rerun from the start; u returns to the previous run");
     assert_eq!(stage.lab.player().run().now().time_s, 40.0);
     assert!(stage.lab.player().motion().time_step_s < 0.1);
     assert_eq!(stage.lab.player().run().scenario().file.push.len(), 1);

@@ -90,6 +90,91 @@ fn no_capital_does_something_else_than_its_letter() {
     }
 }
 
+/// The letters that mean nothing, free for extensions. A capital may only do the counterpart of its letter.
+const FREE_LETTERS: &str = "lABCDEFGHIJKOQRTVY";
+
+#[test]
+fn letters_free_for_extensions_are_listed() {
+    let keys = keys();
+    let letters = ('a'..='z').chain('A'..='Z');
+    let free: String = letters
+        .filter(|letter| !keys.contains(&letter.to_string()))
+        .collect();
+    assert_eq!(
+        free, FREE_LETTERS,
+        "change the list in tests/library/keys.rs"
+    );
+}
+
+#[test]
+fn the_keys_of_the_lab_mean_something_wherever_the_focus_is() {
+    const EVERYWHERE: &str = "space . , + - g r t i j d f Tab v y w [ ] z W Z Left Right < > ( ) | Enter \
+        e / p P a u U o s S x X c L k ? q";
+    let rows = BINDINGS.iter().filter(|row| row.modes.contains(&Mode::Lab));
+    let bound: Vec<_> = rows
+        .flat_map(|row| row.keys)
+        .map(ToString::to_string)
+        .collect();
+    for key in EVERYWHERE.split_whitespace() {
+        assert!(bound.contains(&key.to_owned()), "{key}");
+    }
+}
+
+#[test]
+fn a_key_that_means_nothing_here_says_where_it_does() {
+    for (keys, said) in [
+        ("n", "L lists the lessons"),
+        ("!", "no key ! here; ? lists the keys"),
+        ("c\u{10}", "settings"),
+    ] {
+        Stage::open("method-2", &[], SMALL).press(keys).shows(said);
+    }
+    let mut stage = Stage::open("method-2", &[], SMALL);
+    stage.key(Key::Backspace);
+    stage.wait(0.0).shows("Backspace is a key of lists");
+}
+
+#[test]
+fn lists_filter_as_one_types_and_move_by_the_same_keys() {
+    let selected = |stage: &Stage| {
+        let picture = stage.picture();
+        let line = picture.lines().find(|line| line.contains("> "));
+        line.unwrap_or_else(|| panic!("{picture}")).to_owned()
+    };
+    for open in ["o", "L"] {
+        let mut stage = Stage::open("method-2", &[], SMALL);
+        stage.wait(1.0).press(open);
+        stage.key(Key::Home);
+        let first = selected(&stage);
+        for (there, back) in [
+            (Key::Down, Key::Up),
+            (Key::Ctrl('n'), Key::Ctrl('p')),
+            (Key::End, Key::Home),
+            (Key::PageDown, Key::PageUp),
+        ] {
+            stage.key(there);
+            stage.wait(0.0);
+            assert_ne!(selected(&stage), first, "{open} {there}");
+            stage.key(back);
+            stage.wait(0.0);
+            assert_eq!(selected(&stage), first, "{open} {back}");
+        }
+        // Letters that are keys of the lab, and the space, are typed.
+        stage.press("s t").shows("s t_").press("\u{1b}");
+        stage.shows_no("s t_");
+        stage.press("\u{1b}");
+        assert!(stage.lab.mode() == Mode::Lab, "{open}");
+    }
+    let mut stage = Stage::open("method-2", &[], SMALL);
+    stage
+        .press("cback")
+        .shows("background")
+        .shows_no("frames a second");
+    stage.press("\n").shows("light").press("\u{1b}");
+    stage.shows("frames a second").press("\u{1b}");
+    stage.shows_no("frames a second");
+}
+
 #[test]
 fn the_help_finds_keys_by_words_that_are_not_theirs() {
     for (search, key) in [

@@ -262,7 +262,7 @@ fn undo_names_the_run_to_which_it_returns() {
     let mut stage = Stage::open("method-2", &[], LARGE);
     stage.commands("pause = true\ngo_to = 10\nset = { 'start.tilt_deg' = 30 }");
     stage.press("u");
-    let words = "undone: this is the run before; U brings it again";
+    let words = "undone: this is the previous run; U brings it again";
     assert_eq!(stage.lab.notice().as_deref(), Some(words));
 }
 

@@ -3,6 +3,7 @@
 use crate::support::stage::{LARGE, SMALL, Stage};
 use gyrolab::lab::Mode;
 use gyrolab::plot::camera::Camera;
+use gyrolab::tui::app;
 use gyrolab::tui::layout::ScreenLayout;
 use gyrolab::tui::mouse::Pointer;
 use gyrolab::tui::mouse::{Did, Mouse};
@@ -26,8 +27,10 @@ impl Desk {
     }
 
     fn does(&mut self, did: Did, (x, y): (u16, u16)) -> &mut Self {
-        let (size, lab) = (self.stage.size, &mut self.stage.lab);
-        self.pointer.act(Mouse { did, x, y }, size, lab);
+        let (size, stage) = (self.stage.size, &mut self.stage);
+        if let Some(request) = self.pointer.act(Mouse { did, x, y }, size, &mut stage.lab) {
+            app::do_in_class(request, &mut stage.lab, &mut stage.class, size);
+        }
         self.stage.wait(0.0);
         self
     }
@@ -162,6 +165,32 @@ fn a_press_in_the_browser_selects_and_a_double_click_opens() {
     desk.does(Did::Press, cusps);
     desk.stage.shows(" Cusps ");
     assert_eq!(desk.stage.lab.popups().mode, Mode::Lab);
+}
+
+#[test]
+fn a_click_selects_a_row_of_any_list_and_a_double_click_opens_it() {
+    let mut desk = Desk::open("method-2", LARGE);
+    desk.stage.press("L");
+    let title = "Cusps, loops";
+    let row = desk.place(title);
+    desk.does(Did::Press, row);
+    desk.stage.shows(&format!("> [ ] {title}"));
+    assert!(desk.stage.class.open_lesson().is_none());
+    desk.does(Did::Press, row);
+    let open = desk.stage.class.open_lesson().unwrap();
+    assert!(open.lesson.title.starts_with(title));
+    // Two slow clicks are no double click.
+    let mut desk = Desk::open("method-2", SMALL);
+    desk.stage.press("c");
+    let row = desk.place("background");
+    desk.does(Did::Press, row);
+    desk.stage.wait(2.0);
+    desk.does(Did::Press, row).stage.shows("dark");
+    desk.does(Did::Press, row).stage.shows("light");
+    desk.stage.press("\u{1b}?");
+    let row = desk.place("restart");
+    desk.does(Did::Press, row);
+    assert_eq!(desk.stage.lab.popups().mode, Mode::Help);
 }
 
 #[test]
