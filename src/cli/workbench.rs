@@ -12,6 +12,7 @@ use crate::lab::command;
 use crate::lab::storage::confined::Confined;
 use crate::lab::storage::exporting;
 use crate::lab::view::FPS;
+use crate::lab::view::theme::Palette;
 use crate::lessons::{Lesson, LessonPage, Lessons};
 use crate::tui::app;
 use crate::tui::theme::{self, ColorChoice};
@@ -141,6 +142,12 @@ fn furnish(lab: &mut Lab, args: &WorkbenchArgs, confined: Option<Confined>) -> a
     lab.view_mut().mouse = !args.look.no_mouse;
     lab.view_mut().fps = args.fps.unwrap_or(FPS);
     lab.settings.usual_palette = Some(theme::theme(ColorChoice::Auto, variable).palette);
+    // The Linux console would print the question.
+    let is_console = variable("TERM").is_none_or(|term| ["linux", "dumb"].contains(&term.as_str()));
+    lab.settings.asks_background = args.look.background.is_none()
+        && variable("COLORFGBG").is_none()
+        && lab.view().theme.palette != Palette::Plain
+        && !is_console;
     Ok(())
 }
 

@@ -17,6 +17,8 @@ pub struct Settings {
     pub folder: Option<PathBuf>,
     /// The palette where nobody chooses; `None` where that is not known.
     pub usual_palette: Option<Palette>,
+    /// Whether the terminal is asked for its background, since nobody chose one.
+    pub asks_background: bool,
 }
 
 /// A setting: its label, its present value, and the change to its next value (`true`) or the one before.

@@ -34,6 +34,9 @@ pub fn run(
     let mut pacing = Pacing::new(lab.view().fps);
     let begin = Instant::now();
     screen::fit(lab, screen.size()?);
+    if lab.settings.asks_background {
+        screen.ask_background()?;
+    }
     loop {
         screen.set_mouse(lab.view().mouse)?;
         pacing.set_rate(lab.view().fps);
@@ -175,6 +178,10 @@ fn request_of(
         Event::Typed(Typed::Key(key)) => press(key, lab),
         Event::Typed(Typed::Paste(text)) => {
             lab.paste(&text);
+            None
+        }
+        Event::Typed(Typed::Background(background)) => {
+            lab.view_mut().theme.background = background;
             None
         }
         Event::Typed(Typed::Mouse(mouse)) => pointer.act(mouse, screen.size()?, lab),

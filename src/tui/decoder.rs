@@ -5,6 +5,7 @@
 //! the focus and the like, and older ones of the mouse, are recognised and ignored, so that they are not taken for keys.
 
 use crate::lab::MOST_PASTED;
+use crate::lab::view::theme::Background;
 use crate::tui::keymap::Key;
 use crate::tui::mouse::{Did, Mouse};
 use std::collections::VecDeque;
@@ -32,6 +33,8 @@ pub enum Typed {
     /// A text that the terminal says is pasted.
     Paste(String),
     Mouse(Mouse),
+    /// The terminal has answered which background it has.
+    Background(Background),
 }
 
 /// The decoder with its unfinished sequence and its finished keys.
@@ -229,7 +232,11 @@ fn after_escape(rest: &[u8]) -> Decoded {
         [] | [b'O' | b'['] => Decoded::Unfinished,
         [b'O', letter @ 0x20..0x7f] => known(lettered(*letter, 1)),
         [b'[', rest @ ..] => control_sequence(rest),
-        [b'P' | b']' | b'^' | b'_' | b'X', rest @ ..] => string(rest),
+        [b']', rest @ ..] => match (string(rest), background(rest)) {
+            (Decoded::Nothing, Some(background)) => Decoded::Typed(Typed::Background(background)),
+            (decoded, _) => decoded,
+        },
+        [b'P' | b'^' | b'_' | b'X', rest @ ..] => string(rest),
         _ => Decoded::Broken, // Alt and a key look like Esc and a key, and are taken as that
     }
 }
@@ -246,6 +253,28 @@ fn string(rest: &[u8]) -> Decoded {
         [.., ESC, _] => Decoded::Broken,
         _ => Decoded::Unfinished,
     }
+}
+
+/// The background whose color the terminal reports: `11;rgb:RRRR/GGGG/BBBB`, each part with one to four hexadecimal digits.
+fn background(rest: &[u8]) -> Option<Background> {
+    let text = std::str::from_utf8(rest).ok()?;
+    let color = text.strip_prefix("11;rgb:")?;
+    let ends = |c| c == '\u{7}' || c == '\u{1b}' || c == '\\';
+    let parts: Vec<_> = color.trim_end_matches(ends).split('/').collect();
+    let [red, green, blue] = parts[..] else {
+        return None;
+    };
+    let share = |digits: &str| {
+        let number = u16::from_str_radix(digits, 16).ok()?;
+        let most = 16_f64.powi(digits.len() as i32) - 1.0;
+        Some(f64::from(number) / most)
+    };
+    let brightness = 0.3 * share(red)? + 0.59 * share(green)? + 0.11 * share(blue)?;
+    Some(if brightness > 0.5 {
+        Background::Light
+    } else {
+        Background::Dark
+    })
 }
 
 /// The bytes after `ESC [`: parameters, then a last byte from `@` to `~`.

@@ -148,6 +148,12 @@ impl Screen {
         stdout()?.write_all(if listens { MOUSE_ON } else { MOUSE_OFF })
     }
 
+    /// Asks the terminal for the color of its background. The answer, if any, comes as [`Typed::Background`].
+    pub fn ask_background(&mut self) -> io::Result<()> {
+        let _pen = pen();
+        stdout()?.write_all(b"\x1b]11;?\x1b\\")
+    }
+
     /// The part of the screen that is drawn on, cells.
     pub fn size(&self) -> io::Result<Rect> {
         self.terminal.size().map(drawn_of)

@@ -250,3 +250,22 @@ fn the_mouse_is_known_however_its_report_comes_apart() {
         is_known(report, &Typed::Mouse(Mouse { did, x, y }));
     }
 }
+
+#[test]
+fn the_background_is_known_from_its_color() {
+    for (report, background) in [
+        (
+            "\u{1b}]11;rgb:ffff/ffff/ffff\u{1b}\\",
+            Some(Background::Light),
+        ),
+        ("\u{1b}]11;rgb:1e/1e/2e\u{7}", Some(Background::Dark)),
+        ("\u{1b}]11;rgb:fdf6/e3e3/e3\u{7}", Some(Background::Light)),
+        ("\u{1b}]11;rgb:zz/00/00\u{7}", None),
+        ("\u{1b}]10;rgb:ffff/ffff/ffff\u{7}", None),
+    ] {
+        let mut decoder = Decoder::default();
+        decoder.feed(report.as_bytes(), Instant::now());
+        let typed = background.map(Typed::Background);
+        assert_eq!(decoder.take_typed(), typed, "{report:?}");
+    }
+}
