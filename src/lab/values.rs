@@ -185,9 +185,8 @@ impl Values {
                     .map_err(|reason| format!("{} {reason}", parameter.label))?;
                 let mut edits = scenario.file.edit.iter();
                 let is_edited = edits.any(|edit| edit.set.contains_key(&parameter.key));
-                let is_new = value != parameter.value
-                    || parameter.is_default
-                    || (is_edited && !from_now_on);
+                let is_new =
+                    value != parameter.value || parameter.is_default || (is_edited && !from_now_on);
                 let table = Table::from_iter([(parameter.key.clone(), value)]);
                 Ok(is_new.then_some(if from_now_on {
                     Command::Set(table)

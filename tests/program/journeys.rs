@@ -50,9 +50,16 @@ fn select(lab: &mut Terminal, row: usize) {
     lab.ask(&down, &format!("parameters {row} of"));
 }
 
-/// Types `value` for the value that is selected.
+/// Types `value` for the value that is selected: the run begins again with it.
 fn set(lab: &mut Terminal, value: &str) {
-    lab.ask("\r", "Enter take it");
+    lab.ask("\r", "Enter: ");
+    answer(lab, value);
+}
+
+/// Types `value` for the value that is selected, from the next step on.
+fn set_from_now_on(lab: &mut Terminal, value: &str) {
+    lab.ask("\r", "Enter: rerun from the start");
+    lab.ask("\t", "Enter: from now on");
     answer(lab, value);
 }
 
@@ -144,11 +151,16 @@ fn a_value_is_nudged_and_typed_refused_and_taken_back() {
     for dt in ["0.2", "0.05"] {
         lab.ask("U", &format!("►dt {dt} s"));
     }
-    lab.wait_for_step(100);
+    lab.wait_for_step(200);
     let run = saved(&mut lab, "run.toml");
-    assert_eq!(run.matches("[[edit]]").count(), 1, "{run}");
-    has(&run, "[[edit]]\nstep = 100\n");
-    has(&run, "\"motion.time_step_s\" = 0.05");
+    assert_eq!(run.matches("[[edit]]").count(), 0, "{run}");
+    has(&run, "\ntime_step_s = 0.05\n");
+    set_from_now_on(&mut lab, "0.1");
+    lab.wait_for("►dt 0.1 s");
+    steps(&mut lab, ".", 201);
+    let edited = saved(&mut lab, "edited.toml");
+    has(&edited, "[[edit]]\nstep = 200\n");
+    has(&edited, "\"motion.time_step_s\" = 0.1");
     lab.quit();
 }
 
@@ -165,7 +177,7 @@ fn an_export_is_the_run_that_was_saved() {
     lab.press("15,");
     lab.wait_for_step(85);
     lab.press(&format!("{DOWN}{DOWN}"));
-    set(&mut lab, "0.025");
+    set_from_now_on(&mut lab, "0.025");
     lab.wait_for("►dt 0.025 s");
     steps(&mut lab, "200.", 285);
     lab.ask("x", "286 rows, about");
@@ -344,7 +356,7 @@ fn all_of_it_at_every_size_and_back_with_resume() {
     lab.wait_for_step(60);
     select(&mut lab, 3);
     lab.resize((40, 10));
-    set(&mut lab, "0.05");
+    set_from_now_on(&mut lab, "0.05");
     lab.resize((1, 1));
     lab.press("40.");
     lab.press("s"); // a dialog that nobody sees
