@@ -159,7 +159,7 @@ fn put_back(lab: &Lab) -> Vec<Command> {
         (view.look.bare, Command::look("bare", false)),
         (view.pointed_at.is_some(), Command::PointAt(None)),
         (
-            view.camera != Camera::default(),
+            view.look.camera.is_some(),
             Command::look("camera", Camera::default()),
         ),
         (

@@ -14,16 +14,17 @@ pub struct Camera {
     pub pitch_deg: f64,
 }
 
-/// The apparent length of an axle that can be read, as a share of its length: a shorter one points too much at the eye, and
-/// of a longer one the wheel is seen as a line.
-const READ: std::ops::RangeInclusive<f64> = 0.75..=0.97;
-/// The direction to which the camera turns an axle that cannot be read: this angle from the picture's right towards the
-/// eye, degrees. If the axle is not below the horizontal, the wheel is then an open ellipse.
-const ASIDE_DEG: f64 = 25.0;
+/// The height of the eye for an axle that is seen aslant, degrees: the floor is an open ellipse.
+const ASLANT_PITCH_DEG: f64 = 24.0;
+/// The direction to which the camera turns an axle: this angle from the picture's right towards the eye, degrees. The
+/// axle is then seen at its length, and the wheel across it shows its face.
+const ASIDE_DEG: f64 = 14.0;
+/// The apparent length of an axle that can be read, as a share of its length: a shorter one points too much at the eye.
+const READABLE_LENGTH: f64 = 0.75;
 /// An axle nearer to the vertical than this, degrees, is seen from every side alike.
 const UPRIGHT_DEG: f64 = 8.0;
 /// Directions that are chosen are multiples of this, degrees.
-const NOTCH_DEG: f64 = 10.0;
+const NOTCH_DEG: f64 = 2.0;
 
 /// The enlargement of the pictures in space: 1 where a picture shows the whole.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -73,21 +74,26 @@ impl Camera {
         self.pitch_deg = (self.pitch_deg + pitch_deg).clamp(PITCH_DEG.0, PITCH_DEG.1);
     }
 
-    /// The camera turned about the vertical so that `axle` (a direction, world frame) is seen aslant: long enough to be
-    /// read, and the wheel across it open. It stays as it is where that is so from here.
-    pub fn aside_of(self, axle: &Vector3<f64>) -> Self {
-        let (right, up) = self.project(axle);
+    /// Returns the camera from which `axle` (a direction, world frame) is seen aslant: leaning to the right, and a little
+    /// towards the eye.
+    pub fn aslant(self, axle: &Vector3<f64>) -> Self {
         let is_upright = axle.xy().norm() < libm::sin(UPRIGHT_DEG.to_radians()) * axle.norm();
-        let share = libm::hypot(right, up) / axle.norm();
-        if is_upright || share.is_nan() || READ.contains(&share) {
-            return self;
-        }
         let azimuth_deg = libm::atan2(axle.y, axle.x).to_degrees();
         let yaw_deg = ((azimuth_deg + ASIDE_DEG) / NOTCH_DEG).round() * NOTCH_DEG;
         Self {
-            yaw_deg: yaw_deg.rem_euclid(360.0) + 0.0, // no negative zero
-            ..self
+            yaw_deg: if is_upright || yaw_deg.is_nan() {
+                self.yaw_deg
+            } else {
+                yaw_deg.rem_euclid(360.0) + 0.0 // no negative zero
+            },
+            pitch_deg: ASLANT_PITCH_DEG,
         }
+    }
+
+    /// Returns true if `axle` is seen long enough to be read.
+    pub fn reads(&self, axle: &Vector3<f64>) -> bool {
+        let (right, up) = self.project(axle);
+        libm::hypot(right, up) >= READABLE_LENGTH * axle.norm()
     }
 
     /// Its sines and cosines: for many points in turn. The same on every machine.

@@ -36,7 +36,7 @@ impl Marker {
     }
 
     /// The character of a cell with these `bits` in a layer, strong, faint, under or ghost.
-    fn sign(self, layer: usize, bits: u8) -> char {
+    pub(super) fn sign(self, layer: usize, bits: u8) -> char {
         match (self, layer) {
             (Self::Braille, _) => char::from_u32(0x2800 + u32::from(bits)).unwrap_or(' '),
             (Self::Octant, _) => OCTANTS[usize::from(bits)],

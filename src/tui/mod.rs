@@ -15,7 +15,7 @@
 //! - [`keymap`] is the one table of keys, [`press`](mod@press) carries out what a key means.
 //! - [`screen`] puts the panes in their places, [`panes`] draw what they borrow and change nothing; [`mod@svg`] is the picture for a
 //!   slide; [`layout`] says which places those are, [`theme`] has the styles of all roles, [`dots`] sets dots and says what
-//!   they look like, [`points`] what was measured, [`trail`] a path that fades, [`scene`] lines in space; [`plane`] takes metres to dots and cells,
+//!   they look like, [`points`] what was measured, [`layered_dots`] lines that cross, [`labels`] their names; [`plane`] takes metres to dots and cells,
 //!   [`split`] a part of the screen to two.
 //! - [`board`] shows lines without a lab. [`job_control`] tells whether Ctrl-Z may stop the program.
 
@@ -26,6 +26,8 @@ pub mod dots;
 pub mod job_control;
 pub mod keyboard;
 pub mod keymap;
+pub mod labels;
+pub mod layered_dots;
 pub mod layout;
 pub mod mouse;
 pub mod pacing;
@@ -33,10 +35,8 @@ pub mod panes;
 pub mod plane;
 pub mod points;
 pub mod press;
-pub mod scene;
 pub mod screen;
 pub mod split;
 pub mod svg;
 pub mod terminal;
 pub mod theme;
-pub mod trail;

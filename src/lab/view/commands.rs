@@ -12,7 +12,7 @@ use crate::lab::playback::lookup::{self, StepNumbers};
 use crate::lab::playback::strip::Strip;
 use crate::lab::player::Player;
 use crate::lab::step_pane::StepPane;
-use crate::plot::camera::Zoom;
+use crate::plot::camera::{Camera, Zoom};
 use toml::Table;
 
 /// The share of the window by which a key moves the cursor, and by which it moves the window.
@@ -142,9 +142,15 @@ impl View {
     /// Turns the camera so that the axle is seen aslant, unless its direction was chosen. A moving picture is left as it is:
     /// the motion shows where the axle points. So is that of a run that an edit began anew, to be compared with the previous.
     pub(in crate::lab) fn turn_camera(&mut self, player: &Player) {
+        if self.look.camera.is_some() {
+            return;
+        }
+        let axle = player.reading.state.axle();
+        let is_new = self.camera == Camera::default();
         let is_still = !player.is_running() || player.step_number() == 0;
-        if is_still && !player.has_just_restarted() && self.look.camera.is_none() {
-            self.camera = self.camera.aside_of(&player.reading.state.axle());
+        let is_to_turn = is_still && !player.has_just_restarted() && !self.camera.reads(&axle);
+        if is_new || is_to_turn {
+            self.camera = self.camera.aslant(&axle);
         }
     }
 

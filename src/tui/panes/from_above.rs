@@ -1,56 +1,53 @@
-//! The path of the traced point from above, x to the right and y up: a true circle at every size.
+//! The path of the traced point from above, x to the right and y up, with axes in meters.
 //!
-//! It shows where the point is, and the shape of its last swings behind it, as a line. The turn before them and all
-//! that came before are dotted, more and more sparsely; dots are denser where the point stayed longer.
+//! The path in the window of the traces is bright, the path before it is dim. A ring marks the start, a spot the shown
+//! moment. The exact motion is dashed, with a spot at the same moment.
 
-use super::{MOST_SHOWN_PUSHES, PaneRow, PlotInputs, ROWS_A_LINE, round_rule, write};
+mod extent;
+
+use super::{MOST_SHOWN_PUSHES, PaneRow, PlotInputs, round_title, rule};
 use crate::engine::data::MeasuredPlace;
 use crate::engine::recording::RecordedSample;
-use crate::engine::run::Clock;
-use crate::engine::text::wrap::columns;
-use crate::lab::playback::ages::{Age, Ages};
-use crate::lab::playback::path::PathFromAbove;
-use crate::lab::view::Pane;
+use crate::engine::text::nice_numbers::climbed;
+use crate::engine::text::number::{fixed, significant};
+use crate::lab::playback::ghost::Ghost;
 use crate::lab::view::theme::Marker;
+use crate::lab::view::{HideablePart, Pane};
 use crate::plot::camera::Zoom;
-use crate::tui::dots::{self, Dots, Ink};
+use crate::tui::dots::{self, Dashes};
 use crate::tui::keymap::ZOOM_KEYS;
-use crate::tui::plane::{LabelCells, Plane};
+use crate::tui::labels::{AROUND_MARK, AROUND_POINT, LabelOffset, Labels};
+use crate::tui::layered_dots::{DotInk, FineDot, Layer, LayeredDots, Spot};
+use crate::tui::plane::Plane;
 use crate::tui::points::{Ends, Points};
-use crate::tui::split::split_rows;
 use crate::tui::theme::Role;
-use crate::tui::trail::{Around, Trail};
-use nalgebra::{Vector2, Vector3};
+use extent::{PlaneExtent, predicted_circle};
+use nalgebra::Vector2;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::Widget;
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 
-/// Length of a push's line, as a share of the radius shown. Only its direction has a meaning.
-const ARROW: f64 = 0.35;
+/// Length of a push's arrow, as a share of half of what is shown. Only its direction has a meaning.
+const PUSH_ARROW_SHARE: f64 = 0.35;
 /// A force with a horizontal part smaller than this share of it counts as straight up or down.
 const VERTICAL_FORCE_SHARE: f64 = 0.1;
+const PUSH_HEAD_DOTS: f64 = 5.0;
 
-/// The least radius shown, m. The path of a point that stays on the vertical has no radius.
-const LEAST_RADIUS_M: f64 = 1e-6;
+/// Fine dots between what is shown and the edge of the picture.
+const MARGIN_DOTS: f64 = 4.0;
+/// The distance between two ticks is the next round number above this share of what is shown.
+const TICK_SHARE: f64 = 0.25;
+/// Decimals of a tick's number; a finer one has an exponent.
+const MOST_TICK_DECIMALS: i64 = 4;
 
-/// The radius shown grows by this factor's exponential, or not at all.
-const RADIUS_STEP: f64 = 0.05;
-
-/// If gravity turns L by less than this in the whole run, rad, the path is a circle about L, and the picture is centred
-/// on it.
-const STANDING: f64 = 0.35;
-/// A point that is nearer to the axle than this part of its distance from the pivot is on it.
-const POINT_ON_AXLE: f64 = 1e-6;
-
-/// Swings larger than this, dots, cover each other where they are close together.
-const LARGE_SWING: f64 = 4.0;
-
-const MOST_LEGEND_LINES: u16 = 3;
-
-/// What stands between two words of a legend at length, and in short.
-const LEGEND_SEPARATORS: [&str; 2] = [", ", " "];
-const EARLIER_RUN_LEGEND: [&str; 2] = ["dotted: before"; 2];
+/// The dashes of the exact path, and the dots of the circle that theory predicts.
+const EXACT_PATH_DASHES: Dashes = (4, 8);
+const CIRCLE_DOTS: f64 = 3.0;
+/// The longest line between two places of the earlier path, dots.
+const LONGEST_EARLIER_LINE: f64 = 8.0;
+/// The longest line between two places of the bright path, of the sheet's shorter side.
+const LONGEST_RECENT_LINE: f64 = 0.5;
 
 pub const FROM_ABOVE_ROW: PaneRow = PaneRow {
     id: Pane::Above,
@@ -66,364 +63,406 @@ pub struct FromAbove<'a>(pub PlotInputs<'a>);
 
 impl Widget for FromAbove<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
-        let zoom = self.0.view.look.zoom.above;
-        let Some(inside) = round_rule(&FROM_ABOVE_ROW, zoom, &self.0, area, buf) else {
+        let seen = self.0;
+        let view = seen.view;
+        let title = round_title(
+            "from above (m)",
+            view.look.zoom.above,
+            seen.reading,
+            area.width,
+        );
+        let has_places = seen
+            .measured
+            .is_some_and(|data| !data.compared.places.is_empty());
+        let measured = format!("{} measured", view.marker.point());
+        let right = has_places.then_some((measured.as_str(), Role::Measured));
+        let has_focus = view.marks_focus_of(Pane::Above);
+        let picture = rule(&title, right, has_focus, area, &view.theme, buf);
+        if picture.height >= 2 && picture.width > 0 {
+            AbovePicture::new(seen, picture).draw(buf);
+        }
+    }
+}
+
+struct AbovePicture<'a> {
+    seen: PlotInputs<'a>,
+    picture: Rect,
+    plane: Plane,
+    now: RecordedSample,
+    /// The exact motion at the same time, where its curves are shown.
+    exact: Option<Vector2<f64>>,
+}
+
+impl<'a> AbovePicture<'a> {
+    fn new(seen: PlotInputs<'a>, picture: Rect) -> Self {
+        let (now, exact) = shown_moment(&seen);
+        let whole = PlaneExtent::of(&seen);
+        let zoom = seen.view.look.zoom.above;
+        let half = whole.half() / zoom;
+        let middle = if zoom <= 1.0 {
+            whole.middle()
+        } else {
+            let [x, y] = [now.position.x, now.position.y].map(|at| Zoom::middle(at, half.min()));
+            Vector2::new(x, y)
+        };
+        let dots = Vector2::new(
+            2.0 * f64::from(picture.width),
+            4.0 * f64::from(picture.height),
+        );
+        let share = dots.map(|dots| dots / (dots - 2.0 * MARGIN_DOTS).max(1.0));
+        let half = half.component_mul(&share);
+        Self {
+            seen,
+            picture,
+            plane: Plane::new(
+                picture,
+                Marker::Braille,
+                (middle.x, middle.y),
+                (half.x, half.y),
+            ),
+            now,
+            exact,
+        }
+    }
+
+    fn draw(&self, buf: &mut Buffer) {
+        let (theme, marker) = (&self.seen.view.theme, self.seen.view.marker);
+        let mut dots = LayeredDots::new(self.picture, marker);
+        self.axes(&mut dots);
+        let circle = self.circle(&mut dots);
+        self.other_runs(&mut dots);
+        self.path(&mut dots);
+        self.exact_path(&mut dots);
+        self.pushes(&mut dots);
+        self.marks(&mut dots);
+        dots.render(theme, buf);
+        self.points(buf);
+        let picture = self.picture;
+        let mut labels = Labels { picture, buf };
+        self.label_marks(circle, &mut labels);
+        self.label_pushes(&mut labels);
+        self.label_other_runs(&mut labels);
+        self.label_axes(&mut labels);
+    }
+
+    fn dot(&self, at: &Vector2<f64>) -> FineDot {
+        self.plane.dot((at.x, at.y))
+    }
+
+    /// The cell of a place, also outside the picture.
+    fn cell(&self, at: &Vector2<f64>) -> (i32, i32) {
+        let (x, y) = self.dot(at);
+        cell_of((x, y))
+    }
+
+    /// Where the axes cross: the origin, or the nearest place in the picture.
+    fn crossing(&self) -> FineDot {
+        let (x, y) = self.plane.dot((0.0, 0.0));
+        let (width, height) = (self.plane.size.0 as f64, self.plane.size.1 as f64);
+        (
+            x.clamp(1.0, (width - 2.0).max(1.0)),
+            y.clamp(1.0, (height - 2.0).max(1.0)),
+        )
+    }
+
+    /// The ticks of both axes: their values, m.
+    fn ticks(&self) -> (f64, [Vec<f64>; 2]) {
+        let (width, height) = (self.plane.size.0 as f64, self.plane.size.1 as f64);
+        let shown = [width / self.plane.scale.0, height / self.plane.scale.1];
+        let step = climbed(TICK_SHARE * shown[0].min(shown[1]), 1);
+        let middle = [self.plane.middle.0, self.plane.middle.1];
+        let ticks = [0, 1].map(|axis| {
+            let [low, high] = [-0.5, 0.5].map(|side| (middle[axis] + side * shown[axis]) / step);
+            let numbers = low.ceil() as i64..=high.floor() as i64;
+            let others = numbers.filter(|number| *number != 0);
+            others.map(|number| number as f64 * step).collect()
+        });
+        (step, ticks)
+    }
+
+    fn axes(&self, dots: &mut LayeredDots) {
+        let axis = ink(Role::Rule, Layer::Ground);
+        let (across, down) = self.crossing();
+        let origin = self.plane.dot((0.0, 0.0));
+        if origin.1 == down {
+            for x in (0..self.plane.size.0).step_by(2) {
+                dots.set((x as f64, down), axis);
+            }
+        }
+        if origin.0 == across {
+            for y in (0..self.plane.size.1).step_by(2) {
+                dots.set((across, y as f64), axis);
+            }
+        }
+        let tick = ink(Role::Label, Layer::Ground);
+        let (_, [of_x, of_y]) = self.ticks();
+        for x in of_x {
+            let (x, _) = self.plane.dot((x, 0.0));
+            dots.line((x, down - 1.0), (x, down + 1.0), tick);
+        }
+        for y in of_y {
+            let (_, y) = self.plane.dot((0.0, y));
+            dots.line((across - 1.0, y), (across + 1.0, y), tick);
+        }
+    }
+
+    /// The circle that theory predicts, of a run that covers too little of it to show it. Returns a place on it.
+    fn circle(&self, dots: &mut LayeredDots) -> Option<Vector2<f64>> {
+        if self.seen.view.hides(HideablePart::Predicted) {
+            return None;
+        }
+        let radius_m = predicted_circle(self.seen.run.scenario())?;
+        let count = (TAU * radius_m * self.plane.scale.0 / CIRCLE_DOTS) as u32;
+        for part in 0..count {
+            let (sin, cos) = libm::sincos(TAU * f64::from(part) / f64::from(count));
+            let at = Vector2::new(cos, sin) * radius_m;
+            dots.set(self.dot(&at), ink(Role::Exact, Layer::Previous));
+        }
+        Some(Vector2::new(FRAC_1_SQRT_2, FRAC_1_SQRT_2) * radius_m)
+    }
+
+    /// The previous run and the pinned one, each with its dashes.
+    fn ghosts(&self) -> [(Option<&'a Ghost>, &'static str, Dashes); 2] {
+        let of_previous = dots::of_run_before(Marker::Braille);
+        [
+            (self.seen.ghost, "previous", of_previous),
+            (self.seen.pinned, "pinned", dots::PINNED_DASHES),
+        ]
+    }
+
+    fn other_runs(&self, dots: &mut LayeredDots) {
+        for (ghost, _, dashes) in self.ghosts() {
+            let path = ghost.into_iter().flat_map(|ghost| ghost.path.dots());
+            let places = path.map(|at| self.plane.dot(at));
+            let of_ghost = ink(Role::Previous, Layer::Previous);
+            dots.path(places, Some(dashes), 0.0, of_ghost);
+        }
+    }
+
+    fn path(&self, dots: &mut LayeredDots) {
+        let earlier = ink(Role::RunEarlier, Layer::Earlier);
+        for at in self.seen.run.path().dots() {
+            dots.set(self.plane.dot(at), earlier);
+        }
+        let shorter = self.plane.size.0.min(self.plane.size.1) as f64;
+        let now_s = self.now.time_s;
+        let bright = ink(Role::Run, Layer::Run);
+        for (since_s, longest, ink) in [
+            (f64::NEG_INFINITY, LONGEST_EARLIER_LINE, earlier),
+            (
+                self.seen.bright_since_s(now_s),
+                LONGEST_RECENT_LINE * shorter,
+                bright,
+            ),
+        ] {
+            let bins = self.seen.run.recording().between(since_s, now_s);
+            let until_now = bins.filter(|bin| bin.end_s >= since_s && bin.end_s <= now_s);
+            let ends = until_now.map(|bin| bin.end().xy());
+            let places = ends.chain([self.now.position.xy()]);
+            dots.path(places.map(|at| self.dot(&at)), None, longest, ink);
+        }
+    }
+
+    /// The exact path is drawn over the run: where the two agree, its dashes alternate with the run.
+    fn exact_path(&self, dots: &mut LayeredDots) {
+        if let Some(overlay) = self.seen.run.overlay() {
+            let places = overlay.path.dots().map(|at| self.plane.dot(at));
+            let exact = ink(Role::Exact, Layer::Exact);
+            dots.path(places, Some(EXACT_PATH_DASHES), 0.0, exact);
+        }
+    }
+
+    /// The measured places. Those at times that the run has not reached are less prominent.
+    fn points(&self, buf: &mut Buffer) {
+        let Some(data) = self.seen.measured else {
             return;
         };
-        let most = (inside.height / ROWS_A_LINE).clamp(1, MOST_LEGEND_LINES) as usize;
-        let (plane, _) = self.plane(split_rows(inside, inside.height - 1)[0]);
-        let lines = self.legend(&plane, inside.width.into(), most).len();
-        let [picture, legend] = split_rows(inside, inside.height - lines as u16);
-        let (plane, radius_m) = self.plane(picture);
-        self.path(&plane, picture, buf);
-        self.points(&plane, picture, buf);
-        let forces = self.pushes(&plane, radius_m, picture, buf);
-        let mut places = self.marks(&plane, picture, buf);
-        // Words do not cover marks; heads of arrows stand where they point.
-        for (cell, sign) in forces {
-            let cell = match sign.len() {
-                1 => cell,
-                width => places.place(cell, width as u16),
-            };
-            let push = self.0.view.theme.style(Role::Push);
-            write(picture, cell, sign, push, buf);
+        let mut points = Points::new(self.picture, self.seen.view.marker);
+        for place in &data.compared.places {
+            self.point(place, &mut points);
         }
-        self.write_legend(&plane, legend, buf);
+        points.render(&self.seen.view.theme, buf);
     }
-}
 
-impl FromAbove<'_> {
-    /// The plane of the picture, and the radius that it shows, m.
-    fn plane(&self, picture: Rect) -> (Plane, f64) {
-        let middle = self.circled().unwrap_or_default();
-        let exact = self.0.run.overlay().map(|overlay| &overlay.path);
-        let before = self.0.ghost.map(|ghost| &ghost.path);
-        let pinned = self.0.pinned.map(|ghost| &ghost.path);
-        let paths = [Some(self.0.run.path()), exact, before, pinned];
-        let about = |path: &PathFromAbove| {
-            if middle == Vector2::zeros() {
-                path.radius
-            } else {
-                path.radius_about(middle.x, middle.y).max(middle.norm())
-            }
+    fn point(&self, place: &MeasuredPlace, points: &mut Points) {
+        let role = if place.time_s <= self.seen.run.now().time_s {
+            Role::Measured
+        } else {
+            Role::Label
         };
-        let radii = paths.into_iter().flatten().map(about);
-        let away = self.places().iter().map(|place| (place.at - middle).norm());
-        let radius = radii.chain(away).fold(LEAST_RADIUS_M, f64::max);
-        // In steps of 5 %, so that the scale does not change all the time.
-        let radius = libm::exp((libm::log(radius) / RADIUS_STEP).ceil() * RADIUS_STEP) * 1.02;
-        let zoom = self.0.view.look.zoom.above;
-        let half = radius / zoom;
-        let plane = |middle| Plane::new(picture, self.0.view.marker, middle, (half, half));
-        let whole = plane((middle.x, middle.y));
-        if zoom <= 1.0 {
-            return (whole, half);
-        }
-        let at = self.now(whole.scale.0).position.xy();
-        let [x, y] = [at.x, at.y].map(|at| Zoom::middle(at, half));
-        (plane((x, y)), half)
-    }
-
-    /// The place from above around which the axle circles: where the line of L is, at the height of the traced point, as
-    /// long as gravity cannot turn L noticeably within the run; `None` where the circle is about the vertical.
-    fn circled(&self) -> Option<Vector2<f64>> {
-        let scenario = self.0.run.scenario();
-        let momentum = scenario.start.momentum;
-        let axis = momentum.try_normalize(f64::MIN_POSITIVE)?;
-        let at = scenario.body.mechanics.points()[scenario.trace].at;
-        let torque = scenario.motion.gravity * scenario.body.mechanics.first_moment().norm();
-        let turn = torque.abs() / momentum.norm() * Clock::end_s(scenario);
-        let is_steady = scenario.pushes.is_empty() && scenario.edits.is_empty() && turn < STANDING;
-        let place = axis.xy() * at.norm();
-        (is_steady && is_on_axle(&at) && place.norm() > 0.0).then_some(place)
-    }
-
-    fn ages(&self, across: f64) -> Ages {
-        let ages = self
-            .0
-            .reading
-            .map(|reading| Ages::from_readouts(&reading.readouts));
-        let turn_dots = TAU * self.0.run.path().radius * across;
-        ages.unwrap_or(Ages::UNKNOWN).on_picture(turn_dots)
-    }
-
-    /// The moment that is shown: the present one. Where the swings cover each other and the eye cannot follow them, it
-    /// is that of the latest reading, so that not every frame has to be sent. Where the scheme has broken down, it is
-    /// the last moment before.
-    fn now(&self, across: f64) -> RecordedSample {
-        let scenario = self.0.run.scenario();
-        let traced = scenario.body.mechanics.points()[scenario.trace].at;
-        match self.0.reading {
-            Some(reading) if reading.last_whole.is_some() => {
-                RecordedSample::new(&reading.state, &traced)
-            }
-            Some(reading) if self.ages(across).are_crowded => {
-                let extremes = &reading.readouts.extremes;
-                let swing_deg = extremes.tilt.highest_deg - extremes.tilt.lowest_deg;
-                let swing_dots = swing_deg.to_radians() * traced.norm() * across;
-                if swing_dots > LARGE_SWING {
-                    RecordedSample::new(&reading.state, &traced)
-                } else {
-                    *self.0.run.now()
-                }
-            }
-            _ => *self.0.run.now(),
-        }
-    }
-
-    /// The exact motion at `time_s` (s), the moment that is shown; `None` where it is not shown, or has not come so far yet.
-    fn exact_at(&self, time_s: f64) -> Option<&RecordedSample> {
-        let exact = self.0.run.exact_now();
-        exact.filter(|exact| exact.time_s == time_s)
-    }
-
-    fn path(&self, plane: &Plane, picture: Rect, buf: &mut Buffer) {
-        let mut dots = Dots::new(picture, self.0.view.marker);
-        let before = dots::of_run_before(self.0.view.marker);
-        let pinned = Ink::Faint(Role::Previous);
-        for (ghost, dashes, ink) in [
-            (self.0.ghost, before, Ink::Ghost),
-            (self.0.pinned, dots::PINNED_DASHES, pinned),
-        ] {
-            let path = ghost.into_iter().flat_map(|ghost| ghost.path.dots());
-            dots.dashed(path.map(|at| plane.dot(at)), dashes, ink);
-        }
-        let mut trail = Trail::new(&dots, Around::Nothing);
-        for at in self.0.run.path().dots() {
-            trail.dot(plane.dot(at), Age::Old);
-        }
-        let ages = self.ages(plane.scale.0);
-        let now = self.now(plane.scale.0);
-        let now = (now.time_s, &now.position);
-        trail.follow(self.0.run.recording(), &ages, now, |at| {
-            plane.dot((at.x, at.y))
+        let [of_x, of_y] = place.sigmas;
+        let (x, y) = (place.at.x, place.at.y);
+        let level = of_x.map(|sigma| -> Ends {
+            (self.in_cells(x - sigma, y).0, self.in_cells(x + sigma, y).0)
         });
-        trail.draw(&mut dots);
-        if let Some(overlay) = self.0.run.overlay() {
-            let exact = overlay.path.dots().map(|at| plane.dot(at));
-            dots.dashed(exact, dots::EXACT_DASHES, Ink::Faint(Role::Exact));
-        }
-        dots.render(&self.0.view.theme, buf);
+        let upright = of_y.map(|sigma| -> Ends {
+            (self.in_cells(x, y + sigma).1, self.in_cells(x, y - sigma).1)
+        });
+        points.add(self.in_cells(x, y), level, upright, role);
     }
 
-    /// The measured places; none where the columns of the data do not say them.
-    fn places(&self) -> &[MeasuredPlace] {
-        self.0
-            .measured
-            .map_or(&[], |beside| &beside.compared.places)
+    /// A place in cells from the upper left.
+    fn in_cells(&self, x: f64, y: f64) -> (f64, f64) {
+        let (column, row) = self.plane.dot((x, y));
+        let (across, down) = self.plane.in_cell;
+        (column / across as f64, row / down as f64)
     }
 
-    /// The measured places: those at times that the run has not reached are faint.
-    fn points(&self, plane: &Plane, picture: Rect, buf: &mut Buffer) {
-        let now_s = self.0.run.now().time_s;
-        let mut points = Points::new(picture, self.0.view.marker);
-        for place in self.places() {
-            let cell = |x: f64, y: f64| {
-                let (column, row) = plane.dot((x, y));
-                (
-                    column / plane.in_cell.0 as f64,
-                    row / plane.in_cell.1 as f64,
-                )
-            };
-            let (x, y) = (place.at.x, place.at.y);
-            let role = if place.time_s <= now_s {
-                Role::Measured
-            } else {
-                Role::Label
-            };
-            let [of_x, of_y] = place.sigmas;
-            points.add(
-                cell(x, y),
-                of_x.map(|sigma| -> Ends { (cell(x - sigma, y).0, cell(x + sigma, y).0) }),
-                of_y.map(|sigma| -> Ends { (cell(x, y + sigma).1, cell(x, y - sigma).1) }),
-                role,
-            );
-        }
-        points.render(&self.0.view.theme, buf);
-    }
-
-    /// Each push that acts: a line from the pushed point. Returns its head, or a word where it is straight up or down, and
-    /// where that is to stand.
-    fn pushes(
-        &self,
-        plane: &Plane,
-        radius_m: f64,
-        picture: Rect,
-        buf: &mut Buffer,
-    ) -> Vec<((u16, u16), &'static str)> {
-        let simulation = self.0.run.simulation();
-        let points = self.0.run.scenario().body.mechanics.points();
-        let mut dots = Dots::new(picture, self.0.view.marker);
-        let mut signs = Vec::new();
-        for push in simulation.loads().pushes.iter().take(MOST_SHOWN_PUSHES) {
+    /// The pushes that act: the pushed point of each, and the tip of its arrow, unless it is straight up or down.
+    fn acting_pushes(&self) -> Vec<(Vector2<f64>, Option<Vector2<f64>>, f64)> {
+        let simulation = self.seen.run.simulation();
+        let points = self.seen.run.scenario().body.mechanics.points();
+        let shown = self.plane.size.0.min(self.plane.size.1) as f64 / self.plane.scale.0;
+        let pushes = simulation.loads().pushes.iter().take(MOST_SHOWN_PUSHES);
+        let of_push = pushes.map(|push| {
             let at = (simulation.state().orientation * points[push.point].at).xy();
-            match push
+            let level = push
                 .force
                 .xy()
-                .try_normalize(VERTICAL_FORCE_SHARE * push.force.norm())
-            {
-                Some(direction) => {
-                    let tip = at + direction * (ARROW * radius_m);
-                    let [from, to] = [at, tip].map(|at| plane.dot((at.x, at.y)));
-                    dots.line(from, to, Ink::Strong(Role::Push));
-                    let cell = plane.cell((tip.x, tip.y));
-                    signs.push((cell, head(direction.x, direction.y)));
-                }
-                None => signs.push(upright(plane.cell((at.x, at.y)), push.force.z, picture)),
+                .try_normalize(VERTICAL_FORCE_SHARE * push.force.norm());
+            let tip = level.map(|along| at + along * (0.5 * PUSH_ARROW_SHARE * shown));
+            (at, tip, push.force.z)
+        });
+        of_push.collect()
+    }
+
+    fn pushes(&self, dots: &mut LayeredDots) {
+        for (at, tip, _) in self.acting_pushes() {
+            if let Some(tip) = tip {
+                dots.arrow(self.dot(&at), self.dot(&tip), PUSH_HEAD_DOTS, Role::Push);
             }
         }
-        dots.render(&self.0.view.theme, buf);
-        signs
     }
 
-    /// The pivot, the axes' names, and where the point is now. Returns which places are left for words.
-    fn marks(&self, plane: &Plane, picture: Rect, buf: &mut Buffer) -> LabelCells {
-        let mut places = LabelCells::new(picture);
-        let mut mark = |cell, sign: &str, role| {
-            write(picture, cell, sign, self.0.view.theme.style(role), buf);
-            places.take(cell);
-        };
-        let (right, middle) = (picture.width - 1, picture.height / 2);
-        mark((right, middle), "x", Role::Run);
-        mark((picture.width / 2, 0), "y", Role::Run);
-        if plane.shows((0.0, 0.0)) {
-            mark(plane.cell((0.0, 0.0)), "+", Role::Label);
+    /// The start, the exact motion now, and the run now.
+    fn marks(&self, dots: &mut LayeredDots) {
+        if let Some(at) = self.start() {
+            dots.ring(self.dot(&at), ink(Role::Label, Layer::Start));
         }
-        let now = self.now(plane.scale.0);
-        let here = plane.cell((now.position.x, now.position.y));
-        let mut sign = "o";
-        if let Some(exact) = self.exact_at(now.time_s) {
-            let at = (exact.position.x, exact.position.y);
-            if plane.shows(at) {
-                mark(plane.cell(at), "e", Role::Exact);
-            }
-            sign = if plane.cell(at) == here { "*" } else { sign };
+        if let Some(at) = self.exact {
+            let exact = ink(Role::Exact, Layer::ExactNow);
+            dots.spot(self.dot(&at), Spot::Three, exact);
         }
-        mark(here, sign, Role::Heading);
-        places
+        let now = self.dot(&self.now.position.xy());
+        dots.spot(now, Spot::Three, ink(Role::Cursor, Layer::Now));
     }
-}
 
-impl FromAbove<'_> {
-    /// The lines of the legend on `width` columns; the last has room for the scale of `plane` beside it. Where `most` lines
-    /// are too few for every mark and line of the picture, those named last are left out.
-    fn legend(&self, plane: &Plane, width: usize, most: usize) -> Vec<String> {
-        let room = width.saturating_sub(columns(&self.bar(plane, width)) + 1);
-        let words = self.words();
-        let legend = Self::in_fewest_lines(&words, width, room, most);
-        if words.contains(&EARLIER_RUN_LEGEND) || self.0.ghost.is_some() {
-            return legend;
+    /// Where the run began.
+    fn start(&self) -> Option<Vector2<f64>> {
+        let scenario = self.seen.run.scenario();
+        let traced = scenario.body.mechanics.points()[scenario.trace].at;
+        let at = scenario.start.orientation * traced;
+        at.iter().all(|part| part.is_finite()).then(|| at.xy())
+    }
+
+    /// The labels of now, start, exact and cursor, the most important first.
+    fn label_marks(&self, circle: Option<Vector2<f64>>, labels: &mut Labels<'_>) {
+        let theme = &self.seen.view.theme;
+        if let Some(cursor) = self.seen.cursor {
+            let cell = self.cell(&cursor.position.xy());
+            labels.write(cell, "◊", theme.style(Role::Cursor));
         }
-        // The path before the last swings is dotted too: said where it costs no line.
-        let longer = [&words[..], &[EARLIER_RUN_LEGEND]].concat();
-        let longer = Self::in_fewest_lines(&longer, width, room, legend.len());
-        let has_all = longer
-            .iter()
-            .any(|line| line.contains(EARLIER_RUN_LEGEND[0]));
-        if has_all { longer } else { legend }
+        let now = self.cell(&self.now.position.xy());
+        labels.place(now, AROUND_MARK, "now", theme.style(Role::Heading));
+        if let Some(start) = self.start() {
+            let style = theme.style(Role::Label);
+            labels.place(self.cell(&start), AROUND_MARK, "start", style);
+        }
+        if let Some(exact) = self.exact.or(circle) {
+            let style = theme.style(Role::Exact);
+            labels.place(self.cell(&exact), AROUND_MARK, "exact", style);
+        }
     }
 
-    fn in_fewest_lines(words: &[[&str; 2]], width: usize, room: usize, most: usize) -> Vec<String> {
-        let fits = |legend: &Vec<String>| legend.len() <= most;
-        let whole = [0, 1]
-            .map(|form| in_lines(words, form, width, room))
-            .into_iter()
-            .min_by_key(Vec::len)
-            .filter(fits);
-        let mut fewer = (1..words.len())
-            .rev()
-            .map(|count| in_lines(&words[..count], 1, width, room));
-        let legend = whole.or_else(|| fewer.find(fits));
-        legend.unwrap_or_else(|| vec![String::new()])
-    }
-
-    /// The legend and the scale on `area`, which has as many rows as the legend has lines.
-    fn write_legend(&self, plane: &Plane, area: Rect, buf: &mut Buffer) {
-        let style = self.0.view.theme.style(Role::Label);
-        let last = area.height.saturating_sub(1);
-        let bar = self.bar(plane, area.width as usize);
-        write(area, (0, last), &bar, style, buf);
-        let lines = self.legend(plane, area.width.into(), area.height.into());
-        for (line, y) in lines.iter().zip(0..) {
-            let x = if y == last {
-                area.width.saturating_sub(columns(line) as u16)
-            } else {
-                0
+    fn label_pushes(&self, labels: &mut Labels<'_>) {
+        let style = self.seen.view.theme.style(Role::Push);
+        for (at, tip, up) in self.acting_pushes() {
+            let text = match tip {
+                Some(_) => "F",
+                None if up < 0.0 => "F down",
+                None => "F up",
             };
-            write(area, (x, y), line, style, buf);
+            labels.place(self.cell(&tip.unwrap_or(at)), AROUND_MARK, text, style);
         }
     }
 
-    fn bar(&self, plane: &Plane, width: usize) -> String {
-        // The longer legend beside it leaves less room for the bar.
-        let share = if self.0.run.overlay().is_some() {
-            0.25
-        } else {
-            0.4
-        };
-        plane.bar(share * width as f64)
+    /// The names of the other runs, at the end of their paths.
+    fn label_other_runs(&self, labels: &mut Labels<'_>) {
+        let style = self.seen.view.theme.style(Role::Previous);
+        for (ghost, name, _) in self.ghosts() {
+            if let Some((x, y)) = ghost.and_then(|ghost| ghost.path.dots().last()) {
+                labels.place(self.cell(&Vector2::new(x, y)), AROUND_MARK, name, style);
+            }
+        }
     }
 
-    /// What is drawn, the most important first, at length and in short.
-    fn words(&self) -> Vec<[&'static str; 2]> {
-        let mut words = vec![["o now"; 2]];
-        if self.0.run.overlay().is_some() {
-            words.extend([["e exact"; 2], ["* both"; 2]]);
+    fn label_axes(&self, labels: &mut Labels<'_>) {
+        let style = self.seen.view.theme.style(Role::Label);
+        let crossing = cell_of(self.crossing());
+        let right = i32::from(self.picture.width) - 1;
+        labels.place(
+            (right, crossing.1),
+            &[LabelOffset::Right(0, -1), LabelOffset::Right(0, 1)],
+            "x",
+            style,
+        );
+        labels.place((crossing.0, 0), AROUND_POINT, "y", style);
+        let (step, [of_x, of_y]) = self.ticks();
+        for x in of_x {
+            let text = tick_text(x, step);
+            let half = text.len() as i32 / 2;
+            let column = cell_of(self.plane.dot((x, 0.0))).0;
+            let below = [LabelOffset::Right(-half, 1), LabelOffset::Right(-half, -1)];
+            labels.place((column, crossing.1), &below, &text, style);
         }
-        if self.0.pinned.is_some() {
-            words.push(["long dashes: pinned", "-- pinned"]);
+        for y in of_y {
+            let row = cell_of(self.plane.dot((0.0, y))).1;
+            let beside = [LabelOffset::Right(2, 0), LabelOffset::Left(2, 0)];
+            labels.place((crossing.0, row), &beside, &tick_text(y, step), style);
         }
-        if self.0.ghost.is_some() {
-            words.push(["dotted: other run", "dotted: other"]);
-        }
-        if !self.places().is_empty() {
-            words.push(match self.0.view.marker {
-                Marker::Ascii => ["X measured"; 2],
-                _ => ["× measured"; 2],
-            });
-        }
-        if words.len() == 1 {
-            words.push(EARLIER_RUN_LEGEND);
-        }
-        words
-    }
-}
-
-/// `words` in lines of at most `width` columns, the last of at most `room`.
-fn in_lines(words: &[[&str; 2]], form: usize, width: usize, room: usize) -> Vec<String> {
-    let (between, words) = (LEGEND_SEPARATORS[form], words.iter().map(|word| word[form]));
-    let mut lines: Vec<_> = super::in_lines(words, |word| word, between.len(), width)
-        .iter()
-        .map(|line| line.join(between))
-        .collect();
-    if lines.last().is_some_and(|line| columns(line) > room) {
-        lines.push(String::new());
-    }
-    lines
-}
-
-fn is_on_axle(at: &Vector3<f64>) -> bool {
-    at.xy().norm() <= POINT_ON_AXLE * at.norm()
-}
-
-/// The head of an arrow that points to the right by `x` and up by `y`.
-fn head(x: f64, y: f64) -> &'static str {
-    match (x.abs() > y.abs(), x > 0.0, y > 0.0) {
-        (true, true, _) => ">",
-        (true, false, _) => "<",
-        (false, _, true) => "^",
-        (false, _, false) => "v",
     }
 }
 
-/// What says that a force at `cell` is straight up or down, beside that cell and inside `picture`.
-fn upright((x, y): (u16, u16), up: f64, picture: Rect) -> ((u16, u16), &'static str) {
-    let sign = if up < 0.0 { "F down" } else { "F up" };
-    let width = sign.len() as u16;
-    let place = if x + 2 + width <= picture.width {
-        x + 2
+fn ink(role: Role, layer: Layer) -> DotInk {
+    DotInk { role, layer }
+}
+
+fn cell_of((x, y): FineDot) -> (i32, i32) {
+    ((x / 2.0).floor() as i32, (y / 4.0).floor() as i32)
+}
+
+/// The number of a tick, m, where ticks are `step` apart.
+fn tick_text(value: f64, step: f64) -> String {
+    let decimals = (-libm::log10(step).floor() as i64).max(0);
+    if decimals <= MOST_TICK_DECIMALS {
+        fixed(value, decimals as usize)
     } else {
-        x.saturating_sub(width + 1)
-    };
-    ((place, y), sign)
+        significant(value, 3)
+    }
+}
+
+/// The moment that is shown, and the exact motion at that moment if its curves are shown.
+///
+/// It is the present moment. Where the traces are held because swings pass too fast to be followed, it is the moment of
+/// the latest reading. Where the scheme has broken down, it is the last moment before.
+fn shown_moment(seen: &PlotInputs<'_>) -> (RecordedSample, Option<Vector2<f64>>) {
+    let is_shown = seen.run.overlay().is_some();
+    let is_held = seen.view.window.is_held;
+    match seen.reading {
+        Some(reading) if is_held || reading.last_whole.is_some() => {
+            let scenario = seen.run.scenario();
+            let traced = scenario.body.mechanics.points()[scenario.trace].at;
+            let exact = reading.exact.as_ref().filter(|_| is_shown);
+            let exact = exact.map(|exact| exact.position.xy());
+            (RecordedSample::new(&reading.state, &traced), exact)
+        }
+        _ => {
+            let now = *seen.run.now();
+            let exact = seen
+                .run
+                .exact_now()
+                .filter(|exact| exact.time_s == now.time_s);
+            (now, exact.map(|exact| exact.position.xy()))
+        }
+    }
 }

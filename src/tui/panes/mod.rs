@@ -6,6 +6,7 @@ pub mod browser;
 pub mod chrome;
 pub mod form;
 pub mod from_above;
+mod gravity_motion;
 pub mod help;
 pub mod hint;
 pub mod lesson;
@@ -16,6 +17,7 @@ pub mod three_d;
 pub mod timeline;
 pub mod traces;
 
+use crate::engine::analysis::MeasuredNumber;
 use crate::engine::run::Sample;
 use crate::engine::text::printable::printable;
 use crate::engine::text::wrap::{columns, wrapped};
@@ -37,6 +39,7 @@ use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 use ratatui::widgets::{Clear, Widget};
 use std::borrow::Cow;
+use std::f64::consts::TAU;
 
 /// A row of the table of panes: what the layout, the focus, the footer and the help need to know.
 #[derive(Debug)]
@@ -126,6 +129,23 @@ impl<'a> PlotInputs<'a> {
             cursor: player.cursor(),
         }
     }
+
+    /// The time from which on the path is bright, s: the window of the traces, or the last turn where that is the whole run.
+    fn bright_since_s(&self, now_s: f64) -> f64 {
+        let window = &self.view.window;
+        if window.has_overview {
+            return window.begin_s;
+        }
+        let readouts = self.reading.map(|reading| &reading.readouts);
+        let rate = readouts.and_then(|readouts| {
+            let measured = readouts.precession.filter(MeasuredNumber::is_settled);
+            let theory = readouts
+                .theory_about_z()
+                .and_then(|theory| theory.precession);
+            measured.map(|measured| measured.value).or(theory)
+        });
+        rate.map_or(f64::NEG_INFINITY, |rate| now_s - TAU / rate.abs())
+    }
 }
 
 /// Draws the rule above a pane: `title` at its left, reversed where the pane has the focus, and `right` at its end.
@@ -164,20 +184,6 @@ pub(super) fn below_rule(area: Rect) -> Rect {
     split_rows(area, 1)[1]
 }
 
-/// Draws the rule of the round pane `row`, magnified by `zoom`; returns the area below, where it has room for a picture.
-fn round_rule(
-    row: &PaneRow,
-    zoom: f64,
-    seen: &PlotInputs<'_>,
-    area: Rect,
-    buf: &mut Buffer,
-) -> Option<Rect> {
-    let title = round_title(row.title, zoom, seen.reading, area.width);
-    let has_focus = seen.view.marks_focus_of(row.id);
-    let inside = rule(&title, None, has_focus, area, &seen.view.theme, buf);
-    (inside.height >= 2 && inside.width > 0).then_some(inside)
-}
-
 /// The title of a round pane: `name`, its magnification, and the step that it shows if the scheme has broken down
 /// since. The longest form that fits in `width` columns.
 fn round_title(name: &str, zoom: f64, reading: Option<&Reading>, width: u16) -> String {
@@ -203,32 +209,6 @@ pub(super) fn longest(forms: impl IntoIterator<Item = String>, width: usize) -> 
         .into_iter()
         .reduce(|kept, next| if columns(&kept) <= width { kept } else { next })
         .unwrap_or_default()
-}
-
-/// The words of a legend in lines of at most `width` columns, with `apart` columns between two words; a word that is wider
-/// has a line of its own.
-fn in_lines<T>(
-    words: impl Iterator<Item = T>,
-    text: impl Fn(&T) -> &str,
-    apart: usize,
-    width: usize,
-) -> Vec<Vec<T>> {
-    let mut lines: Vec<Vec<T>> = Vec::new();
-    let mut taken = 0;
-    for word in words {
-        let length = columns(text(&word));
-        match lines.last_mut() {
-            Some(line) if taken + apart + length <= width => {
-                taken += apart + length;
-                line.push(word);
-            }
-            _ => {
-                taken = length;
-                lines.push(vec![word]);
-            }
-        }
-    }
-    lines
 }
 
 /// As [`rule`], on top of whatever is there.
@@ -258,8 +238,6 @@ pub(super) fn write(
     end - area.x
 }
 
-/// Rows of a round pane for each line of its legend.
-const ROWS_A_LINE: u16 = 5;
 /// The most pushes that a picture shows at one time.
 const MOST_SHOWN_PUSHES: usize = 20;
 

@@ -361,7 +361,7 @@ fn is_made_of_sums(phase: &Phase, quantity: &WorkedQuantity) -> bool {
 }
 
 /// The name of the point of this index; a point of the rim has its number on the rim.
-fn name_of(scenario: &Scenario, point: usize) -> String {
+pub(super) fn name_of(scenario: &Scenario, point: usize) -> String {
     match scenario.point_name(point) {
         Some(name) => name,
         None if point < SHORT_NAMES_FROM => format!("rim {point}"),

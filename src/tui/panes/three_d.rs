@@ -1,54 +1,62 @@
-//! The scene in space: the wheel on its axle over the ground, the path of the axle's top, and what turns it.
+//! The scene in space: a wheel with masses on an axle whose foot stands on a floor, the path of the axle's top, and the
+//! arrows of L, of the angular velocity and of the torque.
 //!
-//! The scene shows which way is up, a wheel with masses in front and behind, and why it goes where it goes: the weight g
-//! makes a torque τ about the pivot; L changes by dL along it, and the axle follows L.
+//! The arrows begin at the pivot and are drawn beside the axle, so that they do not cover it. The torque begins at the
+//! tip of L: it shows where L goes. Lengths of arrows show directions only.
 
 mod arrows;
 mod body;
+mod fit;
 
-use super::{PaneRow, PlotInputs, ROWS_A_LINE, round_rule, write};
-use crate::engine::recording::RecordedCurve;
-use crate::engine::text::wrap::columns;
-use crate::lab::playback::ages::{Age, Ages};
+use super::{PaneRow, PlotInputs, round_title, rule};
+use crate::engine::recording::Recording;
+use crate::lab::command::Command;
 use crate::lab::playback::live::LiveRun;
 use crate::lab::view::Pane;
+use crate::lab::{KeyCommands, Lab};
 use crate::physics::friction::Damping;
 use crate::physics::{State, loads, observables};
-use crate::plot::camera::Zoom;
-use crate::tui::dots::{self, Dots, Ink};
-use crate::tui::keymap::{ZOOM_KEYS, one};
-use crate::tui::plane::LabelCells;
-use crate::tui::scene::{self, DotScene, LineStroke};
+use crate::plot::camera::{Camera, CameraView};
+use crate::tui::dots::{self, Dashes};
+use crate::tui::keymap::{Binding, Key, Mode, does, one, zoomed_in, zoomed_out};
+use crate::tui::labels::{AROUND_POINT, Labels};
+use crate::tui::layered_dots::{DotInk, FineDot, Layer, LayeredDots, Spot};
+use crate::tui::plane::Plane;
 use crate::tui::split::split_rows;
 use crate::tui::theme::Role;
-use crate::tui::trail::{self, Around, Trail};
-use arrows::StepArrows;
-use body::{BodySign, DrawnBody};
+use arrows::{SpaceLabel, StepArrows};
+use body::DrawnBody;
 use nalgebra::Vector3;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::Widget;
 use std::f64::consts::TAU;
 
-/// Length of the arrow of L, in lengths of the axle. Only its direction has a meaning. Where it lies along the axle, its end
-/// shows beyond the axle's top and the arrow of the angular velocity; a longer one would leave less room for the wheel.
-const MOMENTUM_ARROW_LENGTH: f64 = 1.36;
 /// The least length of the axle as a unit of arrows, as a share of the body's size.
 const LEAST_ARM: f64 = 0.7;
-/// Length of the arrow of the change of L, as a share of the body's size.
-const CHANGE_ARROW_SHARE: f64 = 0.3;
-/// Length of the axes of the world, as a share of the body's size.
-const GROUND: f64 = 0.45;
-/// Height of the stand that carries the pivot, and radius of its foot, as shares of the body's size.
-const STAND: f64 = 0.26;
-const FOOT: f64 = 0.22;
-/// Tilts are rounded to multiples of this, degrees, so that the scale does not change all the time.
-const TILT_DEG: f64 = 5.0;
-/// Margin around what is drawn, as a share of it, for letters.
-const PICTURE_MARGIN: f64 = 1.06;
 /// A torque smaller than this share of the largest torque of the weight counts as zero.
 const NO_TORQUE: f64 = 1e-9;
+/// The torque whose arrow has its full length, as a share of the largest torque of the weight.
+const FULL_TORQUE: f64 = 0.35;
 const CIRCLE_PARTS: usize = 72;
+
+/// Panes with fewer columns have no axes on the floor and no shadow.
+const SMALL_COLUMNS: u16 = 32;
+/// Panes with more rows have larger masses and arrows' heads.
+const LARGE_ROWS: u16 = 20;
+/// From so many rows on, the last one says what the letters mean.
+const LEGEND_ROWS: u16 = 17;
+/// Columns between two words of the legend.
+const LEGEND_WORD_GAP: u16 = 2;
+
+/// The path in space is that of so many swings, if the run has more of them.
+const SWINGS: f64 = 2.2;
+/// The longest line between two places of a path, of the sheet's shorter side.
+const LONGEST_LINE: f64 = 0.5;
+const EXACT_PATH_DASHES: Dashes = (4, 7);
+const FLOOR_DASHES: Dashes = (1, 3);
+const AXIS_DASHES: Dashes = (1, 2);
+const PLUMB_DASHES: Dashes = (1, 4);
 
 pub const THREE_D_ROW: PaneRow = PaneRow {
     id: Pane::ThreeD,
@@ -56,274 +64,279 @@ pub const THREE_D_ROW: PaneRow = PaneRow {
     draw: |lab, area, buf| {
         ThreeD(PlotInputs::of(lab)).render(area, buf);
     },
-    keys: ZOOM_KEYS,
+    keys: SPACE_KEYS,
     arrows: Some(|lab, direction, times| one(lab.view().turned(direction, times))),
 };
 
-pub struct ThreeD<'a>(pub PlotInputs<'a>);
+/// The keys of the 3-D view while it has the focus.
+#[rustfmt::skip]
+const SPACE_KEYS: &[Binding] = &[
+    does(&[Mode::Lab], &[Key::Char('z')], zoomed_in, "zoom", "show it larger, around the wheel; 3z three notches"),
+    does(&[Mode::Lab], &[Key::Char('Z')], zoomed_out, "", "show it smaller"),
+    does(&[Mode::Lab], &[Key::Home], |lab, _| whole_scene(lab), "", "show the whole of it, from the usual side"),
+];
 
-type SpaceLabel = (&'static str, Role, Vector3<f64>);
+fn whole_scene(lab: &Lab) -> KeyCommands {
+    let usual = Command::look("camera", Camera::default());
+    Ok(vec![lab.view().zoom_to(1.0)?, usual])
+}
+
+pub struct ThreeD<'a>(pub PlotInputs<'a>);
 
 impl Widget for ThreeD<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
-        let zoom = self.0.view.look.zoom.three_d;
-        let Some(inside) = round_rule(&THREE_D_ROW, zoom, &self.0, area, buf) else {
-            return;
-        };
-        let subject = SceneSubject::of(self.0);
-        let most = (inside.height / ROWS_A_LINE).max(1) as usize;
-        let lines = subject.legend_lines(inside.width as usize, most) as u16;
-        let [picture, legend] = split_rows(inside, inside.height - lines);
-        subject.draw(picture, buf);
-        subject.legend(legend, buf);
+        let view = self.0.view;
+        let scene = Scene::new(self.0, below(area));
+        let title = round_title("3-D", view.look.zoom.three_d, self.0.reading, area.width);
+        let stretch = scene.change_stretch_text();
+        let right = stretch.as_deref().map(|text| (text, Role::Label));
+        let has_focus = view.marks_focus_of(Pane::ThreeD);
+        let inside = rule(&title, right, has_focus, area, &view.theme, buf);
+        if inside.height >= 2 && inside.width > 0 {
+            scene.draw(buf);
+            scene.legend(split_rows(inside, scene.picture.height)[1], buf);
+        }
     }
 }
 
-/// The run at the time of the picture, and what several parts of the picture need of it.
-struct SceneSubject<'a> {
+/// The area of the picture in a pane on `area`: below its rule, and above its legend where there is one.
+fn below(area: Rect) -> Rect {
+    let inside = super::below_rule(area);
+    let legend = u16::from(inside.height >= LEGEND_ROWS);
+    split_rows(inside, inside.height - legend)[0]
+}
+
+/// The run at the time of the picture, and where everything is on the sheet.
+struct Scene<'a> {
     seen: PlotInputs<'a>,
-    ages: Ages,
+    picture: Rect,
+    camera: CameraView,
+    plane: Plane,
     state: &'a State,
     position: Vector3<f64>,
     shape: DrawnBody,
-    /// The size of the body, m: the unit of the arrows' lengths.
+    /// The size of the body, m.
     reach: f64,
-    /// The length of the axle, m: the unit of the arrows along it.
+    /// The length of the axle, m: the unit of the arrows' lengths.
     arm: f64,
-    /// The direction of the torque of all forces about the pivot, where there is one.
+    /// Height of the floor, m.
+    floor_z: f64,
+    /// Radius of the circle on the floor, m.
+    floor_radius: f64,
+    /// The torque of all forces about the pivot, and that with friction's, if there is one.
     torque: Option<Vector3<f64>>,
-    /// That of this torque and friction's together: the direction of dL.
     change: Option<Vector3<f64>>,
-    /// The phase that the step pane is at, where that is on the screen.
-    shown_phase: Option<StepArrows<'a>>,
+    /// The phase that the step pane shows, if that is on the screen.
+    phase: Option<StepArrows<'a>>,
 }
 
-impl<'a> SceneSubject<'a> {
-    fn of(seen: PlotInputs<'a>) -> Self {
+impl<'a> Scene<'a> {
+    fn new(seen: PlotInputs<'a>, picture: Rect) -> Self {
         let run = seen.run;
-        let mechanics = &run.scenario().body.mechanics;
         let state = match seen.reading {
             Some(reading) => &reading.state,
             None => run.simulation().state(),
         };
-        let ages = seen
-            .reading
-            .map(|reading| Ages::from_readouts(&reading.readouts));
         let shape = DrawnBody::of(run);
         let reach = shape.reach();
+        let arm = shape.arm().max(LEAST_ARM * reach);
         let [torque, change] = torques(run, state);
+        let position =
+            observables::position(&run.scenario().body.mechanics, state, run.scenario().trace);
+        let swept = fit::Swept::new(&seen, &shape, arm);
+        let wheel = state.axle() * shape.rim.as_ref().map_or(shape.axle.1, |rim| rim.height_m);
         Self {
+            camera: seen.view.camera.view(),
+            plane: swept.plane(picture, seen.view, &wheel),
+            floor_z: swept.floor_z,
+            floor_radius: swept.floor_radius,
             seen,
-            ages: ages.unwrap_or(Ages::UNKNOWN),
+            picture,
             state,
-            position: observables::position(mechanics, state, run.scenario().trace),
-            reach,
-            arm: shape.arm().max(LEAST_ARM * reach),
+            position,
             shape,
+            reach,
+            arm,
             torque,
             change,
-            shown_phase: StepArrows::of(seen.explained, seen.view),
+            phase: StepArrows::of(seen.explained, seen.view),
         }
     }
 
-    fn draw(&self, picture: Rect, buf: &mut Buffer) {
-        let (theme, marker) = (&self.seen.view.theme, self.seen.view.marker);
-        let mut dots = Dots::new(picture, marker);
-        let mut scene = DotScene::new(picture, marker, self.seen.view.camera, &self.shown());
-        let mut labels = self.ground(&mut scene);
-        self.other_runs(&mut scene, &mut dots);
-        self.path(&scene, &mut dots);
-        self.body(&mut scene);
-        labels.extend(self.phase(&mut scene));
-        labels.extend(self.draw_arrows(&mut scene));
-        let way = self.way(&scene);
-        let signs = self.signs(&way, &scene);
-        let labels: Vec<_> = labels
-            .iter()
-            .rev()
-            .map(|(name, role, at)| (*name, *role, scene.cell(at)))
-            .collect();
-        scene.draw(&mut dots);
-        way.join(&mut dots);
-        dots.render(theme, buf);
-        let mut places = LabelCells::new(picture);
-        for (sign, role, cell) in signs {
-            write(picture, cell, sign, theme.style(role), buf);
-            places.take(cell);
-        }
-        for (name, role, cell) in labels {
-            let cell = places.place(cell, columns(name) as u16);
-            write(picture, cell, name, theme.style(role), buf);
-        }
+    fn is_small(&self) -> bool {
+        self.picture.width < SMALL_COLUMNS
     }
 
-    /// The signs that no letter covers, the most important last.
-    fn signs(&self, way: &ScreenPath, scene: &DotScene) -> Vec<BodySign> {
-        let mut signs: Vec<_> = way.head.into_iter().collect();
-        signs.extend(self.signs_of_phase(scene));
-        signs.extend(self.masses(scene));
-        let marks = [
-            ("+", Role::Heading, Vector3::zeros()),
-            ("*", Role::Heading, self.position),
-        ];
-        let shown = marks.iter().filter(|(_, _, at)| scene.shows(at));
-        signs.extend(shown.map(|(sign, role, at)| (*sign, *role, scene.cell(at))));
-        signs
+    fn is_large(&self) -> bool {
+        self.picture.height > LARGE_ROWS
     }
 
-    /// What the scene needs to show: the body as it precesses at the tilts that it has had, L, and the ground.
-    fn shown(&self) -> scene::VisibleArea {
-        let circles = self.circles();
-        let (sin, cos) = libm::sincos(self.seen.view.camera.pitch_deg.to_radians());
-        let end = |side: f64| move |&(radius, z): &(f64, f64)| z * cos + side * radius * sin.abs();
-        let lowest = circles.iter().map(end(-1.0)).fold(0.0, f64::min);
-        let highest = circles.iter().map(end(1.0)).fold(0.0, f64::max);
-        let widest = circles.iter().map(|circle| circle.0).fold(0.0, f64::max);
-        let zoom = self.seen.view.look.zoom.three_d;
-        let half = [widest, 0.5 * (highest - lowest)].map(|half| PICTURE_MARGIN * half / zoom);
-        let middle = if zoom > 1.0 {
-            let (right, up) = self.seen.view.camera.project(&self.wheel());
-            (Zoom::middle(right, half[0]), Zoom::middle(up, half[1]))
-        } else {
-            (0.0, 0.5 * (lowest + highest))
-        };
-        scene::VisibleArea {
-            middle,
-            half: half.into(),
-            reach: self.reach,
+    /// The place of `point` (world frame, m) on the sheet.
+    fn dot(&self, point: &Vector3<f64>) -> FineDot {
+        self.plane.dot(self.camera.project(point))
+    }
+
+    fn draw(&self, buf: &mut Buffer) {
+        let view = self.seen.view;
+        let mut dots = LayeredDots::new(self.picture, view.marker);
+        self.floor(&mut dots);
+        let mut labels = self.other_runs(&mut dots);
+        self.paths(&mut dots);
+        self.body(&mut dots);
+        labels.extend(self.phase_marks(&mut dots));
+        labels.extend(self.draw_arrows(&mut dots));
+        self.tops(&mut dots);
+        dots.render(&view.theme, buf);
+        let picture = self.picture;
+        let mut sheet = Labels { picture, buf };
+        if let Some(cursor) = self.seen.cursor {
+            let cell = cell_of(self.dot(&cursor.position));
+            sheet.write(cell, "◊", view.theme.style(Role::Cursor));
         }
+        for label in &labels {
+            label.place(&mut sheet, &view.theme);
+        }
+        self.label_floor(&mut sheet);
     }
 
-    /// Circles about the vertical around all that is drawn, radius and height.
-    fn circles(&self) -> Vec<(f64, f64)> {
-        let tilts = self
-            .seen
-            .run
-            .recording()
-            .whole()
-            .map_or((0.0, 0.0), |whole| {
-                let tilt = whole.extent(RecordedCurve::Tilt);
-                (tilt.min, tilt.max)
-            });
-        let (first, last) = ((tilts.0 / TILT_DEG).floor(), (tilts.1 / TILT_DEG).ceil());
-        let ground = GROUND * self.reach;
-        let mut circles = if self.stands() {
-            vec![(ground, -STAND * self.reach)]
-        } else {
-            vec![(ground, 0.0), (0.0, ground)] // z too has a letter
-        };
-        for tilt in first as i32..=last as i32 {
-            let (sin, cos) = libm::sincos((f64::from(tilt) * TILT_DEG).to_radians());
-            for &(across, height) in &self.shape.corners {
-                circles.extend([across, -across].map(|side| {
-                    let radius = height * sin + side * cos;
-                    (radius.abs(), height * cos - side * sin)
-                }));
+    /// The floor, the post that carries the pivot, and what lies below the path.
+    fn floor(&self, dots: &mut LayeredDots) {
+        let floor = ink(Role::Floor, Layer::Ground);
+        let circle = (0..=CIRCLE_PARTS).map(|part| {
+            let (sin, cos) = libm::sincos(TAU * part as f64 / CIRCLE_PARTS as f64);
+            self.dot(&Vector3::new(
+                self.floor_radius * cos,
+                self.floor_radius * sin,
+                self.floor_z,
+            ))
+        });
+        dots.path(circle, Some(FLOOR_DASHES), f64::INFINITY, floor);
+        let middle = Vector3::new(0.0, 0.0, self.floor_z);
+        if !self.is_small() {
+            for end in self.floor_axes() {
+                let ends = [self.dot(&middle), self.dot(&end)];
+                dots.path(ends.into_iter(), Some(AXIS_DASHES), f64::INFINITY, floor);
             }
+            let shadow = |at: Vector3<f64>| Vector3::new(at.x, at.y, self.floor_z);
+            let places = self
+                .bins(self.seen.run.recording())
+                .map(|at| self.dot(&shadow(at)));
+            dots.path(places, None, self.longest_line(), floor);
+            let plumb = [self.dot(&self.position), self.dot(&shadow(self.position))];
+            dots.path(plumb.into_iter(), Some(PLUMB_DASHES), f64::INFINITY, floor);
         }
-        for other in [self.seen.ghost, self.seen.pinned].into_iter().flatten() {
-            if let Some(whole) = other.recording.whole() {
-                let z = whole.extent(RecordedCurve::Z);
-                circles.extend([z.min, z.max].map(|z| (other.path.radius, z)));
-            }
+        if self.stands() {
+            let post = ink(Role::RimFar, Layer::Far);
+            dots.line(self.dot(&Vector3::zeros()), self.dot(&middle), post);
         }
-        if let Some(axis) = self.state.momentum.try_normalize(f64::MIN_POSITIVE) {
-            let angle = libm::acos(axis.z.clamp(-1.0, 1.0)).to_degrees() / (3.0 * TILT_DEG);
-            for angle in [angle.floor(), angle.ceil()] {
-                let (sin, cos) = libm::sincos((angle * 3.0 * TILT_DEG).to_radians());
-                let length = MOMENTUM_ARROW_LENGTH * self.arm;
-                circles.push((
-                    libm::hypot(length * sin, CHANGE_ARROW_SHARE * self.reach),
-                    length * cos,
-                ));
-            }
-        }
-        circles
     }
 
-    /// The stand on which the axle rests, or a level circle about a pivot that carries no weight; and the directions of x,
-    /// y and z. Where there is a stand, z has no letter, which would lie over the hub: the stand shows what is up.
-    fn ground(&self, scene: &mut DotScene) -> Vec<SpaceLabel> {
-        let stands = self.stands();
-        let floor = Vector3::z() * if stands { -STAND * self.reach } else { 0.0 };
-        let radius = self.reach * if stands { FOOT } else { GROUND };
-        let ink = Ink::Faint(Role::Label);
-        let circle: Vec<_> = (0..CIRCLE_PARTS)
-            .map(|part| {
-                let (sin, cos) = libm::sincos(TAU * part as f64 / CIRCLE_PARTS as f64);
-                floor + Vector3::new(radius * cos, radius * sin, 0.0)
-            })
-            .collect();
-        if stands {
-            scene.ring(&circle, |_| (LineStroke::Thin, ink));
-            scene.line(&Vector3::zeros(), &floor, LineStroke::Thin, ink);
-        } else {
-            for pair in circle.chunks(2) {
-                if let [from, to] = pair {
-                    scene.line(from, to, LineStroke::Thin, ink);
-                }
-            }
-        }
-        let length = GROUND * self.reach;
-        let axes = [
-            ("x", floor, Vector3::x()),
-            ("y", floor, Vector3::y()),
-            ("z", Vector3::zeros(), Vector3::z()),
-        ];
-        let drawn = &axes[..if stands { 2 } else { 3 }];
-        drawn
-            .iter()
-            .map(|(name, from, axis)| {
-                let tip = from + axis * length;
-                scene.line(from, &tip, LineStroke::Dotted(3), ink);
-                // The colours of the traces of x, y and z are those of arrows here.
-                (*name, Role::Label, tip)
-            })
-            .collect()
+    /// The ends of x and y on the floor.
+    fn floor_axes(&self) -> [Vector3<f64>; 2] {
+        [
+            Vector3::new(self.floor_radius, 0.0, self.floor_z),
+            Vector3::new(0.0, self.floor_radius, self.floor_z),
+        ]
     }
 
-    /// Whether the pivot carries a weight that is off it, so that a stand is seen under it.
+    fn label_floor(&self, labels: &mut Labels<'_>) {
+        if self.is_small() {
+            return;
+        }
+        let style = self.seen.view.theme.style(Role::Label);
+        for (end, name) in self.floor_axes().iter().zip(["x", "y"]) {
+            labels.place(cell_of(self.dot(end)), AROUND_POINT, name, style);
+        }
+    }
+
+    /// Whether the pivot carries a weight that is off it, so that a post is seen under it.
     fn stands(&self) -> bool {
         let body = &self.seen.run.scenario().body.mechanics;
         let weight = self.seen.run.simulation().loads().gravity.abs() * body.first_moment().norm();
         weight > 0.0
     }
 
-    fn path(&self, scene: &DotScene, dots: &mut Dots) {
-        let mut trail = Trail::new(dots, Around::Body);
-        let now = (self.state.time_s, &self.position);
-        let ages = self
-            .ages
-            .on_picture(TAU * self.seen.run.path().radius * scene.plane.scale.0);
-        trail.follow(self.seen.run.recording(), &ages, now, |at| scene.dot(at));
-        trail.draw(dots);
-        if let Some(overlay) = self.seen.run.overlay() {
-            let exact = overlay.recording.since(0.0);
-            for (x, y) in exact.map(|block| scene.dot(&block.end())) {
-                dots.set(x, y, Ink::Faint(Role::Exact));
+    /// The time from which on paths are drawn, s.
+    fn since_s(&self) -> f64 {
+        let now_s = self.state.time_s;
+        let since_s = self.seen.bright_since_s(now_s);
+        match self.seen.view.window.swing_s {
+            Some(swing_s) if self.seen.view.window.has_overview => {
+                since_s.max(now_s - SWINGS * swing_s)
             }
+            _ => since_s,
         }
     }
 
-    /// The paths of the run before and of the pinned one, and a line from the pivot to where each is at this time.
-    fn other_runs(&self, scene: &mut DotScene, dots: &mut Dots) {
-        let before = (Ink::Ghost, dots::of_run_before(self.seen.view.marker), 3);
-        let pinned = (Ink::Faint(Role::Previous), dots::PINNED_DASHES, 2);
-        for (run, (ink, path, axle)) in [(self.seen.ghost, before), (self.seen.pinned, pinned)] {
-            let Some(recording) = run.map(|run| &run.recording) else {
+    /// The places of the traced point in `recording` while paths are drawn.
+    fn bins(&self, recording: &'a Recording) -> impl Iterator<Item = Vector3<f64>> {
+        let (since_s, now_s) = (self.since_s(), self.state.time_s);
+        let bins = recording.between(since_s, now_s);
+        let until_now = bins.filter(move |bin| bin.end_s >= since_s && bin.end_s <= now_s);
+        until_now.map(|bin| bin.end())
+    }
+
+    fn longest_line(&self) -> f64 {
+        LONGEST_LINE * self.plane.size.0.min(self.plane.size.1) as f64
+    }
+
+    fn paths(&self, dots: &mut LayeredDots) {
+        let longest = self.longest_line();
+        let run = self.bins(self.seen.run.recording()).chain([self.position]);
+        let run = run.map(|at| self.dot(&at));
+        dots.path(run, None, longest, ink(Role::Run, Layer::Run));
+        if let Some(overlay) = self.seen.run.overlay() {
+            let exact = self.bins(&overlay.recording).map(|at| self.dot(&at));
+            let of_exact = ink(Role::Exact, Layer::Exact);
+            dots.path(exact, Some(EXACT_PATH_DASHES), longest, of_exact);
+        }
+    }
+
+    /// The paths of the previous run and of the pinned one, and a line from the pivot to each of them now.
+    fn other_runs(&self, dots: &mut LayeredDots) -> Vec<SpaceLabel> {
+        let others = [
+            (
+                self.seen.ghost,
+                "previous",
+                dots::of_run_before(self.seen.view.marker),
+            ),
+            (self.seen.pinned, "pinned", dots::PINNED_DASHES),
+        ];
+        let mut labels = Vec::new();
+        for (run, name, dashes) in others {
+            let Some(run) = run else {
                 continue;
             };
-            let places = recording.since(f64::NEG_INFINITY);
-            dots.dashed(places.map(|block| scene.dot(&block.end())), path, ink);
-            let mut until_now = recording.between(self.state.time_s, self.state.time_s);
-            if let Some(now) = until_now.next() {
-                scene.line(&Vector3::zeros(), &now.end(), LineStroke::Dotted(axle), ink);
+            let of_run = ink(Role::Previous, Layer::Previous);
+            let path = self.bins(&run.recording).map(|at| self.dot(&at));
+            dots.path(path, Some(dashes), self.longest_line(), of_run);
+            if let Some(at) = self.bins(&run.recording).last() {
+                let axle = [self.dot(&Vector3::zeros()), self.dot(&at)];
+                dots.path(axle.into_iter(), Some(dashes), f64::INFINITY, of_run);
+                labels.push(SpaceLabel::beside(name, Role::Previous, self.dot(&at)));
             }
         }
+        labels
+    }
+
+    /// The traced point, and where the exact motion has it.
+    fn tops(&self, dots: &mut LayeredDots) {
+        let spot = if self.is_large() {
+            Spot::Five
+        } else {
+            Spot::Three
+        };
+        let exact = self.seen.reading.and_then(|reading| reading.exact.as_ref());
+        if let Some(exact) = exact.filter(|_| self.seen.run.overlay().is_some()) {
+            let of_exact = ink(Role::Exact, Layer::ExactNow);
+            dots.spot(self.dot(&exact.position), Spot::Three, of_exact);
+        }
+        dots.spot(self.dot(&self.position), spot, ink(Role::Run, Layer::Now));
     }
 }
 
-/// The directions of the torque of all forces about the pivot at `state`, and of that with friction's, where there is one.
+/// The torque of all forces about the pivot at `state`, and that with friction's, as shares of the largest torque of the
+/// weight; `None` if it is zero.
 fn torques(run: &LiveRun, state: &State) -> [Option<Vector3<f64>>; 2] {
     let (loads, body) = (run.simulation().loads(), &run.scenario().body.mechanics);
     let torque = loads::torque(&state.orientation, &loads.moment(body));
@@ -333,92 +346,17 @@ fn torques(run: &LiveRun, state: &State) -> [Option<Vector3<f64>>; 2] {
         state.orientation * damping.torque(&(state.orientation.transpose() * omega))
     });
     let least = (NO_TORQUE * largest).max(f64::MIN_POSITIVE);
-    [torque, torque + friction.unwrap_or_default()].map(|torque| torque.try_normalize(least))
+    [torque, torque + friction.unwrap_or_default()].map(|torque| {
+        let direction = torque.try_normalize(least)?;
+        let share = torque.norm() / (FULL_TORQUE * largest);
+        Some(direction * share.min(1.0))
+    })
 }
 
-/// Distances from the point, columns, a row counting as two: up to the first the path is drawn over everything, at the
-/// second the sign stands.
-const JOINED: f64 = 3.0;
-const PATH_HEAD_DOTS: f64 = 7.0;
-/// Length of the stretch of path that gives the sign its direction, columns.
-const STRETCH: f64 = 1.5;
-
-/// A place on the sheet, dots across and down.
-type DotPosition = (f64, f64);
-
-pub struct ScreenPath {
-    /// From the point backwards.
-    dots: Vec<DotPosition>,
-    /// The sign that shows where the point goes, if the path is long enough.
-    pub head: Option<(&'static str, Role, (u16, u16))>,
+fn ink(role: Role, layer: Layer) -> DotInk {
+    DotInk { role, layer }
 }
 
-impl SceneSubject<'_> {
-    /// The way on which the point has come.
-    pub(super) fn way(&self, scene: &DotScene) -> ScreenPath {
-        let until = self.state.time_s;
-        let [turn, recent] = [Age::Turn, Age::Recent].map(|age| self.ages.since(age, until));
-        let blocks: Vec<_> = self
-            .seen
-            .run
-            .recording()
-            .since(turn)
-            .filter(|block| block.end_s >= turn && block.end_s <= until)
-            .collect();
-        let now = scene.dot(&self.position);
-        let (across, down) = (
-            scene.plane.in_cell.0 as f64,
-            0.5 * scene.plane.in_cell.1 as f64,
-        );
-        let columns = |from: DotPosition, to: DotPosition| {
-            libm::hypot((to.0 - from.0) / across, (to.1 - from.1) / down)
-        };
-        let (mut way, mut joined) = (vec![now], 0);
-        let mut head = None;
-        for block in blocks.iter().rev() {
-            let at = scene.dot(&block.end());
-            let longest = trail::longest_line(scene.plane.size, block.end_s >= recent);
-            let last = way[way.len() - 1];
-            let apart = (at.0 - last.0).abs().max((at.1 - last.1).abs());
-            if apart.is_nan() || apart > longest {
-                break; // the path has a gap here
-            }
-            way.push(at);
-            joined += usize::from(joined + 2 == way.len() && columns(now, last) < JOINED);
-            if columns(now, at) < PATH_HEAD_DOTS {
-                continue;
-            }
-            let newer = way
-                .iter()
-                .rev()
-                .find(|place| columns(at, **place) >= STRETCH);
-            let to = newer.unwrap_or(&now);
-            let direction = ((to.0 - at.0) / across, (to.1 - at.1) / down);
-            let cell = scene.plane.cell_of(at);
-            head = cell.map(|cell| (sign(direction), Role::Heading, cell));
-            break;
-        }
-        way.truncate(joined + 1);
-        ScreenPath { dots: way, head }
-    }
-}
-
-/// The sign that points most nearly along `right`, `down`.
-fn sign((right, down): DotPosition) -> &'static str {
-    match (right.abs() >= down.abs(), right >= 0.0, down >= 0.0) {
-        (true, true, _) => "►",
-        (true, false, _) => "◄",
-        (false, _, true) => "▼",
-        (false, _, false) => "▲",
-    }
-}
-
-impl ScreenPath {
-    pub fn join(&self, dots: &mut Dots) {
-        for pair in self.dots.windows(2) {
-            if let [from, to] = pair {
-                dots.line(*from, *to, Ink::Strong(Role::Heading));
-            }
-        }
-    }
+fn cell_of((x, y): FineDot) -> (i32, i32) {
+    ((x / 2.0).floor() as i32, (y / 4.0).floor() as i32)
 }

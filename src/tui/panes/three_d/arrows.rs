@@ -1,226 +1,368 @@
-//! The arrows of the scene, and the line that says what their letters mean. Where the step pane is shown, only the arrows
-//! that its phase is about, the axis of its turn, and the body as it stood before the step.
+//! The arrows of the scene, their letters, and the line that says what the letters mean. If the step pane is shown, only the
+//! arrows that its phase is about, the axis of its turn, and the body before the step.
 
-use super::super::{MOST_SHOWN_PUSHES, in_lines};
-use super::body::BodySign;
-use super::{CHANGE_ARROW_SHARE, MOMENTUM_ARROW_LENGTH, SceneSubject, SpaceLabel, write};
+use super::super::step::name_of;
+use super::super::{MOST_SHOWN_PUSHES, write};
+use super::body::normal;
+use super::{LEGEND_WORD_GAP, Scene, cell_of, ink};
+use crate::engine::text::nice_numbers::at_or_below;
+use crate::engine::text::number::{decimal, significant};
+use crate::engine::text::wrap::columns;
 use crate::lab::step_pane::{StepWorkings, table_of};
+use crate::lab::view::theme::Theme;
 use crate::lab::view::{Pane, View};
 use crate::physics::workings::{Phase, PhaseName, WorkedValue};
 use crate::physics::{State, observables};
-use crate::tui::dots::Ink;
-use crate::tui::scene::{DepthBias, DotScene, LineStroke};
+use crate::tui::dots::Dashes;
+use crate::tui::labels::{AROUND_MARK, AROUND_POINT, LabelOffset, Labels};
+use crate::tui::layered_dots::{FineDot, Layer, LayeredDots, Spot};
 use crate::tui::theme::Role;
 use nalgebra::Vector3;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-/// Length of the arrow of the angular velocity, in lengths of the axle.
-const OMEGA_ARROW_LENGTH: f64 = 1.17;
-/// Lengths of the other arrows, as shares of the body's size. Only their directions have a meaning.
-const WEIGHT: f64 = 0.35;
-const TORQUE: f64 = 0.5;
-const PUSH_ARROW_LENGTH: f64 = 0.4;
-/// How far the axis of a turn goes beyond the body on both sides, as a share of its size.
-const AXIS: f64 = 1.0;
+/// Lengths of the arrows, in lengths of the axle. Only their directions have a meaning. The head of the angular velocity is
+/// away from the axle's top, where L and the path are.
+pub const MOMENTUM_ARROW_LENGTH: f64 = 1.12;
+pub const TORQUE_ARROW_LENGTH: f64 = 0.42;
+const OMEGA_ARROW_LENGTH: f64 = 0.62;
+const WEIGHT_ARROW_LENGTH: f64 = 0.5;
+const PUSH_ARROW_LENGTH: f64 = 0.42;
+/// How far the axis of a turn goes on both sides of the pivot, in lengths of the axle.
+const TURN_AXIS_LENGTH: f64 = 1.2;
+/// The shortest torque that is drawn, in lengths of the axle.
+const LEAST_TORQUE_ARROW: f64 = 0.05;
 /// Directions that differ by less than this, rad, are drawn as one.
 const DISTINCT_DIRECTIONS_RAD: f64 = 0.03;
 
-/// What a letter means, at length, in short and as the letter alone; and how its arrow is drawn.
-fn meaning(letter: &str) -> (LegendText, DepthBias) {
-    match letter {
-        // The axle is whole where it is seen upright.
-        "g" => (
-            (["g weight", "g weight", "g"], Role::Push),
-            DepthBias::BehindRod,
-        ),
-        "Ω" => (
-            (["Ω angular velocity", "Ω", "Ω"], Role::Run),
-            DepthBias::Arrow,
-        ),
-        "u" => (
-            (["u axis of the turn", "u axis", "u"], Role::Run),
-            DepthBias::Farther,
-        ),
-        // These are short and cross the rim, which would hide them.
-        "τ" => (
-            (["τ torque", "τ torque", "τ"], Role::Run),
-            DepthBias::Everything,
-        ),
-        "dL" => (
-            (["dL = τ dt", "dL", "dL"], Role::Run),
-            DepthBias::Everything,
-        ),
-        "F" => (
-            (["F push", "F push", "F"], Role::Push),
-            DepthBias::Everything,
-        ),
-        _ => (
-            (["L angular momentum", "L", "L"], Role::Run),
-            DepthBias::Farther,
-        ),
+/// Fine dots between the axle and an arrow beside it, and in a large picture.
+const SHIFT_DOTS: f64 = 5.0;
+const LARGE_SHIFT_DOTS: f64 = 6.0;
+/// L is so many times as far from the axle if both arrows are on one side.
+const OUTER_SHIFT: f64 = 1.9;
+/// An arrow that differs from the axle by a smaller angle than this on the screen, rad, is on neither of its sides.
+const SIDE_RAD: f64 = 0.06;
+const POINT_DASHES: Dashes = (2, 4);
+const HEAD_DOTS: f64 = 5.0;
+const LARGE_HEAD_DOTS: f64 = 7.0;
+/// Distances of a letter from the tip of its arrow, fine dots, the best first.
+const LETTER_DOTS: [f64; 6] = [4.0, 5.0, 6.0, 3.0, 7.0, 8.0];
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum ArrowKind {
+    Momentum,
+    NewMomentum,
+    AngularVelocity,
+    Torque,
+    ChangeOfMomentum,
+    Weight,
+    Push,
+    TurnAxis,
+}
+
+impl ArrowKind {
+    /// The arrows that are drawn without the step pane.
+    const USUAL: &[Self] = &[
+        Self::Momentum,
+        Self::AngularVelocity,
+        Self::Torque,
+        Self::Push,
+    ];
+
+    fn label(self) -> &'static str {
+        match self {
+            Self::Momentum => "L",
+            Self::NewMomentum => "new L",
+            Self::AngularVelocity => "Ω",
+            Self::Torque => "τ",
+            Self::ChangeOfMomentum => "dL",
+            Self::Weight => "weight",
+            Self::Push => "F",
+            Self::TurnAxis => "u",
+        }
+    }
+
+    fn role(self) -> Role {
+        match self {
+            Self::Momentum | Self::NewMomentum => Role::AngularMomentum,
+            Self::AngularVelocity | Self::TurnAxis => Role::AngularVelocity,
+            Self::Torque | Self::ChangeOfMomentum => Role::Torque,
+            Self::Weight | Self::Push => Role::Push,
+        }
     }
 }
 
-impl SceneSubject<'_> {
-    pub(super) fn draw_arrows(&self, scene: &mut DotScene) -> Vec<SpaceLabel> {
+/// A label of the scene, and the place that it belongs to.
+pub struct SpaceLabel {
+    text: String,
+    role: Role,
+    at: FineDot,
+    /// The direction on the sheet in which an arrow points there.
+    along: Option<FineDot>,
+}
+
+impl SpaceLabel {
+    pub fn beside(text: &str, role: Role, at: FineDot) -> Self {
+        Self {
+            text: text.to_owned(),
+            role,
+            at,
+            along: None,
+        }
+    }
+
+    /// Writes it in front of the arrow's head, or else at a free place beside it.
+    pub fn place(&self, labels: &mut Labels<'_>, theme: &Theme) {
+        let style = theme.style(self.role).bold();
+        let Some(along) = self.along else {
+            labels.place(cell_of(self.at), AROUND_MARK, &self.text, style);
+            return;
+        };
+        let offset = if along.0 < 0.0 {
+            LabelOffset::Left(0, 0)
+        } else {
+            LabelOffset::Right(0, 0)
+        };
+        let is_placed = LETTER_DOTS.iter().any(|dots| {
+            let at = (self.at.0 + along.0 * dots, self.at.1 + along.1 * dots);
+            labels.place(cell_of(at), &[offset], &self.text, style)
+        });
+        if !is_placed {
+            labels.place(cell_of(self.at), AROUND_POINT, &self.text, style);
+        }
+    }
+}
+
+/// How far the arrows of L and of the angular velocity are drawn beside the axle, fine dots. Positive: to the side to which
+/// the axle's normal points.
+struct ArrowShifts {
+    axle_normal: FineDot,
+    momentum: f64,
+    omega: f64,
+}
+
+impl Scene<'_> {
+    /// Draws the arrows; returns their letters, the most important first.
+    pub(super) fn draw_arrows(&self, dots: &mut LayeredDots) -> Vec<SpaceLabel> {
+        let shifts = self.shifts();
+        let pivot = Vector3::zeros();
         let mut labels = Vec::new();
-        for (letter, from, along) in self.arrows() {
-            if !self.draws(letter) {
-                continue;
+        let mut momentum_tip = self.dot(&pivot);
+        for kind in [ArrowKind::Momentum, ArrowKind::NewMomentum] {
+            if let Some(along) = self.along(kind) {
+                let tip = along * (MOMENTUM_ARROW_LENGTH * self.arm);
+                let ends = self.shifted(&pivot, &tip, shifts.momentum, &shifts);
+                labels.push(self.arrow(kind, ends, dots));
+                if kind == ArrowKind::Momentum {
+                    momentum_tip = ends[1];
+                }
             }
-            let (tip, ((_, role), over)) = (from + along, meaning(letter));
-            scene.arrow(&from, &tip, Ink::Strong(role), over);
-            // L goes on beyond the tip of Ω, where no letter can be read, and dL is on the side to which the torque points.
-            let place = match self.torque.filter(|_| letter == "Ω") {
-                Some(torque) => scene.beside(&tip, &torque),
-                None => scene.beyond(&from, &tip),
-            };
-            labels.push((letter, role, place));
+        }
+        if let Some(along) = self.along(ArrowKind::AngularVelocity) {
+            let tip = along * (OMEGA_ARROW_LENGTH * self.arm);
+            let ends = self.shifted(&pivot, &tip, shifts.omega, &shifts);
+            labels.push(self.arrow(ArrowKind::AngularVelocity, ends, dots));
+        }
+        let torque = self
+            .along(ArrowKind::Torque)
+            .map(|along| along * TORQUE_ARROW_LENGTH);
+        let torque = torque.filter(|torque| torque.norm() > LEAST_TORQUE_ARROW);
+        let change = self.drawn_change();
+        for (kind, vector) in [
+            (ArrowKind::Torque, torque),
+            (ArrowKind::ChangeOfMomentum, change),
+        ] {
+            if let Some(vector) = vector {
+                let (begin, end) = (self.dot(&pivot), self.dot(&(vector * self.arm)));
+                let tip = (
+                    momentum_tip.0 + end.0 - begin.0,
+                    momentum_tip.1 + end.1 - begin.1,
+                );
+                labels.push(self.arrow(kind, [momentum_tip, tip], dots));
+            }
+        }
+        for (kind, from, along) in self.forces() {
+            let ends = [self.dot(&from), self.dot(&(from + along * self.arm))];
+            labels.push(self.arrow(kind, ends, dots));
         }
         labels
     }
 
-    /// L and Ω from the pivot, the weight at the centre of mass, its torque at the pivot, at the tip of L where L goes, and
-    /// the pushes that act: each with its letter, its origin and its length.
-    fn arrows(&self) -> Vec<(&'static str, Vector3<f64>, Vector3<f64>)> {
-        let (state, loads) = (self.state, self.seen.run.simulation().loads());
+    fn arrow(&self, kind: ArrowKind, ends: [FineDot; 2], dots: &mut LayeredDots) -> SpaceLabel {
+        let head = if self.is_large() {
+            LARGE_HEAD_DOTS
+        } else {
+            HEAD_DOTS
+        };
+        let [from, tip] = ends;
+        dots.arrow(from, tip, head, kind.role());
+        let (dx, dy) = (tip.0 - from.0, tip.1 - from.1);
+        let length = libm::hypot(dx, dy).max(1.0);
+        SpaceLabel {
+            along: Some((dx / length, dy / length)),
+            ..SpaceLabel::beside(kind.label(), kind.role(), tip)
+        }
+    }
+
+    /// The weight at the center of mass, and the pushes that act: each with its origin and its length in lengths of the axle.
+    fn forces(&self) -> Vec<(ArrowKind, Vector3<f64>, Vector3<f64>)> {
+        let loads = self.seen.run.simulation().loads();
         let body = &self.seen.run.scenario().body.mechanics;
-        let (reach, arm) = (self.reach, self.arm);
-        fn direction(vector: &Vector3<f64>) -> Option<Vector3<f64>> {
-            vector.try_normalize(f64::MIN_POSITIVE)
+        let mut forces = Vec::new();
+        if self.draws(ArrowKind::Weight) && loads.gravity != 0.0 {
+            let center = self.state.orientation * body.first_moment() / body.mass();
+            let down = Vector3::z() * (-WEIGHT_ARROW_LENGTH * loads.gravity.signum());
+            forces.push((ArrowKind::Weight, center, down));
         }
-        let pivot = Vector3::zeros();
-        let mut arrows = Vec::new();
-        if let Some(down) = direction(&(Vector3::z() * -loads.gravity)) {
-            let centre = state.orientation * body.first_moment() / body.mass();
-            arrows.push(("g", centre, down * (WEIGHT * reach)));
-        }
-        let omega = direction(&observables::angular_velocity(body, state));
-        if let Some(along) = self.direction("Ω", omega) {
-            // Shorter than L, in which it would vanish where both lie along the axle.
-            arrows.push(("Ω", pivot, along * (OMEGA_ARROW_LENGTH * arm)));
-        }
-        let momentum = self
-            .direction("L", direction(&state.momentum))
-            .map(|along| along * (MOMENTUM_ARROW_LENGTH * arm));
-        if let Some(torque) = self.direction("τ", self.torque) {
-            arrows.push(("τ", pivot, torque * (TORQUE * reach)));
-        }
-        if let (Some(change), Some(tip)) = (self.direction("dL", self.change), momentum) {
-            arrows.push(("dL", tip, change * (CHANGE_ARROW_SHARE * reach)));
-        }
-        if let Some(new) = self.new_momentum() {
-            arrows.push(("new L", pivot, new * (MOMENTUM_ARROW_LENGTH * arm)));
-        }
-        arrows.extend(momentum.map(|along| ("L", pivot, along)));
-        for push in loads.pushes.iter().take(MOST_SHOWN_PUSHES) {
-            let from = state.orientation * body.points()[push.point].at;
-            let along = direction(&push.force);
-            arrows.extend(along.map(|along| ("F", from, along * (PUSH_ARROW_LENGTH * reach))));
-        }
-        arrows
-    }
-
-    /// Lines that the legend takes of `width` columns, at most `most`. They are as many while a push acts as between
-    /// pushes.
-    pub(super) fn legend_lines(&self, width: usize, most: usize) -> usize {
-        let has_pushes = !self.seen.run.scenario().pushes.is_empty();
-        self.legend_in(width, most, has_pushes).len().max(1)
-    }
-
-    /// What the letters and signs mean, in as many words as there is room for.
-    pub(super) fn legend(&self, area: Rect, buf: &mut Buffer) {
-        let theme = &self.seen.view.theme;
-        let is_pushed = !self.seen.run.simulation().loads().pushes.is_empty();
-        let lines = self.legend_in(area.width as usize, area.height as usize, is_pushed);
-        for (line, y) in lines.iter().zip(0..area.height) {
-            let mut x = 0;
-            for (word, role) in line {
-                x = write(area, (x, y), word, theme.style(*role), buf) + LEGEND_WORD_GAP as u16;
+        if self.draws(ArrowKind::Push) {
+            for push in loads.pushes.iter().take(MOST_SHOWN_PUSHES) {
+                let from = self.state.orientation * body.points()[push.point].at;
+                let along = push.force.try_normalize(f64::MIN_POSITIVE);
+                let along = along.map(|along| along * PUSH_ARROW_LENGTH);
+                forces.extend(along.map(|along| (ArrowKind::Push, from, along)));
             }
         }
+        forces
     }
 
-    /// The lines of the legend: everything named at length, or what there is room for.
-    fn legend_in(&self, width: usize, most: usize, is_pushed: bool) -> Vec<LegendLine> {
-        let (arrows, signs) = match self.phase_legend() {
-            Some(words) => (words, Vec::new()),
-            None => (self.arrows_in_words(is_pushed), self.signs_in_words()),
+    /// The direction of an arrow, or for the torque its share of the full length, if the arrow is drawn.
+    fn along(&self, kind: ArrowKind) -> Option<Vector3<f64>> {
+        if !self.draws(kind) {
+            return None;
+        }
+        let body = &self.seen.run.scenario().body.mechanics;
+        let now = match kind {
+            ArrowKind::Momentum => Some(self.state.momentum),
+            ArrowKind::AngularVelocity => Some(observables::angular_velocity(body, self.state)),
+            ArrowKind::Torque => self.torque,
+            ArrowKind::NewMomentum => return self.new_momentum(),
+            ArrowKind::ChangeOfMomentum
+            | ArrowKind::Weight
+            | ArrowKind::Push
+            | ArrowKind::TurnAxis => None,
         };
-        let lines = |(arrows_at, signs_at): (usize, Option<usize>)| {
-            let named = arrows.iter().map(|(words, role)| (words[arrows_at], *role));
-            let signs = signs_at
-                .into_iter()
-                .flat_map(|at| signs.iter().map(move |sign| (sign, at)))
-                .map(|((words, role), at)| (words[at], *role));
-            let words = named.chain(signs).filter(|(word, _)| !word.is_empty());
-            in_lines(words, |(word, _)| word, LEGEND_WORD_GAP, width)
+        let shown = self.phase.as_ref();
+        let worked = shown.and_then(|shown| shown.direction(kind.label()));
+        let own = match kind {
+            ArrowKind::Torque => now,
+            _ => now.and_then(|now| now.try_normalize(f64::MIN_POSITIVE)),
         };
-        let forms = [
-            (0, Some(0)),
-            (0, Some(1)),
-            (0, Some(2)),
-            (1, Some(1)),
-            (1, Some(2)),
-            (2, Some(2)),
-            (1, None),
-        ];
-        let fitting = forms
-            .into_iter()
-            .map(lines)
-            .find(|lines| lines.len() <= most);
-        fitting.unwrap_or_else(|| lines((2, None)).into_iter().take(most).collect())
+        worked.or(own)
     }
 
-    fn arrows_in_words(&self, is_pushed: bool) -> Vec<LegendText> {
+    fn shifts(&self) -> ArrowShifts {
+        let pivot = self.dot(&Vector3::zeros());
+        let top = self.dot(&(self.state.axle() * self.arm));
+        let axle_normal = normal(pivot, top);
+        // The sine of the angle on the sheet from the axle to a direction.
+        let aside = |along: Option<Vector3<f64>>| {
+            let (x, y) = self.dot(&(along? * self.arm));
+            let (dx, dy) = (x - pivot.0, y - pivot.1);
+            let across = dx * axle_normal.0 + dy * axle_normal.1;
+            Some(across / libm::hypot(dx, dy).max(1.0))
+        };
+        let momentum = aside(self.along(ArrowKind::Momentum)).unwrap_or(0.0);
+        let side = if momentum < -SIDE_RAD { -1.0 } else { 1.0 };
+        let omega = aside(self.along(ArrowKind::AngularVelocity));
+        let omega_side = match omega {
+            Some(omega) if omega.abs() >= SIDE_RAD => omega.signum(),
+            _ => -side,
+        };
+        let shift = if self.is_large() {
+            LARGE_SHIFT_DOTS
+        } else {
+            SHIFT_DOTS
+        };
+        let is_outer = omega.is_some() && omega_side == side;
+        ArrowShifts {
+            axle_normal,
+            momentum: side * shift * if is_outer { OUTER_SHIFT } else { 1.0 },
+            omega: omega_side * shift,
+        }
+    }
+
+    /// The ends of an arrow on the sheet, moved by `shift` across itself, to a side of the axle.
+    fn shifted(
+        &self,
+        from: &Vector3<f64>,
+        tip: &Vector3<f64>,
+        shift: f64,
+        shifts: &ArrowShifts,
+    ) -> [FineDot; 2] {
+        let ends = [self.dot(from), self.dot(tip)];
+        let (x, y) = normal(ends[0], ends[1]);
+        let is_turned = x * shifts.axle_normal.0 + y * shifts.axle_normal.1 < 0.0;
+        let shift = if is_turned { -shift } else { shift };
+        ends.map(|end| (end.0 + x * shift, end.1 + y * shift))
+    }
+
+    /// What the letters mean, as many as there is room for.
+    pub(super) fn legend(&self, area: Rect, buf: &mut Buffer) {
+        let theme = &self.seen.view.theme;
+        let mut words = self.legend_words();
+        let length = |words: &[(&str, String, Role)]| {
+            let columns = words.iter().map(|(letter, meaning, _)| {
+                columns(letter) + 1 + columns(meaning) + usize::from(LEGEND_WORD_GAP)
+            });
+            columns
+                .sum::<usize>()
+                .saturating_sub(LEGEND_WORD_GAP.into())
+        };
+        while length(&words) > area.width.into() {
+            words.pop();
+        }
+        let mut x = 0;
+        for (letter, meaning, role) in words {
+            if !letter.is_empty() {
+                x = write(area, (x, 0), letter, theme.style(role).bold(), buf) + 1;
+            }
+            x = write(area, (x, 0), &meaning, theme.style(Role::Label), buf) + LEGEND_WORD_GAP;
+        }
+    }
+
+    /// Each letter with its meaning and its role.
+    fn legend_words(&self) -> Vec<(&'static str, String, Role)> {
         let loads = self.seen.run.simulation().loads();
-        let is_rubbed = !loads.friction.is_none();
-        let letters = ["L", "Ω", "g", "τ", "dL", "F"].into_iter();
-        let words = |letter| {
-            let (words, role) = meaning(letter).0;
-            let words = match letter {
-                "g" if loads.gravity == 0.0 => ["no weight", "", ""],
-                "τ" if self.torque.is_none() => ["no torque", "no torque", ""],
-                "dL" if self.change.is_none() => ["L stays", "", ""],
-                "dL" if is_rubbed => ["dL with friction", "dL", "dL"],
-                _ => words,
-            };
-            (words, role)
-        };
-        letters
-            .filter(|letter| is_pushed || *letter != "F")
-            .map(words)
-            .collect()
-    }
-
-    /// What is drawn besides the arrows.
-    #[rustfmt::skip]
-    fn signs_in_words(&self) -> Vec<LegendText> {
-        let is_top = self.seen.run.scenario().traces_top();
-        let all = [
-            (true, ["+ pivot"; 3], Role::Heading),
-            (true, ["thick: axle", "", ""], Role::Heading),
-            (is_top, ["* axle top", "* top", "* top"], Role::Heading),
-            (!is_top, ["* traced point", "* traced", "* traced"], Role::Heading),
-            (true, ["►▲ its way", "", ""], Role::Heading),
-            (self.shape.rim.is_some(), ["■ hub", "■ hub", ""], Role::Heading),
-            (true, ["O o · masses, near to far", "O o · masses", ""], Role::Text),
-            (self.seen.run.overlay().is_some(), ["dots: exact motion", "dots: exact", "dots: exact"], Role::Exact),
-            (self.seen.pinned.is_some(), ["long dashes: pinned", "-- pinned", "-- pinned"], Role::Previous),
-            (self.seen.ghost.is_some(), ["dotted: other run", "dotted: other", "dotted: other"], Role::Previous),
+        let kinds = [
+            ArrowKind::Momentum,
+            ArrowKind::AngularVelocity,
+            ArrowKind::Torque,
+            ArrowKind::ChangeOfMomentum,
+            ArrowKind::Weight,
+            ArrowKind::Push,
+            ArrowKind::TurnAxis,
         ];
-        let drawn = all.into_iter().filter(|(is_drawn, ..)| *is_drawn);
-        drawn.map(|(_, words, role)| (words, role)).collect()
+        let mut words = Vec::new();
+        for kind in kinds.into_iter().filter(|kind| self.draws(*kind)) {
+            let meaning = match kind {
+                ArrowKind::Momentum | ArrowKind::NewMomentum => "angular momentum".to_owned(),
+                ArrowKind::AngularVelocity => "angular velocity".to_owned(),
+                ArrowKind::Torque if self.torque.is_none() => {
+                    words.push(("", "no torque".to_owned(), Role::Label));
+                    continue;
+                }
+                ArrowKind::Torque => "torque".to_owned(),
+                ArrowKind::ChangeOfMomentum if !loads.friction.is_none() => {
+                    "with friction".to_owned()
+                }
+                ArrowKind::ChangeOfMomentum => "= dt τ".to_owned(),
+                ArrowKind::Weight => {
+                    let mass = self.seen.run.scenario().body.mechanics.mass();
+                    format!("{} N", significant(mass * loads.gravity.abs(), 3))
+                }
+                ArrowKind::Push if loads.pushes.is_empty() => continue,
+                ArrowKind::Push => "push".to_owned(),
+                ArrowKind::TurnAxis => "axis of the turn".to_owned(),
+            };
+            words.push((kind.label(), meaning, kind.role()));
+        }
+        let has_before = self.phase.as_ref().is_some_and(StepArrows::has_before);
+        if has_before {
+            words.push(("", "gray: before the step".to_owned(), Role::Label));
+        }
+        words
     }
 }
-
-/// What a letter means, at length, in short and as the letter alone.
-type LegendText = ([&'static str; 3], Role);
-/// The words of a line of the legend.
-type LegendLine = Vec<(&'static str, Role)>;
-/// Columns between two words of the legend.
-const LEGEND_WORD_GAP: usize = 2;
 
 #[derive(Clone, Copy)]
 pub struct StepArrows<'a> {
@@ -246,20 +388,23 @@ impl<'a> StepArrows<'a> {
         })
     }
 
-    /// The letters of the arrows that the phase is about.
-    fn letters(&self) -> &'static [&'static str] {
+    /// The arrows that the phase is about.
+    fn kinds(&self) -> &'static [ArrowKind] {
+        use ArrowKind::*;
         match self.phase.name {
             PhaseName::Inertia => &[],
-            PhaseName::AngularVelocity => &["Ω", "L"],
-            PhaseName::Torque => &["τ", "g", "F"],
-            PhaseName::NewMomentum | PhaseName::Kick => &["L", "dL", "new L"],
-            PhaseName::FreeMotion | PhaseName::Friction => &["L"],
-            name if name.is_slope() => &["Ω", "τ"],
-            _ => &["u"],
+            PhaseName::AngularVelocity => &[AngularVelocity, Momentum],
+            PhaseName::Torque => &[Torque, Weight, Push],
+            PhaseName::NewMomentum | PhaseName::Kick => {
+                &[Momentum, ChangeOfMomentum, NewMomentum, Weight]
+            }
+            PhaseName::FreeMotion | PhaseName::Friction => &[Momentum],
+            name if name.is_slope() => &[AngularVelocity, Torque],
+            _ => &[TurnAxis],
         }
     }
 
-    /// Whether the body is drawn as it stood before the step too.
+    /// Whether the body is drawn as it was before the step too.
     fn has_before(&self) -> bool {
         match self.phase.name {
             PhaseName::AngularVelocity
@@ -272,8 +417,8 @@ impl<'a> StepArrows<'a> {
         }
     }
 
-    /// The direction of the last vector of this `symbol` in the step up to this phase.
-    fn direction(&self, symbol: &str) -> Option<Vector3<f64>> {
+    /// The last vector of this `symbol` in the step up to this phase.
+    fn vector(&self, symbol: &str) -> Option<Vector3<f64>> {
         let phases = self
             .explained
             .workings
@@ -283,15 +428,13 @@ impl<'a> StepArrows<'a> {
         let mut quantities = phases.flat_map(|phase| phase.quantities.iter().rev());
         let found = quantities.find(|quantity| quantity.symbol == symbol)?;
         match found.value {
-            WorkedValue::Vector(vector) => vector.try_normalize(f64::MIN_POSITIVE),
+            WorkedValue::Vector(vector) => Some(vector),
             _ => None,
         }
     }
 
-    /// Whether friction has a part in dL, which is not along τ then.
-    fn is_rubbed(&self) -> bool {
-        let mut parts = self.explained.workings.parts.iter();
-        parts.any(|part| !part.loads.friction.is_none())
+    fn direction(&self, symbol: &str) -> Option<Vector3<f64>> {
+        self.vector(symbol)?.try_normalize(f64::MIN_POSITIVE)
     }
 
     fn before(&self) -> &State {
@@ -299,90 +442,95 @@ impl<'a> StepArrows<'a> {
     }
 }
 
-impl SceneSubject<'_> {
-    /// Whether the arrow of this letter is drawn. Where the step pane is shown, only those are that its phase is about.
-    fn draws(&self, letter: &str) -> bool {
-        let shown = self.shown_phase.as_ref();
-        shown.is_none_or(|shown| shown.letters().contains(&letter))
+impl Scene<'_> {
+    /// Whether arrows of this kind are drawn. If the step pane is shown, only those that its phase is about.
+    fn draws(&self, kind: ArrowKind) -> bool {
+        let kinds = self
+            .phase
+            .as_ref()
+            .map_or(ArrowKind::USUAL, StepArrows::kinds);
+        kinds.contains(&kind)
     }
 
-    /// The direction of `letter` in the numbers of the phase, or else `now`.
-    fn direction(&self, letter: &str, now: Option<Vector3<f64>>) -> Option<Vector3<f64>> {
-        let shown = self.shown_phase.as_ref();
-        shown.and_then(|shown| shown.direction(letter)).or(now)
-    }
-
-    /// The axis of the turn, and the body before it.
-    pub(super) fn phase(&self, scene: &mut DotScene) -> Vec<SpaceLabel> {
+    /// The axis of the turn, the body before it, and the chosen point.
+    pub(super) fn phase_marks(&self, dots: &mut LayeredDots) -> Vec<SpaceLabel> {
         let mut labels = Vec::new();
-        let Some(shown) = &self.shown_phase else {
+        let Some(shown) = &self.phase else {
             return labels;
         };
-        if let Some(axis) = shown.direction("u").filter(|_| self.draws("u")) {
-            let end = axis * (AXIS * MOMENTUM_ARROW_LENGTH * self.arm);
-            scene.line(&-end, &end, LineStroke::Thin, Ink::Strong(Role::Run));
-            labels.push(("u", Role::Run, end * 1.04));
+        let axis = shown
+            .direction("u")
+            .filter(|_| self.draws(ArrowKind::TurnAxis));
+        if let Some(axis) = axis {
+            let end = axis * (TURN_AXIS_LENGTH * self.arm);
+            let (from, to) = (self.dot(&-end), self.dot(&end));
+            dots.line(from, to, ink(Role::AngularVelocity, Layer::Shaft));
+            let kind = ArrowKind::TurnAxis;
+            labels.push(SpaceLabel::beside(kind.label(), kind.role(), to));
         }
         if shown.has_before() {
-            self.body_before(shown.before(), scene);
+            self.body_before(shown.before(), dots);
         }
-        if let Some(point) = shown.point {
-            let points = self.seen.run.scenario().body.mechanics.points();
-            let Some(point) = points.get(point) else {
-                return labels;
-            };
-            let before = shown.before().orientation * point.at;
+        let scenario = self.seen.run.scenario();
+        let points = scenario.body.mechanics.points();
+        let chosen = shown.point.filter(|index| *index < points.len());
+        if let Some(index) = chosen {
+            let before = shown.before().orientation * points[index].at;
             let (from, to) = match shown.phase.name {
-                PhaseName::Inertia => (Vector3::zeros(), before),
-                _ => (before, self.state.orientation * point.at),
+                PhaseName::Inertia | PhaseName::Torque => {
+                    (Vector3::zeros(), self.state.orientation * points[index].at)
+                }
+                _ => (before, self.state.orientation * points[index].at),
             };
-            scene.line(&from, &to, LineStroke::Thin, Ink::Strong(Role::Heading));
-            labels.push(("@", Role::Heading, to));
+            let (from, to) = (self.dot(&from), self.dot(&to));
+            dots.path(
+                [from, to].into_iter(),
+                Some(POINT_DASHES),
+                f64::INFINITY,
+                ink(Role::Text, Layer::Shaft),
+            );
+            dots.spot(to, Spot::Five, ink(Role::Text, Layer::Start));
+            labels.push(SpaceLabel::beside(
+                &name_of(scenario, index),
+                Role::Heading,
+                to,
+            ));
         }
         labels
     }
 
-    /// The masses where they were before the step.
-    pub(super) fn signs_of_phase(&self, scene: &DotScene) -> Vec<BodySign> {
-        let shown = self.shown_phase.as_ref().filter(|shown| shown.has_before());
-        shown.map_or_else(Vec::new, |shown| self.masses_before(shown.before(), scene))
-    }
-
-    /// The direction of the new L, if the phase makes one that is seen to differ from the old.
+    /// The direction of the new L, if the phase computes one that is seen to differ from the old.
     fn new_momentum(&self) -> Option<Vector3<f64>> {
-        let shown = self.shown_phase.as_ref().filter(|_| self.draws("dL"))?;
+        let shown = self.phase.as_ref()?;
         let (old, new) = (shown.direction("L")?, shown.direction("new L")?);
         Some(new).filter(|new| (new - old).norm() > DISTINCT_DIRECTIONS_RAD)
     }
 
-    /// What the letters of the phase mean.
-    fn phase_legend(&self) -> Option<Vec<LegendText>> {
-        let shown = self.shown_phase.as_ref()?;
-        let words = |letter: &&str| match *letter {
-            "dL" if shown.is_rubbed() => (["dL, its direction", "dL, direction", "dL"], Role::Run),
-            "dL" => (
-                ["dL along τ, its direction", "dL, direction", "dL"],
-                Role::Run,
-            ),
-            letter => meaning(letter).0,
-        };
-        let mut words: Vec<_> = shown
-            .letters()
-            .iter()
-            .filter(|letter| match **letter {
-                "F" => !self.seen.run.simulation().loads().pushes.is_empty(),
-                "u" => shown.direction("u").is_some(),
-                "new L" => false, // the arrow says it
-                _ => true,
-            })
-            .map(words)
-            .collect();
-        if shown.has_before() {
-            words.push((["° dotted: before the step", "° before", "°"], Role::Label));
+    /// dL as it is drawn beside L, in lengths of the axle, and how much longer than L it is drawn.
+    fn stretched_change(&self) -> Option<(Vector3<f64>, f64)> {
+        let shown = self
+            .phase
+            .as_ref()
+            .filter(|_| self.draws(ArrowKind::ChangeOfMomentum))?;
+        let change = shown.vector("dL")?;
+        let momentum = shown.vector("L").unwrap_or(shown.before().momentum).norm();
+        let share = change * (MOMENTUM_ARROW_LENGTH / momentum);
+        let stretch = at_or_below(TORQUE_ARROW_LENGTH / share.norm());
+        (share.norm() > 0.0 && stretch.is_finite()).then(|| (share * stretch, stretch))
+    }
+
+    /// The change of L that is drawn, in lengths of the axle. If the phase does not give it, its direction alone.
+    fn drawn_change(&self) -> Option<Vector3<f64>> {
+        if !self.draws(ArrowKind::ChangeOfMomentum) {
+            return None;
         }
-        if shown.point.is_some() {
-            words.push((["@ the point", "@ point", "@"], Role::Heading));
-        }
-        Some(words)
+        let stretched = self.stretched_change().map(|(change, _)| change);
+        stretched.or(self.change.map(|change| change * TORQUE_ARROW_LENGTH))
+    }
+
+    /// Says how much longer than L dL is drawn.
+    pub(super) fn change_stretch_text(&self) -> Option<String> {
+        let (_, stretch) = self.stretched_change()?;
+        (stretch != 1.0).then(|| format!("dL {} × as long", decimal(stretch)))
     }
 }

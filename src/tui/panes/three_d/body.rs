@@ -1,12 +1,12 @@
-//! The body in the scene: axle, hub, spokes, rim, masses and solid parts. Near parts look heavier than far ones.
+//! The body in the scene: axle, hub, rim, masses and solid parts. Near parts look heavier than far ones.
 
-use super::{CIRCLE_PARTS, SceneSubject};
+use super::{CIRCLE_PARTS, Scene, ink};
 use crate::engine::scenario::file::RimFile;
 use crate::lab::playback::live::LiveRun;
 use crate::lab::playback::outline::{self, Polyline};
 use crate::physics::{PlacedSolid, State};
-use crate::tui::dots::Ink;
-use crate::tui::scene::{DotScene, LineStroke};
+use crate::tui::dots::Dashes;
+use crate::tui::layered_dots::{FineDot, Layer, LayeredDots, Spot};
 use crate::tui::theme::Role;
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
@@ -14,23 +14,14 @@ use std::f64::consts::TAU;
 /// The most free points and parts that are drawn.
 const MOST_FREE: usize = 60;
 const MOST_PARTS: usize = 60;
-/// Where the spoke begins, of the radius of the rim.
-const HUB: f64 = 0.14;
-/// The hub. It is no letter, as those stand for vectors and masses.
-const HUB_SIGN: &str = "■";
-/// A mass or a line is near or far where it is nearer or farther than the middle of the rim or of its part by this share of
-/// the rim's radius or of the part's size.
-const NEAR_SHARE: f64 = 0.33;
-/// A centre that is off the axle by less than this share of the body's size needs no line to it.
+/// A line of a part is far if it is farther than the part's middle by this share of the part's size.
+const FAR_SHARE: f64 = 0.33;
+/// A center that is off the axle by less than this share of the body's size needs no line to it.
 const CENTER_ON_AXLE: f64 = 1e-3;
-/// The least distance of the signs of masses on the rim, cells.
-const CLOSEST: f64 = 2.0;
-
-/// Lines of the body as it stood before.
-const EARLIER_BODY_STROKE: (LineStroke, Ink) = (LineStroke::Dotted(2), Ink::Strong(Role::Previous));
-
-/// A sign, its role and its cell.
-pub type BodySign = (&'static str, Role, (u16, u16));
+/// Masses on a rim are drawn if they are at least this far apart, fine dots.
+const CLOSEST_MASSES: f64 = 5.0;
+/// Lines from the axle to what is off it, far lines of parts, and lines of the body before a step.
+const STRUT_DASHES: Dashes = (1, 2);
 
 /// The body as it is drawn, upright: distances from the axle and heights.
 pub struct DrawnBody {
@@ -88,27 +79,21 @@ impl DrawnBody {
     }
 }
 
-/// The point `index` of `points` on the rim, or on a circle that is `share` as large.
-fn rim_point(
-    rim: &RimFile,
-    state: &State,
-    index: usize,
-    points: usize,
-    share: f64,
-) -> Vector3<f64> {
+/// The point `index` of `points` that divide the rim.
+fn rim_point(rim: &RimFile, state: &State, index: usize, points: usize) -> Vector3<f64> {
     let (sin, cos) = libm::sincos(TAU * index as f64 / points as f64);
-    let radius = share * rim.radius_m;
-    state.orientation * Vector3::new(radius * cos, radius * sin, rim.height_m)
+    let (x, y) = (rim.radius_m * cos, rim.radius_m * sin);
+    state.orientation * Vector3::new(x, y, rim.height_m)
 }
 
 fn rim_circle(rim: &RimFile, state: &State) -> Vec<Vector3<f64>> {
     (0..CIRCLE_PARTS)
-        .map(|part| rim_point(rim, state, part, CIRCLE_PARTS, 1.0))
+        .map(|part| rim_point(rim, state, part, CIRCLE_PARTS))
         .collect()
 }
 
 fn rim_masses(rim: &RimFile, state: &State) -> impl Iterator<Item = Vector3<f64>> {
-    (0..rim.points).map(|point| rim_point(rim, state, point, rim.points, 1.0))
+    (0..rim.points).map(|point| rim_point(rim, state, point, rim.points))
 }
 
 /// A part as it is drawn, upright.
@@ -142,140 +127,161 @@ impl Solid {
     }
 }
 
-impl SceneSubject<'_> {
-    /// The axle from the pivot to its top, hub, spokes and rim, and what joins free masses to the axle.
-    pub(super) fn body(&self, scene: &mut DotScene) {
+impl Scene<'_> {
+    /// Rim, axle, hub, masses, and the solid parts.
+    pub(super) fn body(&self, dots: &mut LayeredDots) {
         let state = self.state;
-        let axle = state.axle();
-        let (foot, top) = self.shape.axle;
-        let text = Ink::Strong(Role::Text);
-        scene.rod(&(axle * foot), &(axle * top), Ink::Strong(Role::Heading));
         for at in &self.shape.free {
-            let foot = axle * at.z;
-            scene.line(
-                &foot,
-                &(state.orientation * at),
-                LineStroke::Dotted(2),
-                text,
-            );
+            let foot = state.axle() * at.z;
+            self.dashed(&foot, &(state.orientation * at), Role::RimNear, dots);
         }
         for solid in &self.shape.solids {
-            self.solid(solid, scene);
+            self.solid(solid, dots);
         }
         if let Some(rim) = &self.shape.rim {
-            let middle = scene.depth(&(axle * rim.height_m));
-            scene.ring(&rim_circle(rim, state), |depth| {
-                match is_near(depth, middle, rim.radius_m) {
-                    Some(true) => (LineStroke::Thick, text),
-                    None => (LineStroke::Thin, text),
-                    Some(false) => (LineStroke::Thin, Ink::Faint(Role::Label)),
-                }
-            });
-            // One spoke only: it shows that the wheel turns, and more of them would hide the axle.
-            let [hub, at] = [HUB, 1.0].map(|share| rim_point(rim, state, 0, 1, share));
-            scene.line(&hub, &at, LineStroke::Thin, text);
+            self.rim(rim, dots);
+        }
+        let (foot, top) = self.shape.axle;
+        self.axle(&(state.axle() * foot), &(state.axle() * top), dots);
+        self.masses(dots);
+    }
+
+    /// The axle, two dots thick.
+    fn axle(&self, foot: &Vector3<f64>, top: &Vector3<f64>, dots: &mut LayeredDots) {
+        let of_axle = ink(Role::Text, Layer::Axle);
+        let (from, to) = (self.dot(foot), self.dot(top));
+        let (across, down) = normal(from, to);
+        dots.line(from, to, of_axle);
+        let beside = |at: FineDot| (at.0 + across, at.1 + down);
+        dots.line(beside(from), beside(to), of_axle);
+    }
+
+    fn rim(&self, rim: &RimFile, dots: &mut LayeredDots) {
+        let points = rim_circle(rim, self.state);
+        let middle = self.camera.depth(&self.wheel());
+        for (index, from) in points.iter().enumerate() {
+            let to = &points[(index + 1) % points.len()];
+            let is_near = self.camera.depth(&((from + to) * 0.5)) <= middle;
+            let of_part = if is_near {
+                ink(Role::RimNear, Layer::Near)
+            } else {
+                ink(Role::RimFar, Layer::Far)
+            };
+            dots.line(self.dot(from), self.dot(to), of_part);
         }
     }
 
-    /// Near lines thick, far ones dotted, and a dotted line from the axle to what is off it.
-    fn solid(&self, solid: &Solid, scene: &mut DotScene) {
-        let ink = Ink::Strong(Role::Text);
-        let centre = self.state.orientation * solid.centre;
-        let middle = scene.depth(&centre);
+    /// The far lines of a part are dashed. A dashed line leads from the axle to what is off it.
+    fn solid(&self, solid: &Solid, dots: &mut LayeredDots) {
+        let center = self.state.orientation * solid.centre;
+        let middle = self.camera.depth(&center);
         if solid.centre.xy().norm() > CENTER_ON_AXLE * self.reach {
             let foot = self.state.axle() * solid.centre.z;
-            scene.line(&foot, &centre, LineStroke::Dotted(2), ink);
+            self.dashed(&foot, &center, Role::RimNear, dots);
         }
         for line in &solid.lines {
             for (from, to) in pieces(line, self.state) {
-                let depth = scene.depth(&((from + to) * 0.5));
-                let (stroke, ink) = match is_near(depth, middle, solid.size) {
-                    Some(true) if !line.is_mark => (LineStroke::Thick, ink),
-                    Some(false) if !line.is_mark => {
-                        (LineStroke::Dotted(2), Ink::Faint(Role::Label))
-                    }
-                    _ => (LineStroke::Thin, ink),
-                };
-                scene.line(&from, &to, stroke, ink);
+                let behind = self.camera.depth(&((from + to) * 0.5)) - middle;
+                if behind > FAR_SHARE * solid.size && !line.is_mark {
+                    self.dashed(&from, &to, Role::RimFar, dots);
+                } else {
+                    let near = ink(Role::RimNear, Layer::Near);
+                    dots.line(self.dot(&from), self.dot(&to), near);
+                }
             }
         }
     }
 
-    /// The wheel, the axle and the solid parts as they stood at `state`, dotted.
-    pub(super) fn body_before(&self, state: &State, scene: &mut DotScene) {
-        let (stroke, ink) = EARLIER_BODY_STROKE;
+    fn dashed(&self, from: &Vector3<f64>, to: &Vector3<f64>, role: Role, dots: &mut LayeredDots) {
+        let ends = [self.dot(from), self.dot(to)].into_iter();
+        dots.path(
+            ends,
+            Some(STRUT_DASHES),
+            f64::INFINITY,
+            ink(role, Layer::Far),
+        );
+    }
+
+    /// The wheel, the axle and the solid parts as they were at `state`, dotted.
+    pub(super) fn body_before(&self, state: &State, dots: &mut LayeredDots) {
         let axle = state.axle();
         let (foot, top) = self.shape.axle;
-        scene.line(&(axle * foot), &(axle * top), stroke, ink);
+        self.dashed(&(axle * foot), &(axle * top), Role::Previous, dots);
         if let Some(rim) = &self.shape.rim {
-            scene.ring(&rim_circle(rim, state), |_| EARLIER_BODY_STROKE);
-            let spoke = rim_point(rim, state, 0, 1, 1.0);
-            scene.line(&(axle * rim.height_m), &spoke, stroke, ink);
+            let points = rim_circle(rim, state);
+            for (index, from) in points.iter().enumerate() {
+                let to = &points[(index + 1) % points.len()];
+                self.dashed(from, to, Role::Previous, dots);
+            }
         }
         for at in &self.shape.free {
-            let foot = axle * at.z;
-            scene.line(&foot, &(state.orientation * at), stroke, ink);
+            self.dashed(
+                &(axle * at.z),
+                &(state.orientation * at),
+                Role::Previous,
+                dots,
+            );
         }
         for line in self.shape.solids.iter().flat_map(|solid| &solid.lines) {
             for (from, to) in pieces(line, state) {
-                scene.line(&from, &to, stroke, ink);
+                self.dashed(&from, &to, Role::Previous, dots);
             }
+        }
+        for at in self.places_of_masses(state) {
+            let before = ink(Role::Previous, Layer::Previous);
+            dots.spot(self.dot(&at), Spot::Two, before);
         }
     }
 
-    /// The masses, the nearest last: a larger sign is nearer; and the hub, which no mass covers.
-    pub(super) fn masses(&self, scene: &DotScene) -> Vec<BodySign> {
+    /// The masses and the hub: what is near is larger.
+    fn masses(&self, dots: &mut LayeredDots) {
         let hub = self.wheel();
-        let middle = scene.depth(&hub);
-        let rim = self.shape.rim.as_ref();
-        let radius = rim.map_or(self.reach, |rim| rim.radius_m);
-        let mut masses = self.places_of_masses(self.state, scene);
-        masses.sort_by(|a, b| scene.depth(b).total_cmp(&scene.depth(a)));
-        let signs = masses.iter().map(|at| {
-            let (sign, role) = match is_near(scene.depth(at), middle, radius) {
-                Some(true) => ("O", Role::Heading),
-                None => ("o", Role::Text),
-                Some(false) => ("·", Role::Label),
-            };
-            (sign, role, scene.cell(at))
-        });
-        let has_hub = rim.is_some() && scene.shows(&hub);
-        let hub = has_hub.then(|| (HUB_SIGN, Role::Heading, scene.cell(&hub)));
-        signs.chain(hub).collect()
+        let middle = self.camera.depth(&hub);
+        let [near, far] = if self.is_large() {
+            [Spot::Five, Spot::Three]
+        } else {
+            [Spot::Three, Spot::Two]
+        };
+        for at in self.places_of_masses(self.state) {
+            if self.camera.depth(&at) <= middle {
+                dots.spot(self.dot(&at), near, ink(Role::Text, Layer::Mass));
+            } else {
+                dots.spot(self.dot(&at), far, ink(Role::RimFar, Layer::Far));
+            }
+        }
+        if self.shape.rim.is_some() {
+            dots.spot(self.dot(&hub), Spot::Three, ink(Role::Text, Layer::Mass));
+        }
     }
 
-    pub(super) fn masses_before(&self, state: &State, scene: &DotScene) -> Vec<BodySign> {
-        let masses = self.places_of_masses(state, scene);
-        masses
-            .iter()
-            .map(|at| ("°", Role::Previous, scene.cell(at)))
+    /// The places of the masses at `state`; those of the rim only if they can be told apart.
+    fn places_of_masses(&self, state: &State) -> Vec<Vector3<f64>> {
+        let apart = |rim: &RimFile| {
+            TAU * rim.radius_m * self.plane.scale.1 / rim.points as f64 >= CLOSEST_MASSES
+        };
+        let rim = self.shape.rim.iter().filter(|rim| apart(rim));
+        let free = self.shape.free.iter().map(|at| state.orientation * at);
+        rim.flat_map(|rim| rim_masses(rim, state))
+            .chain(free)
             .collect()
     }
 
-    /// Where the masses are at `state`: those in the picture, and those of the rim only if their signs have room there.
-    fn places_of_masses(&self, state: &State, scene: &DotScene) -> Vec<Vector3<f64>> {
-        let rim = self.shape.rim.iter().filter(|rim| {
-            // From the side the rim is at least as long as twice its width.
-            let plane = &scene.plane;
-            let length = 4.0 * rim.radius_m * plane.scale.1 / plane.in_cell.1 as f64;
-            length * 2.0 >= CLOSEST * rim.points as f64
-        });
-        let free = self.shape.free.iter().map(|at| state.orientation * at);
-        let masses = rim.flat_map(|rim| rim_masses(rim, state)).chain(free);
-        masses.filter(|at| scene.shows(at)).collect()
-    }
-
     /// The middle of the wheel, or the axle's top where there is none.
-    pub(super) fn wheel(&self) -> Vector3<f64> {
+    fn wheel(&self) -> Vector3<f64> {
         let rim = self.shape.rim.as_ref();
         self.state.axle() * rim.map_or(self.shape.axle.1, |rim| rim.height_m)
     }
 }
 
-/// Whether something is in front of `middle`, behind it, or beside it, by `depth`.
-fn is_near(depth: f64, middle: f64, size: f64) -> Option<bool> {
-    let share = (depth - middle) / size;
-    (share.abs() > NEAR_SHARE).then_some(share < 0.0)
+/// The direction across the line from one dot to another, a unit vector on the sheet.
+pub fn normal(from: FineDot, to: FineDot) -> FineDot {
+    let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+    let length = libm::hypot(dx, dy);
+    if length > 2.0 {
+        (-dy / length, dx / length)
+    } else {
+        (1.0, 0.0)
+    }
 }
 
 /// The straight pieces of a line, in the world at `state`.

@@ -1,0 +1,145 @@
+//! What the picture from above shows: the origin, the run, and the motion that theory predicts.
+//!
+//! It does not change while the run keeps to theory. Else it grows in steps and never shrinks, because every change of the
+//! scale redraws the whole picture.
+
+use super::super::PlotInputs;
+use super::super::gravity_motion::{gravity_motion, predicted_tilts_deg};
+use crate::engine::run::Clock;
+use crate::engine::scenario::Scenario;
+use nalgebra::{Vector2, Vector3};
+use std::f64::consts::TAU;
+
+/// A picture of a point that stays on the vertical shows at least this to each side, m.
+const LEAST_HALF_M: f64 = 1e-6;
+/// A run that leaves the predicted motion by less than this share is inside the picture's margin.
+const MARGIN_SHARE: f64 = 0.02;
+/// The natural logarithm of the steps in which a side grows: 10 %.
+const STEP: f64 = 0.0953;
+
+/// If gravity turns L by less than this in the whole run, rad, the path is a circle about L.
+const STEADY_MOMENTUM_RAD: f64 = 0.35;
+/// A point that is nearer to the axle than this share of its distance from the pivot is on it.
+const POINT_ON_AXLE: f64 = 1e-6;
+/// A motion with a smaller swing of the tilt, rad, is a circle.
+const CIRCLE_SWING_RAD: f64 = 0.01;
+/// A run that covers less of a turn than this does not show its circle.
+const COVERED_TURN: f64 = 1.0 / 3.0;
+
+/// A rectangle around the origin, m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlaneExtent {
+    least: Vector2<f64>,
+    most: Vector2<f64>,
+}
+
+impl PlaneExtent {
+    pub fn of(seen: &PlotInputs<'_>) -> Self {
+        let scenario = seen.run.scenario();
+        let mut reached = Self::about(Vector2::zeros(), 0.0);
+        let (_, path) = seen.run.pictures();
+        let exact = seen.run.overlay().map(|overlay| &overlay.path);
+        let others = [seen.ghost, seen.pinned].into_iter().flatten();
+        for path in [path]
+            .into_iter()
+            .chain(exact)
+            .chain(others.map(|other| &other.path))
+        {
+            path.dots()
+                .for_each(|(x, y)| reached.add(Vector2::new(x, y)));
+        }
+        let places = seen.measured.map_or(&[][..], |data| &data.compared.places);
+        places.iter().for_each(|place| reached.add(place.at));
+        let predicted = Self::predicted(scenario);
+        reached.in_steps(&predicted, scenario.arm_m())
+    }
+
+    fn about(middle: Vector2<f64>, radius: f64) -> Self {
+        let half = Vector2::new(radius, radius);
+        Self {
+            least: (middle - half).inf(&Vector2::zeros()),
+            most: (middle + half).sup(&Vector2::zeros()),
+        }
+    }
+
+    fn add(&mut self, at: Vector2<f64>) {
+        if at.iter().all(|part| part.is_finite()) {
+            (self.least, self.most) = (self.least.inf(&at), self.most.sup(&at));
+        }
+    }
+
+    /// The motion of the traced point as theory predicts it at the start, without pushes.
+    fn predicted(scenario: &Scenario) -> Self {
+        let traced = scenario.body.mechanics.points()[scenario.trace].at;
+        if !is_on_axle(&traced) {
+            return Self::about(Vector2::zeros(), 0.0);
+        }
+        if let Some((middle, radius)) = circle_about_momentum(scenario) {
+            return Self::about(middle, radius);
+        }
+        let radius = predicted_tilts_deg(scenario).map_or(0.0, |(low, high)| {
+            let widest = 90.0_f64.max(low).min(high);
+            traced.norm() * libm::sin(widest.to_radians())
+        });
+        Self::about(Vector2::zeros(), radius)
+    }
+
+    /// The sides of `predicted`, each grown in steps as far as this extent reaches.
+    fn in_steps(&self, predicted: &Self, arm_m: f64) -> Self {
+        let side = |reached: f64, predicted: f64| {
+            if reached <= predicted * (1.0 + MARGIN_SHARE) {
+                return predicted;
+            }
+            let base = if predicted > 0.0 { predicted } else { arm_m };
+            base * libm::exp((libm::log(reached / base) / STEP).ceil() * STEP)
+        };
+        let zip =
+            |reached: Vector2<f64>, predicted: Vector2<f64>| reached.zip_map(&predicted, side);
+        Self {
+            least: -zip(-self.least, -predicted.least),
+            most: zip(self.most, predicted.most),
+        }
+    }
+
+    pub fn middle(&self) -> Vector2<f64> {
+        0.5 * (self.least + self.most)
+    }
+
+    /// Half of its width and height, m.
+    pub fn half(&self) -> Vector2<f64> {
+        (0.5 * (self.most - self.least)).map(|half| half.max(LEAST_HALF_M))
+    }
+}
+
+/// The radius of the circle that theory predicts, m, where the run covers too little of it to show it.
+pub fn predicted_circle(scenario: &Scenario) -> Option<f64> {
+    let traced = scenario.body.mechanics.points()[scenario.trace].at;
+    let is_left_alone = scenario.pushes.is_empty() && scenario.edits.is_empty();
+    if !is_left_alone || !is_on_axle(&traced) || circle_about_momentum(scenario).is_some() {
+        return None;
+    }
+    let motion = gravity_motion(scenario)?;
+    let (low, high) = motion.tilt_range();
+    let turn = motion.mean_precession().abs() * Clock::end_s(scenario) / TAU;
+    let is_circle = high - low < CIRCLE_SWING_RAD && low > CIRCLE_SWING_RAD;
+    (is_circle && turn < COVERED_TURN).then(|| traced.norm() * libm::sin(high))
+}
+
+/// The circle about L that the traced point draws, from above: its middle and its radius, m. `None` if gravity turns L
+/// noticeably within the run.
+fn circle_about_momentum(scenario: &Scenario) -> Option<(Vector2<f64>, f64)> {
+    let momentum = scenario.start.momentum;
+    let axis = momentum.try_normalize(f64::MIN_POSITIVE)?;
+    let torque = scenario.motion.gravity * scenario.body.mechanics.first_moment().norm();
+    let turn = torque.abs() / momentum.norm() * Clock::end_s(scenario);
+    let is_left_alone = scenario.pushes.is_empty() && scenario.edits.is_empty();
+    let start = scenario.start.orientation * scenario.body.mechanics.points()[scenario.trace].at;
+    let middle = axis * axis.dot(&start);
+    let radius = (start - middle).norm();
+    let is_steady = is_left_alone && turn < STEADY_MOMENTUM_RAD;
+    (is_steady && middle.xy().norm() > 0.0).then(|| (middle.xy(), radius))
+}
+
+fn is_on_axle(at: &Vector3<f64>) -> bool {
+    at.xy().norm() <= POINT_ON_AXLE * at.norm()
+}
