@@ -21,6 +21,8 @@ const ASLANT_PITCH_DEG: f64 = 24.0;
 const ASIDE_DEG: f64 = 14.0;
 /// The apparent length of an axle that can be read, as a share of its length: a shorter one points too much at the eye.
 const READABLE_LENGTH: f64 = 0.75;
+/// The least width of a wheel's ellipse, as a share of its length.
+const OPEN_WHEEL: f64 = 0.15;
 /// An axle nearer to the vertical than this, degrees, is seen from every side alike.
 const UPRIGHT_DEG: f64 = 8.0;
 /// Directions that are chosen are multiples of this, degrees.
@@ -90,10 +92,11 @@ impl Camera {
         }
     }
 
-    /// Returns true if `axle` is seen long enough to be read.
+    /// Returns true if `axle` is seen long enough to be read, and the wheel across it is not seen as a line.
     pub fn reads(&self, axle: &Vector3<f64>) -> bool {
         let (right, up) = self.project(axle);
-        libm::hypot(right, up) >= READABLE_LENGTH * axle.norm()
+        let is_long = libm::hypot(right, up) >= READABLE_LENGTH * axle.norm();
+        is_long && self.view().depth(axle).abs() >= OPEN_WHEEL * axle.norm()
     }
 
     /// Its sines and cosines: for many points in turn. The same on every machine.

@@ -121,13 +121,14 @@ impl LayeredDots {
         let (drawn, out_of) = dashes.unwrap_or((1, 1));
         let mut passed = 0;
         let mut last: Option<FineDot> = None;
+        let mut last_dot: Option<FineDot> = None;
         for at in places {
             let from = last.replace(at).unwrap_or(at);
             let is_joined = (at.0 - from.0).abs().max((at.1 - from.1).abs()) <= longest;
             let from = if is_joined { from } else { at };
-            for (share, dot) in dots::line(from, at, self.size()) {
-                let is_new = share > 0.0 && (dot.0.floor(), dot.1.floor()) != floor(from);
-                passed += usize::from(is_new);
+            for (_, dot) in dots::line(from, at, self.size()) {
+                let whole = (dot.0.floor(), dot.1.floor());
+                passed += usize::from(last_dot.replace(whole) != Some(whole));
                 if passed % out_of < drawn {
                     self.set(dot, ink);
                 }
@@ -232,10 +233,6 @@ impl LayeredDots {
         let layer = usize::from(is_faint(top));
         Some((self.marker.sign(layer, bits), top))
     }
-}
-
-fn floor((x, y): FineDot) -> FineDot {
-    (x.floor(), y.floor())
 }
 
 /// Returns true if dots of `role` stay in a cell whose uppermost dot is of `top`.

@@ -37,7 +37,7 @@ const PUSH_HEAD_DOTS: f64 = 5.0;
 /// Fine dots between what is shown and the edge of the picture.
 const MARGIN_DOTS: f64 = 4.0;
 /// The distance between two ticks is the next round number above this share of what is shown.
-const TICK_SHARE: f64 = 0.25;
+const TICK_SHARE: f64 = 0.2;
 /// Decimals of a tick's number; a finer one has an exponent.
 const MOST_TICK_DECIMALS: i64 = 4;
 
@@ -105,21 +105,10 @@ impl<'a> AbovePicture<'a> {
             let [x, y] = [now.position.x, now.position.y].map(|at| Zoom::middle(at, half.min()));
             Vector2::new(x, y)
         };
-        let dots = Vector2::new(
-            2.0 * f64::from(picture.width),
-            4.0 * f64::from(picture.height),
-        );
-        let share = dots.map(|dots| dots / (dots - 2.0 * MARGIN_DOTS).max(1.0));
-        let half = half.component_mul(&share);
         Self {
             seen,
             picture,
-            plane: Plane::new(
-                picture,
-                Marker::Braille,
-                (middle.x, middle.y),
-                (half.x, half.y),
-            ),
+            plane: plane(picture, middle, half),
             now,
             exact,
         }
@@ -421,6 +410,24 @@ impl<'a> AbovePicture<'a> {
             labels.place((crossing.0, row), &beside, &tick_text(y, step), style);
         }
     }
+}
+
+/// The plane about `middle` that reaches `half` to each side, and up and down (m), with a margin. Its origin is in the upper
+/// half of a cell, so that the ticks of x are in the cells of the axis.
+fn plane(picture: Rect, middle: Vector2<f64>, half: Vector2<f64>) -> Plane {
+    let dots = Vector2::new(
+        2.0 * f64::from(picture.width),
+        4.0 * f64::from(picture.height),
+    );
+    let share = dots.map(|dots| dots / (dots - 2.0 * MARGIN_DOTS).max(1.0));
+    let half = half.component_mul(&share);
+    let (marker, middle) = (Marker::Braille, (middle.x, middle.y));
+    let mut plane = Plane::new(picture, marker, middle, (half.x, half.y));
+    let (x, y) = plane.dot((0.0, 0.0));
+    let moved = (x.floor() + 0.5 - x, 4.0 * (y / 4.0).round() + 1.5 - y);
+    plane.middle.0 -= moved.0 / plane.scale.0;
+    plane.middle.1 += moved.1 / plane.scale.1;
+    plane
 }
 
 fn ink(role: Role, layer: Layer) -> DotInk {

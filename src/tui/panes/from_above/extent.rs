@@ -137,7 +137,9 @@ fn circle_about_momentum(scenario: &Scenario) -> Option<(Vector2<f64>, f64)> {
     let middle = axis * axis.dot(&start);
     let radius = (start - middle).norm();
     let is_steady = is_left_alone && turn < STEADY_MOMENTUM_RAD;
-    (is_steady && middle.xy().norm() > 0.0).then(|| (middle.xy(), radius))
+    // A point on the line of L does not circle about it: it goes where gravity turns L.
+    let circles = radius > turn * start.norm() && middle.xy().norm() > 0.0;
+    (is_steady && circles).then(|| (middle.xy(), radius))
 }
 
 fn is_on_axle(at: &Vector3<f64>) -> bool {

@@ -22,7 +22,7 @@ const MOMENTUM_TILT_DEG: f64 = 15.0;
 const FLOOR_GAP: f64 = 0.16;
 const LEAST_FLOOR: f64 = 0.35;
 /// Fine dots that stay free at the sides, there in a small pane, and above, for labels.
-const SIDE_DOTS: f64 = 8.0;
+const SIDE_DOTS: f64 = 4.0;
 const SMALL_SIDE_DOTS: f64 = 3.0;
 const TOP_DOTS: f64 = 5.0;
 
