@@ -117,6 +117,40 @@ pub const ZOOM_KEYS: &[Binding] = &[
     does(&[Lab], &[Home], |lab, _| one(lab.view().zoom_to(1.0)?), "", "show the whole of it"),
 ];
 
+/// So many of the keys of the step pane, the first, go through the phases.
+pub const PHASE_KEYS: usize = 2;
+
+/// The keys of the step pane while it has the focus.
+#[rustfmt::skip]
+pub const STEP_KEYS: &[Binding] = &[
+    does(&[Lab], &[Char('.')], |lab, count| lab.step_pane().other_phase(repeated(count), lab.view(), lab.player()), "next phase", "the next phase of the time step; after the last, the next time step"),
+    does(&[Lab], &[Char(',')], |lab, count| lab.step_pane().other_phase(-repeated(count), lab.view(), lab.player()), "back", "the phase before; before the first, the time step before"),
+    row(&[Lab], &[Char('v')], Action::Toggle(Pane::Step), "close", "the panes without the time step again"),
+    does(&[Lab], &[Char('y')], |lab, _| Ok(lab.view().why_sideways()), "why sideways", "why the axle goes sideways, not down; y shows the phases again"),
+    row(&[Lab], &[Down], Action::Move(Direction::Down, 1), "add up", "add up the table point by point: one more"),
+    row(&[Lab], &[Up], Action::Move(Direction::Up, 1), "", "one point fewer"),
+    row(&[Lab], &[PageDown], Action::Move(Direction::PageDown, 1), "", "ten points more"),
+    row(&[Lab], &[PageUp], Action::Move(Direction::PageUp, 1), "", "ten points fewer"),
+];
+
+/// The keys that mean something while there is a lesson, whichever pane has the focus.
+pub const LESSON_KEYS_EVERYWHERE: &[Binding] = LESSON_KEYS.split_at(5).0;
+
+/// The keys of the page of a lesson while it has the focus; the first of them also elsewhere.
+#[rustfmt::skip]
+pub const LESSON_KEYS: &[Binding] = &[
+    row(&[Lab], &[Char('n')], Action::Lesson(LessonKey::Next), "next page", "the rest of the page, then the next one; while a page's run plays: to its end"),
+    row(&[Lab], &[Char('N')], Action::Lesson(LessonKey::Before), "", "the page before; its run begins again"),
+    row(&[Lab], &[Char('b')], Action::Lesson(LessonKey::Again), "", "begin the page again: its run from where the page wants it"),
+    row(&[Lab], &[Char('h')], Action::Lesson(LessonKey::ShowTask), "", "a hint for the task of the page; again: show how it is done"),
+    row(&[Lab], &[Ctrl('n')], Action::Lesson(LessonKey::Notes), "", "for a class: notes, the next page and a clock"),
+    row(&[Lab], &[Enter], Action::Lesson(LessonKey::Take), "answer", "mark the chosen answer (its number does too), again: lock it; in the list: open the lesson"),
+    row(&[Lab], &[Up], Action::Lesson(LessonKey::Move(Direction::Up)), "", "the answer above; without a question: scroll"),
+    row(&[Lab], &[Down], Action::Lesson(LessonKey::Move(Direction::Down)), "", "the answer below; without a question: scroll"),
+    row(&[Lab], &[PageUp], Action::Lesson(LessonKey::Move(Direction::PageUp)), "", "scroll the page up"),
+    row(&[Lab], &[PageDown], Action::Lesson(LessonKey::Move(Direction::PageDown)), "", "scroll the page down"),
+];
+
 pub fn zoomed_in(lab: &TheLab, count: Option<u64>) -> KeyCommands {
     one(lab.view().other_zoom(repeated(count))?)
 }

@@ -3,12 +3,12 @@
 use super::{PaneRow, below_rule, longest, rule, write};
 use crate::engine::text::wrap::{columns, wrapped};
 use crate::lab::Lab;
-use crate::lab::action::{Action, Direction, LessonKey};
+use crate::lab::action::Direction;
 use crate::lab::sheet::{Emphasis, Paragraph, Sheet, SheetLineKind};
 use crate::lab::view::theme::Marker;
 use crate::lab::view::theme::Theme;
 use crate::lab::view::{Pane, View};
-use crate::tui::keymap::{Binding, Key, Mode, row};
+use crate::tui::keymap;
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
@@ -19,28 +19,9 @@ pub const LESSON_ROW: PaneRow = PaneRow {
     id: Pane::Lesson,
     title: "lesson",
     draw,
-    keys: LESSON_PANE_KEYS,
+    keys: keymap::LESSON_KEYS,
     arrows: None,
 };
-
-/// The keys that mean something while there is a lesson, whichever pane has the focus.
-#[rustfmt::skip]
-pub const EVERYWHERE: &[Binding] = LESSON_PANE_KEYS.split_at(5).0;
-
-/// The keys that mean something while the pane has the focus; the first of them also elsewhere.
-#[rustfmt::skip]
-const LESSON_PANE_KEYS: &[Binding] = &[
-    row(&[Mode::Lab], &[Key::Char('n')], Action::Lesson(LessonKey::Next), "next page", "the rest of the page, then the next one; while a page's run plays: to its end"),
-    row(&[Mode::Lab], &[Key::Char('N')], Action::Lesson(LessonKey::Before), "", "the page before; its run begins again"),
-    row(&[Mode::Lab], &[Key::Char('b')], Action::Lesson(LessonKey::Again), "", "begin the page again: its run from where the page wants it"),
-    row(&[Mode::Lab], &[Key::Char('h')], Action::Lesson(LessonKey::ShowTask), "", "a hint for the task of the page; again: show how it is done"),
-    row(&[Mode::Lab], &[Key::Ctrl('n')], Action::Lesson(LessonKey::Notes), "", "for a class: notes, the next page and a clock"),
-    row(&[Mode::Lab], &[Key::Enter], Action::Lesson(LessonKey::Take), "answer", "mark the chosen answer (its number does too), again: lock it; in the list: open the lesson"),
-    row(&[Mode::Lab], &[Key::Up], Action::Lesson(LessonKey::Move(Direction::Up)), "", "the answer above; without a question: scroll"),
-    row(&[Mode::Lab], &[Key::Down], Action::Lesson(LessonKey::Move(Direction::Down)), "", "the answer below; without a question: scroll"),
-    row(&[Mode::Lab], &[Key::PageUp], Action::Lesson(LessonKey::Move(Direction::PageUp)), "", "scroll the page up"),
-    row(&[Mode::Lab], &[Key::PageDown], Action::Lesson(LessonKey::Move(Direction::PageDown)), "", "scroll the page down"),
-];
 
 /// A line of the page: its first column, and its pieces.
 struct LessonLine {

@@ -31,7 +31,7 @@ use crate::lab::step_pane::StepWorkings;
 use crate::lab::view::theme::Theme;
 use crate::lab::view::{Pane, View};
 use crate::lab::{KeyCommands, Lab};
-use crate::tui::keymap::Binding;
+use crate::tui::keymap::{self, Binding};
 use crate::tui::split::split_rows;
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
@@ -79,12 +79,12 @@ pub fn keys_of(lab: &Lab) -> impl Iterator<Item = &'static Binding> + Clone {
     let is_beside = view.sheet.is_some() && view.side_by_side.contains(&Pane::Step);
     let own = row(view.focus).keys;
     let beside = match view.focus {
-        Pane::Lesson if is_beside => step::STEP_ROW.keys,
-        _ if is_beside => step::STEP_ROW.keys.split_at(step::PHASE_KEYS).0,
+        Pane::Lesson if is_beside => keymap::STEP_KEYS,
+        _ if is_beside => keymap::STEP_KEYS.split_at(keymap::PHASE_KEYS).0,
         _ => &[],
     };
     let turns = if view.sheet.is_some() {
-        lesson::EVERYWHERE
+        keymap::LESSON_KEYS_EVERYWHERE
     } else {
         &[]
     };

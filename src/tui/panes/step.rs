@@ -10,14 +10,13 @@ use crate::engine::scenario::Scenario;
 use crate::engine::text::number::{rounded, shortest, significant};
 use crate::engine::text::wrap::columns;
 use crate::lab::Lab;
-use crate::lab::action::{Action, Direction, repeated};
 use crate::lab::step_pane::{StepWorkings, table_of};
 use crate::lab::view::step::StepPageChoice;
 use crate::lab::view::{Pane, View};
 use crate::physics::observables::position;
 use crate::physics::workings::{Phase, PhaseName, WorkedQuantity, WorkedValue};
 use crate::studies::own_code::{SlipTrial, TRACED_SYMBOL};
-use crate::tui::keymap::{Binding, Key, Mode, does, one, row};
+use crate::tui::keymap::{self, one};
 use crate::tui::theme::Role;
 use numbers::{CellFormat, TableView, is_summed};
 use page::{StepPageLine, StepPageSection};
@@ -36,27 +35,11 @@ pub const STEP_ROW: PaneRow = PaneRow {
     id: Pane::Step,
     title: "step",
     draw,
-    keys: STEP_PANE_KEYS,
+    keys: keymap::STEP_KEYS,
     arrows: Some(|lab, direction, times| {
         one(lab.step_pane().other_sum(direction, times, lab.view())?)
     }),
 };
-
-/// The first of the keys go through the phases.
-pub const PHASE_KEYS: usize = 2;
-
-/// The keys that go through the step.
-#[rustfmt::skip]
-const STEP_PANE_KEYS: &[Binding] = &[
-    does(&[Mode::Lab], &[Key::Char('.')], |lab, count| lab.step_pane().other_phase(repeated(count), lab.view(), lab.player()), "next phase", "the next phase of the time step; after the last, the next time step"),
-    does(&[Mode::Lab], &[Key::Char(',')], |lab, count| lab.step_pane().other_phase(-repeated(count), lab.view(), lab.player()), "back", "the phase before; before the first, the time step before"),
-    row(&[Mode::Lab], &[Key::Char('v')], Action::Toggle(Pane::Step), "close", "the panes without the time step again"),
-    does(&[Mode::Lab], &[Key::Char('y')], |lab, _| Ok(lab.view().why_sideways()), "why sideways", "why the axle goes sideways, not down; y shows the phases again"),
-    row(&[Mode::Lab], &[Key::Down], Action::Move(Direction::Down, 1), "add up", "add up the table point by point: one more"),
-    row(&[Mode::Lab], &[Key::Up], Action::Move(Direction::Up, 1), "", "one point fewer"),
-    row(&[Mode::Lab], &[Key::PageDown], Action::Move(Direction::PageDown, 1), "", "ten points more"),
-    row(&[Mode::Lab], &[Key::PageUp], Action::Move(Direction::PageUp, 1), "", "ten points fewer"),
-];
 
 fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let view = lab.view();
