@@ -277,15 +277,17 @@ fn companion(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
         return place_views(area, view);
     }
     let [above, below] = split_rows(area, area.height * 2 / 5);
-    let lower = match is_about_values {
-        true => vec![(Pane::Parameters, below)],
-        false => place_views(below, view),
+    let mut panes = if shown.contains(&Pane::Traces) {
+        vec![(Pane::Traces, above)]
+    } else {
+        place_views(above, view)
     };
-    let upper = match shown.contains(&Pane::Traces) {
-        true => vec![(Pane::Traces, above)],
-        false => place_views(above, view),
-    };
-    [upper, lower].concat()
+    if is_about_values {
+        panes.push((Pane::Parameters, below));
+    } else {
+        panes.extend(place_views(below, view));
+    }
+    panes
 }
 
 /// Two views of the path side by side or one above the other where there is room; else the one that was looked at last.

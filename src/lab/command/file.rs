@@ -77,7 +77,8 @@ fn one(value: &Value) -> Result<Command, Problems> {
     let mut unknown_names = Problems::default();
     for name in table.keys() {
         let is_known = COMMANDS.iter().any(|row| row.name == name);
-        if !is_known && !(name == RERUN && table.contains_key(SET)) {
+        let is_rerun = name == RERUN && table.contains_key(SET);
+        if !is_known && !is_rerun {
             unknown_names.add(|| unknown(name, beside));
         }
     }

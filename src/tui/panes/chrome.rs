@@ -20,6 +20,8 @@ use ratatui::layout::Rect;
 const LEAST_TITLE: usize = 32;
 /// The speed of playback is written in this many columns, so that the time before it does not move.
 const PACE_COLUMNS: usize = 11;
+/// The fewest columns between the scheme and the time.
+const HEADER_GAP: usize = 6;
 /// From this width on, phrases and keys are three columns apart, else two.
 const WIDE_FROM: u16 = 100;
 pub(super) const SEPARATOR: &str = " · ";
@@ -45,8 +47,9 @@ pub fn header(lab: &Lab, area: Rect, buf: &mut Buffer) {
     ];
     let width = usize::from(area.width);
     let least_title = columns(title).min(LEAST_TITLE);
-    let fits =
-        |form: &(String, String)| least_title + columns(&form.0) + 2 + columns(&form.1) <= width;
+    let fits = |form: &(String, String)| {
+        least_title + columns(&form.0) + HEADER_GAP + columns(&form.1) <= width
+    };
     let [.., last] = &forms;
     let (details, clock) = forms.iter().find(|form| fits(form)).unwrap_or(last);
     let clock_x = width.saturating_sub(columns(clock)) as u16;
