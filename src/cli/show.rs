@@ -11,6 +11,7 @@ use crate::tui::screen;
 use crate::tui::svg::svg;
 use anyhow::Context;
 use clap::Args;
+use ratatui::layout::Rect;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -99,6 +100,7 @@ pub(super) fn print_picture(
     };
     let usual = args.svg.then_some(Marker::Braille); // whatever the terminal is
     let mut lab = new_lab::open_lab(name, &args.changes, args.markers.or(usual), theme, false)?;
+    screen::fit(&mut lab, Rect::new(0, 0, args.size.0, args.size.1));
     if let Some(folder) = confined {
         lab.files_mut().confine(folder);
     }

@@ -148,6 +148,12 @@ impl Lab {
         self.read_now(); // a run that stands still is not read again by itself
     }
 
+    /// Shows so many swings in the traces, if the run has more.
+    pub fn show_swings(&mut self, swings: usize) {
+        self.view.swings = swings;
+        self.choose_window();
+    }
+
     /// Chooses the time that the traces show.
     fn choose_window(&mut self) {
         self.view.window = self.player.window(self.now, &self.view, &self.comparison);
@@ -155,9 +161,7 @@ impl Lab {
 
     /// Reads the numbers of the run, and whatever depends on them.
     fn read_now(&mut self) {
-        if let Some(said) = self.player.read(self.now, &self.view) {
-            self.say(said);
-        }
+        self.player.read(self.now, &self.view);
         self.comparison.compare(&self.player);
         self.view.measured = self.comparison.data().is_some();
         self.step_pane.read(&mut self.player, &self.view);

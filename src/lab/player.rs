@@ -3,7 +3,6 @@
 //! `seek` moves the run: to a step, or on as time passes. `replay` plays a run that an edit restarted to the time at which
 //! the previous run was.
 
-mod fast_strip;
 mod replay;
 mod seek;
 mod window;
@@ -16,12 +15,10 @@ use crate::engine::journal::expression::Expression;
 use crate::engine::journal::restart::{in_force, scenario_from};
 use crate::engine::run::{Clock, Moment, Sample, Simulation};
 use crate::engine::scenario::{Motion, Scenario};
-use crate::lab::playback::detail::Detail;
 use crate::lab::playback::live::LiveRun;
 use crate::lab::playback::lookup::{self, StepNumbers};
 use crate::lab::playback::pace::{Pace, Speed};
 use crate::lab::playback::reading::{READING_INTERVAL, Reading};
-use fast_strip::FastStrip;
 use indicatif::HumanCount;
 use replay::Replay;
 pub(super) use replay::furthest_s;
@@ -31,8 +28,6 @@ pub(super) use seek::{Halt, MOST_UNTIL};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// The share of the traces' window that may pass between two readings; a faster run is read for every frame.
-const FAST: f64 = 0.1;
 /// If a step takes longer than this at the chosen speed, s, a message says so.
 const LONG_STEP_S: f64 = 3.0;
 
@@ -91,7 +86,6 @@ pub struct Player {
     replay: Option<Replay>,
     pub reading: Reading,
     read_at: Duration,
-    strip: FastStrip,
     /// When the window of the traces was held last.
     window_held_at: Duration,
     at_cursor: Option<CursorNumbers>,
@@ -109,7 +103,6 @@ impl Player {
         run.set_overlay(exact);
         let reading = Reading::new(&mut run, &pace);
         Self {
-            strip: FastStrip::new(&run, &reading),
             window_held_at: Duration::ZERO,
             run,
             pace,
@@ -174,7 +167,6 @@ impl Player {
         if let Some(exact) = begins_with_exact(scenario) {
             self.run.set_overlay(exact);
         }
-        self.strip.forget();
     }
 
     /// Goes to `step`, at which a session has left the run, with its speed and its end, and with the exact motion or not.
@@ -326,21 +318,16 @@ impl Player {
         toml::to_string(&scenario.file).map_err(|error| error.to_string())
     }
 
-    /// Returns true if the numbers must be read again at `now`, if the traces show `window_s`.
-    pub(super) fn is_due(&self, now: Duration, window_s: f64) -> bool {
-        // Of so fast a run, numbers read a few times a second would not belong to the picture of each frame.
-        let passes_s = READING_INTERVAL.as_secs_f64();
-        self.is_flat_out()
-            || matches!(self.speed(), Speed::Times(speed) if speed * passes_s > FAST * window_s)
-            || now >= self.read_at + READING_INTERVAL
+    /// Returns true if the numbers must be read again at `now`.
+    pub(super) fn is_due(&self, now: Duration) -> bool {
+        self.is_flat_out() || now >= self.read_at + READING_INTERVAL
     }
 
-    /// Reads the numbers. Returns a message where the strip of the fast motion now shows another curve of the same run.
-    pub(super) fn read(&mut self, now: Duration, view: &View) -> Option<&'static str> {
+    /// Reads the numbers.
+    pub(super) fn read(&mut self, now: Duration, view: &View) {
         self.reading = Reading::new(&mut self.run, &self.pace);
         self.read_at = now;
         self.look_up_cursor(view.cursor);
-        self.choose_strip(now, view)
     }
 
     /// Looks up the numbers at the cursor, unless they are known.
@@ -379,9 +366,9 @@ impl Player {
         Some((&cursor.run.moment, cursor.exact.as_ref()))
     }
 
-    /// Returns the window of the strip of the fast motion.
-    pub fn detail(&self) -> &Detail {
-        &self.strip.detail
+    /// Returns the latest time that the run has reached, s.
+    pub fn furthest_s(&self) -> f64 {
+        furthest_s(&self.run)
     }
 
     pub fn run(&self) -> &LiveRun {

@@ -370,7 +370,7 @@ impl Lab {
         }
         self.follow_export();
         self.go_on_with_script(halt);
-        if self.changed && self.player.is_due(now, self.view.look.window_s) {
+        if self.changed && self.player.is_due(now) {
             self.read_now();
         } else if self.changed {
             self.choose_window();

@@ -159,12 +159,20 @@ pub fn zoomed_out(lab: &TheLab, count: Option<u64>) -> KeyCommands {
     one(lab.view().other_zoom(-repeated(count))?)
 }
 
-pub fn wider(lab: &TheLab, _: Option<u64>) -> KeyCommands {
-    one(lab.view().other_window(true, lab.player())?)
+pub fn other_window(lab: &TheLab, count: Option<u64>) -> KeyCommands {
+    one(lab.view().other_window(count, lab.player())?)
 }
 
-pub fn narrower(lab: &TheLab, _: Option<u64>) -> KeyCommands {
-    one(lab.view().other_window(false, lab.player())?)
+pub fn usual_window(lab: &TheLab, _: Option<u64>) -> KeyCommands {
+    Ok(lab.view().usual_window())
+}
+
+pub fn magnified(lab: &TheLab, count: Option<u64>) -> KeyCommands {
+    one(lab.view().other_magnification(repeated(count)))
+}
+
+pub fn magnified_less(lab: &TheLab, count: Option<u64>) -> KeyCommands {
+    one(lab.view().other_magnification(-repeated(count)))
 }
 
 /// One time step, or as many as the count says, on with 1 and back with -1.
@@ -250,7 +258,7 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Lab], &[Char('e')], Action::Parameters, "edit", "to the values of the scenario: Up, Down choose, Left, Right nudge").found_by("parameters dt time step scheme mass gravity friction change").to(CHANGE_GROUP).worth(FooterPriority::Useful),
     does(&[Lab], &[Char('a')], |lab, _| one(lab.adviser().followed(lab.player())?), "fix", "take the advice: rerun from the start with the time step or scheme that fixes the run"),
     does(&[Lab], &[Char('r')], restarted, "restart", "back to step 0; what was done stays").to(PLAY),
-    does(&[Lab], &[Char('w')], wider, "window", "traces: show twice the time"),
+    does(&[Lab], &[Char('w')], other_window, "window", "traces: a few swings, or the whole run; 20w shows twenty swings"),
     row(&[Lab], &[Char('o')], Action::Browse, "open", "open a preset or a file").to(OPEN_GROUP).worth(FooterPriority::Useful),
     row(&[Lab], &[Char('L')], Action::Lesson(LessonKey::List), "lessons", "the list of lessons").worth(FooterPriority::Kept),
     row(&[Lab], &[Char('x')], Action::Ask(Ask::Export), "CSV", "write the run up to here as CSV").to(KEEP_GROUP).worth(FooterPriority::Useful),
@@ -289,7 +297,7 @@ pub static BINDINGS: &[Binding] = &[
     does(&[Lab], &[Char('(')], |_, _| one(Command::Cursor(CursorTo::TurnBefore)), "", "the cursor to the last turn of the tilt before it"),
     does(&[Lab], &[Char(')')], |_, _| one(Command::Cursor(CursorTo::NextTurn)), "", "the cursor to the next turn of the tilt"),
     does(&[Lab], &[Char('|')], |_, _| one(Command::Cursor(CursorTo::Mark)), "", "mark the turn at the cursor; at another turn, count the swings between: period, mean, and theory's"),
-    does(&[Lab], &[Char('W')], narrower, "", "traces: show half the time"),
+    does(&[Lab], &[Char('W')], usual_window, "", "traces: the usual window again, at the run's time"),
     row(&[Browser], &[Enter], Action::Choose, "open", "open the selected row").worth(FooterPriority::Kept),
     row(&[Browser, Find, Help], &[Up, Ctrl('p')], Action::Move(Direction::Up, 1), "", "the row above"),
     row(&[Browser, Find, Help], &[Down, Ctrl('n')], Action::Move(Direction::Down, 1), "", "the row below"),

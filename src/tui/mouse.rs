@@ -1,9 +1,9 @@
 //! The mouse: what a press, a drag or the wheel does where it points. Nothing needs it; every act has keys too.
 
-use super::keymap::{Key, KeyEffect, Mode, narrower, wider, zoomed_in, zoomed_out};
+use super::keymap::{Key, KeyEffect, Mode, zoomed_in, zoomed_out};
 use super::layout::ScreenLayout;
 use super::panes::form::FormPane;
-use super::panes::{PlotInputs, browser, chrome, help, lesson, timeline::Timeline, traces::Traces};
+use super::panes::{PlotInputs, browser, chrome, help, lesson, overview::Overview, traces::Traces};
 use super::press::press;
 use super::screen;
 use crate::engine::run::Clock;
@@ -88,7 +88,7 @@ impl Pointer {
         }
         if layout.overview.contains(at) {
             self.held = Some(Held::Place);
-            let time_s = Timeline::of(lab).time_s(layout.overview, at.x)?;
+            let time_s = Overview::new(lab, layout.overview)?.time_s(at.x)?;
             lab.carry_out_now(&Command::GoTo(SeekTarget::Time(time_s)));
             return None;
         }
@@ -172,7 +172,8 @@ impl Pointer {
                 let run = lab.player().run();
                 let furthest = run.furthest();
                 let furthest_s = Clock::at(run.scenario(), furthest).time_s(furthest);
-                let time_s = Timeline::of(lab).time_s(layout.overview, at.x);
+                let time_s =
+                    Overview::new(lab, layout.overview).and_then(|overview| overview.time_s(at.x));
                 if let Some(time_s) = time_s {
                     // Time that the run has not reached would take long: a press goes there.
                     lab.carry_out_now(&Command::GoTo(SeekTarget::Time(time_s.min(furthest_s))));
@@ -216,10 +217,14 @@ fn wheel(layout: &ScreenLayout, at: Position, up: bool, lab: &mut Lab) -> Option
         }
         return None;
     }
-    let (pane, _) = pane_at(layout, at)?;
+    let (pane, place) = pane_at(layout, at)?;
+    if pane == Pane::Traces {
+        let about_s = Traces(PlotInputs::of(lab)).time_s(place, at)?;
+        lab.turn_to(pane);
+        lab.press(|lab, _| lab.view().zoomed_window(about_s, up, lab.player()));
+        return None;
+    }
     let does = match pane {
-        Pane::Traces if up => KeyEffect::Commands(narrower),
-        Pane::Traces => KeyEffect::Commands(wider),
         Pane::Above | Pane::ThreeD if up => KeyEffect::Commands(zoomed_in),
         Pane::Above | Pane::ThreeD => KeyEffect::Commands(zoomed_out),
         Pane::Lesson if lab.mode() == Mode::Lessons => {

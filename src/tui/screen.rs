@@ -1,7 +1,9 @@
 //! The whole picture: every pane in its place, and on top what has been opened; drawn on a terminal, as text, or as the
 //! bytes that a terminal would be sent.
 
-use super::panes::{self, browser, chrome, form::FormPane, help, hint, lesson, measured, timeline};
+use super::panes::{
+    self, browser, chrome, form::FormPane, help, hint, lesson, measured, overview, traces,
+};
 use crate::engine::text::wrap::columns;
 use crate::lab::Lab;
 use crate::lab::action::Direction;
@@ -23,14 +25,24 @@ use std::{io, mem};
 pub fn fit(lab: &mut Lab, size: Rect) {
     let panes = ScreenLayout::side_by_side(size, lab.view());
     lab.view_mut().set_side_by_side(panes);
+    let swings = swings(lab, size);
+    lab.show_swings(swings);
 }
 
 /// Fits `lab` to a screen of this size again where other panes are shown than before.
 pub fn refit(lab: &mut Lab, size: Rect) {
     let panes = ScreenLayout::side_by_side(size, lab.view());
-    if panes != lab.view().side_by_side {
+    if panes != lab.view().side_by_side || swings(lab, size) != lab.view().swings {
         fit(lab, size);
     }
+}
+
+/// Returns how many swings the traces have room for on a screen of this size.
+fn swings(lab: &Lab, size: Rect) -> usize {
+    let place = layout(lab, true, size).place_of(Pane::Traces);
+    place.map_or(lab.view().swings, |place| {
+        traces::swings(place.width, lab.view().marker)
+    })
 }
 
 /// Scrolls the page of the lesson, on a screen of this size.
@@ -62,7 +74,7 @@ pub fn draw(lab: &Lab, keys: bool, area: Rect, buf: &mut Buffer) {
         }
     }
     chrome::header(lab, places.header, buf);
-    timeline::draw(lab, places.overview, buf);
+    overview::draw(lab, places.overview, buf);
     measured::draw(lab, places.measured, buf);
     let place = hint::place(lab, &places);
     let share_a_row = places.note == places.verdict;

@@ -3,16 +3,13 @@
 use crate::support::scenarios::{preset, view as seen};
 use crate::support::words::has_all;
 use gyrolab::engine::journal::parameters::{parameters, table_of};
-use gyrolab::engine::recording::RecordedCurve;
 use gyrolab::engine::scenario::{Document, presets};
 use gyrolab::lab::action::FieldEdit;
 use gyrolab::lab::form::{InputField, InputForm};
-use gyrolab::lab::playback::detail::{Detail, DetailRequest};
 use gyrolab::lab::playback::ghost::Ghost;
 use gyrolab::lab::playback::live::LiveRun;
 use gyrolab::lab::playback::pace::Pace;
 use gyrolab::lab::playback::reading::Reading;
-use gyrolab::lab::playback::strip::Strip;
 use gyrolab::lab::values::list::ListedValue;
 use gyrolab::lab::values::list::ValueList;
 use gyrolab::lab::view::theme::Marker;
@@ -35,8 +32,6 @@ const COLOURS: Theme = Theme {
     palette: Palette::TrueColor,
     background: Background::Dark,
 };
-/// Size of the traces pane on an 80x24 screen.
-const STRIPS: (u16, u16) = (40, 19);
 /// Size of the view from above on an 80x24 screen.
 const ROUND: (u16, u16) = (36, 19);
 
@@ -76,13 +71,6 @@ fn text(buf: &Buffer) -> String {
         .collect()
 }
 
-fn traces(run: &LiveRun, ghost: Option<&Ghost>, window_s: Option<f64>, marker: Marker) -> String {
-    let mut view = view(run, marker);
-    view.look.window_s = window_s.unwrap_or(view.look.window_s);
-    let alone = seen_alone(run, &view);
-    drawn(Traces(PlotInputs { ghost, ..alone }), STRIPS)
-}
-
 /// `run` alone.
 fn seen_alone<'a>(run: &'a LiveRun, view: &'a View) -> PlotInputs<'a> {
     PlotInputs {
@@ -93,20 +81,7 @@ fn seen_alone<'a>(run: &'a LiveRun, view: &'a View) -> PlotInputs<'a> {
         measured: None,
         reading: None,
         explained: None,
-        detail: undivided(run, view),
         cursor: None,
-    }
-}
-
-/// No strip of its own for the fast motion: all strips show the same time.
-fn undivided(run: &LiveRun, view: &View) -> Detail {
-    let long = Strip::following(run.now().time_s, view.look.window_s, 1);
-    Detail {
-        curve: RecordedCurve::Tilt,
-        begin_s: long.begin_s,
-        window_s: long.window_s,
-        swing_s: None,
-        is_snapshot: false,
     }
 }
 
@@ -128,220 +103,13 @@ fn the_run_before_lies_under_the_run() {
     let (now, ghost) = edited(4000);
     for marker in [Marker::Braille, Marker::Dot, Marker::Ascii] {
         let name = marker.name();
-        let strips = traces(&now, Some(&ghost), None, marker);
-        insta::assert_snapshot!(format!("ghost_traces_{name}"), strips);
         let above = from_above(&now, Some(&ghost), marker);
         insta::assert_snapshot!(format!("ghost_from_above_{name}"), above);
     }
 }
 
-/// The columns of `picture` that contain one of `signs`, without the border.
-fn columns_with(picture: &str, signs: &str) -> Vec<usize> {
-    let lines = picture.lines().filter(|line| line.starts_with(['│', '|']));
-    let mut columns: Vec<_> = lines
-        .flat_map(|line| -> Vec<usize> {
-            let cells = line.chars().enumerate().filter(|(_, c)| signs.contains(*c));
-            cells.map(|(x, _)| x - 1).collect()
-        })
-        .collect();
-    columns.sort_unstable();
-    columns.dedup();
-    columns
-}
-
-#[test]
-fn the_run_before_is_seen_wherever_the_run_does_not_hide_it() {
-    // The height of a steady top is a level line: at every height it is as dense.
-    for tilt_deg in 20..45 {
-        let steady = |tilt_deg| {
-            run(
-                "steady-slow",
-                &[&format!("start.tilt_deg={tilt_deg}")],
-                "",
-                3000,
-            )
-        };
-        let (before, now) = (steady(tilt_deg), steady(50));
-        let picture = traces(&now, Some(&Ghost::capture(&before)), None, Marker::Braille);
-        let lines = picture.lines().skip_while(|line| !line.starts_with("│z"));
-        let of_run = "⠉⠒⠤⣀";
-        let dots = lines
-            .flat_map(str::chars)
-            .filter(|c| ('\u{2801}'..='\u{28ff}').contains(c) && !of_run.contains(*c))
-            .count();
-        assert!(dots >= 10, "{tilt_deg} degrees: {dots}\n{picture}");
-    }
-}
-
-#[test]
-fn the_run_before_is_ahead_of_the_pen_and_ends_where_it_ended() {
-    let (now, ghost) = edited(100);
-    // 10 s on 38 columns; it ended at 7 s.
-    let columns = columns_with(&traces(&now, Some(&ghost), None, Marker::Dot), "°");
-    assert_eq!(columns.last(), Some(&26), "{columns:?}");
-    // The first 5 s of it, to the edge of the window, and no heap of what came later.
-    let picture = traces(&now, Some(&ghost), Some(5.0), Marker::Dot);
-    assert_eq!(columns_with(&picture, "°").last(), Some(&36), "{picture}");
-    let at = |column: usize| {
-        let lines = picture.lines();
-        let cells = lines.filter(|line| line.chars().nth(column + 1) == Some('°'));
-        cells.count()
-    };
-    assert!(at(36) <= at(34) + 2, "{picture}");
-}
-
-#[test]
-fn the_strips_stand_still_while_the_run_comes_after_the_one_before() {
-    let ranges = |picture: &str| -> Vec<String> {
-        let lines = picture.lines().filter(|line| line.contains(" .. "));
-        lines.map(str::to_owned).collect()
-    };
-    let before = run("loops", &[], "", 7000);
-    let ghost = Ghost::capture(&before);
-    let at = |steps| {
-        let now = run("loops", &[], "", steps);
-        ranges(&traces(&now, Some(&ghost), None, Marker::Braille))
-    };
-    assert_eq!(at(0), at(6999));
-    assert_eq!(at(0), ranges(&traces(&before, None, None, Marker::Braille)));
-}
-
 const EDITS: &str = "[[edit]]\nstep = 150\nset = { 'motion.time_step_s' = 0.05 }\n\
                      [[edit]]\nstep = 450\nset = { 'motion.gravity_m_per_s2' = 5 }";
-
-#[test]
-fn pushes_and_edits_are_marked_where_they_were() {
-    let now = run("wobble-push", &[], EDITS, 500);
-    for marker in [Marker::Braille, Marker::Ascii] {
-        let name = marker.name();
-        let picture = traces(&now, None, Some(40.0), marker);
-        insta::assert_snapshot!(format!("marks_{name}"), picture);
-        // 40 s on 38 columns: pushed for the first 20 s; edits at 15 s and at 30 s.
-        let border = picture.lines().last().unwrap();
-        let pushed: String = border
-            .chars()
-            .skip(1)
-            .take_while(|c| !"─-".contains(*c))
-            .collect();
-        assert_eq!(pushed.chars().count(), 19, "{border}");
-        assert!(pushed.contains("push"), "{border}");
-        assert_eq!(columns_with(&picture, ":"), [14, 28], "{picture}");
-    }
-    // Later the window begins at 20 s: it has the edit at 30 s, and no longer the push.
-    let now = run("wobble-push", &[], EDITS, 950);
-    assert_eq!(now.now().time_s, 55.0);
-    let picture = traces(&now, None, Some(40.0), Marker::Braille);
-    assert_eq!(columns_with(&picture, ":"), [9], "{picture}");
-    assert!(!picture.contains("push"), "{picture}");
-}
-
-#[test]
-fn the_shortest_push_has_a_mark_and_its_word() {
-    let now = run("wobble-push", &["push.0.steps=1"], "", 10);
-    let picture = traces(&now, None, Some(400.0), Marker::Braille);
-    assert!(picture.contains("└═push─"), "{picture}");
-}
-
-#[test]
-fn no_curve_crosses_an_edit() {
-    // Two steps a window: what is drawn between them is the way from one to the other.
-    let cut = "[[edit]]\nstep = 1\nset = { 'motion.gravity_m_per_s2' = 5 }";
-    let columns = |more| {
-        let now = run("cusps", &["motion.time_step_s=0.1"], more, 2);
-        columns_with(&traces(&now, None, Some(0.25), Marker::Dot), "•")
-    };
-    let (whole, parts) = (columns(""), columns(cut));
-    assert_eq!(whole.len(), 31, "{whole:?}");
-    assert!(parts.len() < 20, "{parts:?}");
-}
-
-#[test]
-fn fast_and_slow_motion_are_both_seen() {
-    // The push makes the axle swing every 1.97 s, 23 times in the first 46 s and twice in a column of the lower strips.
-    let now = run("wobble-push", &[], "", 460);
-    let view = &view(&now, Marker::Braille);
-    let detail = Detail {
-        curve: RecordedCurve::Tilt,
-        begin_s: 20.0,
-        window_s: 20.0,
-        swing_s: None,
-        is_snapshot: false,
-    };
-    let alone = seen_alone(&now, view);
-    let panes = |size| drawn(Traces(PlotInputs { detail, ..alone }), size);
-    insta::assert_snapshot!("fast_and_slow_27x19", panes((27, 19)));
-    insta::assert_snapshot!("fast_and_slow_100x45", panes((100, 45)));
-}
-
-#[test]
-fn the_edges_of_a_band_are_the_extremes_of_the_steps() {
-    let now = run("wobble-push", &[], "", 2300);
-    let strip = Strip::new(0.0, 230.0, 50);
-    let columns = strip.bins(now.recording()).columns(RecordedCurve::Z, &[]);
-    let mut steps = run("wobble-push", &[], "", 0);
-    let mut extremes = vec![(f64::INFINITY, f64::NEG_INFINITY); 50];
-    for _ in 0..=2300 {
-        let (time_s, z) = (steps.now().time_s, steps.now().position.z);
-        let slot = &mut extremes[strip.column(time_s).unwrap()];
-        *slot = (slot.0.min(z), slot.1.max(z));
-        steps.step().unwrap();
-    }
-    for (column, (min, max)) in columns.iter().flatten().zip(extremes) {
-        let band = column.band.unwrap();
-        assert!(band.min <= min && max <= band.max);
-        assert_eq!((column.extent.min, column.extent.max), (min, max));
-    }
-}
-
-/// The traces of `now` on the pane of an 80x24 screen, with the fast motion above.
-fn divided(now: &LiveRun, marker: Marker, buf: &mut Buffer) {
-    let view = &view(now, marker);
-    let wanted = DetailRequest::following(view.look.window_s);
-    let readouts = LiveRun::new(Arc::clone(now.scenario())).readouts();
-    let detail = Detail::new(now, &readouts, &wanted, None);
-    let alone = seen_alone(now, view);
-    Traces(PlotInputs { detail, ..alone }).render(buf.area, buf);
-}
-
-#[test]
-fn the_dashes_of_the_exact_motion_are_seen_over_the_run() {
-    let mut now = run("wobble-push", &[], "", 900);
-    now.set_overlay(true);
-    now.follow_exact(|| false);
-    let mut buf = Buffer::empty(Rect::new(0, 0, 27, 19));
-    divided(&now, Marker::Braille, &mut buf);
-    let exact = view(&now, Marker::Braille).theme.style(Role::Exact).fg;
-    let dashes = buf
-        .content
-        .iter()
-        .filter(|cell| Some(cell.fg) == exact && cell.symbol() != " ")
-        .count();
-    assert!(dashes >= 15, "{dashes} cells\n{}", text(&buf));
-}
-
-#[test]
-fn a_band_is_named_even_and_its_swings_are_found_below() {
-    let now = run("method-1", &[], "", 2000);
-    let mut buf = Buffer::empty(Rect::new(0, 0, 27, 19));
-    divided(&now, Marker::Braille, &mut buf);
-    let picture = text(&buf);
-    assert!(picture.contains("z 1.04 .. 1.14 m swings"), "{picture}");
-    for marker in [Marker::HalfBlock, Marker::Dot, Marker::Ascii] {
-        let mut buf = Buffer::empty(Rect::new(0, 0, 27, 19));
-        divided(&now, marker, &mut buf);
-        let picture = text(&buf);
-        assert!(picture.contains("x -0.5 .. 0.5 m swings"), "{picture}");
-    }
-    assert!(
-        picture.lines().last().unwrap().contains("zoom"),
-        "{picture}"
-    );
-    // Nothing in the band follows the swings that the columns cut at different places.
-    let band: Vec<_> = picture.lines().rev().nth(2).unwrap().chars().collect();
-    let inside = &band[1..band.len() - 1];
-    let is_even = inside.windows(3).all(|cells| cells[0] == cells[2]);
-    assert!(is_even, "{picture}");
-}
 
 #[test]
 fn no_mark_covers_the_word_for_a_push_straight_down() {
@@ -642,24 +410,22 @@ proptest! {
     #[test]
     fn panes_with_everything_on_them_stay_inside(
         width in 0u16..80, height in 0u16..30, marker in 0..4usize, steps in 0u64..900, ghosts in 0u64..2000,
-        window_s in 0.2..300.0f64, force in prop::array::uniform3(-100.0..100.0f64), begin_s in 0.0..90.0f64, share in 0.01..1.1f64,
+        window_s in 0.2..300.0f64, force in prop::array::uniform3(-100.0..100.0f64), begin_s in 0.0..90.0f64,
     ) {
         let set = format!("push.0.force_N={force:?}");
         let mut now = run("wobble-push", &[&set], EDITS, steps);
         let ghost = Ghost::capture(&run("wobble-push", &[], "", ghosts));
         let mut view = view(&now, Marker::ALL[marker]);
-        view.look.window_s = window_s;
+        (view.window.begin_s, view.window.end_s) = (begin_s, begin_s + window_s);
         let around = Rect::new(0, 0, width + 6, height + 6);
         let inside = Rect::new(3, 3, width, height);
         let read = Reading::new(&mut now, &Pace::new(1.0, false));
         let (ghost, reading) = (Some(&ghost), Some(&read));
-        let window = share * window_s;
-        let detail = Detail { curve: RecordedCurve::Tilt, begin_s, window_s: window, swing_s: None, is_snapshot: false };
         let alone = seen_alone(&now, &view);
         for pane in 0..3 {
             let mut buf = Buffer::filled(around, Cell::new("#"));
             match pane {
-                0 => Traces(PlotInputs { ghost, detail, ..alone }).render(inside, &mut buf),
+                0 => Traces(PlotInputs { ghost, ..alone }).render(inside, &mut buf),
                 1 => FromAbove(PlotInputs { ghost, reading, ..alone }).render(inside, &mut buf),
                 _ => ThreeD(PlotInputs { reading, ..alone }).render(inside, &mut buf),
             }

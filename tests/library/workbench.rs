@@ -62,46 +62,6 @@ fn pictures_of_what_lies_on_top() {
 }
 
 #[test]
-fn the_keys_of_zoom_pan_and_whole_are_named_where_they_act() {
-    let mut stage = Stage::open("wobble-push", &[], SMALL);
-    let keys = |stage: &Stage| stage.picture().trim_end().lines().last().map(str::to_owned);
-    stage.wait(1.0).press("W");
-    stage.shows("Home shows the usual time");
-    stage.key(Key::Home);
-    let first = keys(&stage);
-    for pressed in ["[", "z"] {
-        stage.wait(1.0).press(pressed);
-        for word in ["W zoom", "[ pan", "Home whole", "? help", "q quit"] {
-            stage.shows(word);
-        }
-        stage.key(Key::Home);
-    }
-    let view = stage.lab.view();
-    assert_eq!((view.cursor, view.since_s), (None, None));
-    assert!(view.magnified <= 1.0);
-    assert_eq!(keys(&stage), first);
-}
-
-#[test]
-fn magnified_values_keep_their_unit_on_narrow_strips() {
-    for preset in PRESETS {
-        let mut stage = Stage::open(preset.name, &[], SMALL);
-        stage.wait(1.0);
-        for times in 0..12 {
-            let picture = stage.picture();
-            let strip = |name: &str, unit: &str| {
-                let mut heads = picture.lines().filter_map(|line| line.split('│').nth(1));
-                let head = heads.find(|head| head.starts_with(name)).unwrap();
-                assert!(head.contains(unit), "{}, z {times}: {head}", preset.name);
-            };
-            strip("tilt ", " deg");
-            strip("x ", " m");
-            stage.press("z");
-        }
-    }
-}
-
-#[test]
 fn a_strip_with_a_cursor_still_says_its_range() {
     let mut stage = Stage::open("wobble-push", &[], SMALL);
     stage.wait(2.0);
@@ -182,15 +142,6 @@ fn a_teacher_stops_steps_and_goes_on() {
     assert_eq!(stage.step(), 411);
     stage.press("r").wait(0.0);
     assert!(stage.step() < 30);
-}
-
-#[test]
-fn each_press_shows_another_curve_enlarged_and_home_the_first() {
-    let mut stage = Stage::open("cusps", &[], SMALL);
-    stage.wait(1.0).press("↑").shows("the upper strip shows z");
-    stage.press("↓").shows("the upper strip shows tilt");
-    stage.key(Key::Home);
-    assert_eq!(stage.lab.view().look.detail_of, None);
 }
 
 #[test]

@@ -11,7 +11,7 @@ use super::limits::MOST_POINTS;
 use super::problem::{Problem, Problems, nearest};
 use super::schema::Nudge::{By, Hundredth, Ladder, Turn, Typed, WholeHundredth};
 use super::schema::{DefaultValue, Schema, SchemaRow, UNKNOWN_KEY, may, must, pattern};
-use super::screen::{ALL_ROWS, DETAILS, HIDEABLE, PHASES};
+use super::screen::{ALL_ROWS, AUTO, DETAILS, HIDEABLE, PHASES};
 use super::solids;
 use crate::physics::scheme;
 use toml::{Table, Value};
@@ -97,9 +97,9 @@ pub const KEYS: &[SchemaRow] = &[
     may("view.speed", Number(Positive), "what the workbench starts with: simulated seconds a second").or(DefaultValue::Number(DEFAULT_SPEED)).lab("speed", "s/s", Ladder),
     may("view.look_at", Line, "one line: what there is to see").lab("look at", "", Typed),
     may("view.next", Line, "one line: what to try after the run (default, for a preset: its own)"),
-    may("view.window_s", Number(Positive), "length of time that the traces show, s (default: the run, or what is played of it in two minutes)"),
-    may("view.detail_s", Number(Positive), "length of time that the strip of the fast motion shows, s (default: about ten swings of the axle)"),
-    may("view.detail_of", OneOf(&DETAILS), "what that strip shows (default: auto, the tilt, or x where the tilt does not swing)"),
+    may("view.window_s", Number(Positive), "length of time that the overview spans, s (default: the whole run)"),
+    may("view.detail_s", ValueKind::By(is_window), "length of time that the traces show, s, or auto: a few swings of the axle, or the whole run if it has few").or(DefaultValue::Word("auto")),
+    may("view.detail_of", OneOf(&DETAILS), "the strip of the traces below those of x, y and z; auto: the tilt on a large screen").or(DefaultValue::Word("auto")),
     may("view.exact", Flag, "whether the exact motion is drawn beside the run").or(DefaultValue::Flag(false)),
     may("view.show", Panes(&[]), "the panes that share the screen, where it has room for them; empty: as many as there is room for, without those that are shown on request only (default)"),
     may("view.hide", Panes(&HIDEABLE), "what is not shown: panes, the line about the numbers' health, theory's predicted numbers, the line look_at (default: empty)"),
@@ -120,6 +120,15 @@ pub const KEYS: &[SchemaRow] = &[
     must("edit.*.step", Whole(0, i64::MAX), "the step at which the edit was made; it acts from the next one on"),
     must("edit.*.set", Settings, "dotted keys of motion or push and their new values"),
 ];
+
+/// Checks a length of the window of the traces, s.
+fn is_window(value: &Value) -> Result<(), String> {
+    match value.as_str() {
+        Some(AUTO) => Ok(()),
+        Some(_) => Err(format!("must be a number greater than zero, or \"{AUTO}\"")),
+        None => Number(Positive).check(value),
+    }
+}
 
 const SHAPES: [&str; solids::FORMS.len()] = solids::names();
 

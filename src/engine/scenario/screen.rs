@@ -79,7 +79,7 @@ impl<'de> Deserialize<'de> for Pane {
 pub const HIDEABLE: [&str; 3] = ["health", "predicted", "look_at"];
 
 /// What the strip of the fast motion can show; auto: the tilt, or x where the tilt does not swing.
-pub const DETAILS: [&str; 5] = [AUTO, "x", "y", "z", "tilt"];
+pub const DETAILS: [&str; 6] = [AUTO, "none", "x", "y", "z", "tilt"];
 pub const AUTO: &str = "auto";
 
 /// The page of the step pane after those of the phases.

@@ -12,7 +12,7 @@
 //!   axle dips at first; [`background`] searches for a setting that makes the numbers reliable.
 
 pub mod background;
-pub mod detail;
+pub mod envelope;
 pub mod ghost;
 pub mod live;
 pub mod lookup;

@@ -51,71 +51,96 @@ impl Player {
         comparison: &Comparison,
     ) -> TimeWindow {
         let swing = self.swing();
-        let mut window = self.place_window(now, view, swing);
-        window.ranges = self.ranges(&window, &view.window, comparison);
-        window
-    }
-
-    fn place_window(&mut self, now: Duration, view: &View, swing: Option<Swing>) -> TimeWindow {
-        let now_s = self.run.now().time_s;
-        let span_s = view.look.window_s;
-        let whole_s = self.whole_s().min(span_s);
-        let before = &view.window;
+        let chosen_s = self.window_length_s(view, swing);
         let swing_s = swing.map(|swing| swing.period_s);
-        let chosen_s = view.look.detail_s.filter(|chosen_s| *chosen_s < whole_s);
-        let automatic_s = match (view.look.detail_s, swing) {
-            (None, Some(swing)) if self.is_fast(swing, whole_s, before) => {
-                Some(kept(view.swings as f64 * swing.period_s, before.length_s()))
-            }
-            _ => None,
+        let (begin_s, length_s, is_held) = match (view.since_s, chosen_s) {
+            (Some(since_s), _) => (since_s, chosen_s.unwrap_or(self.span_s(view)), false),
+            (None, Some(length_s)) => self.follow(now, view, length_s, swing_s),
+            (None, None) => self.follow_whole(view, swing_s),
         };
-        let window = |begin_s: f64, length_s: f64, is_held: bool| TimeWindow {
+        let has_overview = chosen_s.is_some() || (begin_s > 0.0 && view.since_s.is_some());
+        let (span_begin_s, span_s) = if has_overview {
+            let span_s = self.span_s(view);
+            (follow_by_halves(self.run.now().time_s, span_s), span_s)
+        } else {
+            (0.0, self.whole_s())
+        };
+        let mut window = TimeWindow {
             begin_s,
             end_s: begin_s + length_s,
             swing_s,
-            has_overview: chosen_s.or(automatic_s).is_some(),
+            has_overview,
             is_held,
-            ranges: before.ranges,
+            span_begin_s,
+            span_end_s: span_begin_s + span_s,
+            ..view.window
         };
-        let Some(length_s) = chosen_s.or(automatic_s) else {
-            if let Some(since_s) = view.since_s {
-                return TimeWindow {
-                    has_overview: since_s > 0.0,
-                    ..window(since_s, whole_s, false)
-                };
+        self.set_ranges(&mut window, &view.window, comparison);
+        window
+    }
+
+    /// Returns the longest time that the traces can show, s: the whole run, or what was chosen.
+    fn span_s(&self, view: &View) -> f64 {
+        let chosen_s = view.look.window_s.unwrap_or(f64::INFINITY);
+        chosen_s.min(self.whole_s())
+    }
+
+    /// Returns the length of the window, s; `None` if it is the whole run.
+    fn window_length_s(&self, view: &View, swing: Option<Swing>) -> Option<f64> {
+        let span_s = self.span_s(view);
+        let before_s = view.window.end_s - view.window.begin_s;
+        match (view.look.detail_s, swing) {
+            (Some(chosen_s), _) => (chosen_s < span_s).then_some(chosen_s),
+            (None, Some(swing)) if self.is_fast(swing, span_s, view.window.has_overview) => {
+                Some(kept(view.swings as f64 * swing.period_s, before_s))
             }
-            let is_whole = view.look.detail_s.is_some();
-            let begin_s = follow_by_halves(now_s, whole_s);
-            let length_s = if begin_s > 0.0 || is_whole {
-                whole_s
-            } else {
-                halved(whole_s, now_s, swing_s)
-            };
-            return window(begin_s, length_s, false);
-        };
-        if let Some(since_s) = view.since_s {
-            return window(since_s, length_s, false);
+            (None, _) => None,
         }
-        let passes = match self.speed() {
+    }
+
+    /// Returns the beginning and the length of a window of `length_s` that follows the run (s), and whether it is held.
+    fn follow(
+        &mut self,
+        now: Duration,
+        view: &View,
+        length_s: f64,
+        swing_s: Option<f64>,
+    ) -> (f64, f64, bool) {
+        let now_s = self.run.now().time_s;
+        let passes_fast = match self.speed() {
             _ if !self.is_running() => false,
             Speed::Top => true,
             Speed::Times(speed) => speed * PASSES_S > length_s,
         };
-        let is_held = passes && view.cursor.is_none() && now_s > length_s;
-        if is_held {
-            let is_same = before.is_held && kept(length_s, before.length_s()) == before.length_s();
-            if is_same && before.end_s <= now_s && now < self.window_held_at + HOLD {
-                return before.clone();
+        if passes_fast && view.cursor.is_none() && now_s > length_s {
+            let before = &view.window;
+            let is_same = before.is_held && before.end_s <= now_s && before.length_s() == length_s;
+            if is_same && now < self.window_held_at + HOLD {
+                return (before.begin_s, length_s, true);
             }
             self.window_held_at = now;
             let end_s = highest_s(self.run.recording(), now_s, swing_s.unwrap_or(0.0));
-            return window((end_s - length_s).max(0.0), length_s, true);
+            return ((end_s - length_s).max(0.0), length_s, true);
         }
         let is_at_end = !self.is_running() && self.step_number() >= self.end_step();
-        if is_at_end {
-            return window((now_s - length_s).max(0.0), length_s, false);
-        }
-        window(follow_by_halves(now_s, length_s), length_s, false)
+        let begin_s = if is_at_end {
+            (now_s - length_s).max(0.0)
+        } else {
+            follow_by_halves(now_s, length_s)
+        };
+        (begin_s, length_s, false)
+    }
+
+    /// Returns the same where the traces show the whole run.
+    fn follow_whole(&self, view: &View, swing_s: Option<f64>) -> (f64, f64, bool) {
+        let (now_s, span_s) = (self.run.now().time_s, self.span_s(view));
+        let begin_s = follow_by_halves(now_s, span_s);
+        let length_s = if begin_s > 0.0 || view.look.detail_s.is_some() {
+            span_s
+        } else {
+            halved(span_s, now_s, swing_s)
+        };
+        (begin_s, length_s, false)
     }
 
     /// Returns the time at the right end of the overview, s: that of the scenario's run, doubled as often as the run has
@@ -126,33 +151,23 @@ impl Player {
         end_s * libm::exp2(doublings.max(0.0))
     }
 
-    /// Returns true if the run of `whole_s` (s) has more swings than its strips can show, and they can be seen.
-    fn is_fast(&self, swing: Swing, whole_s: f64, before: &TimeWindow) -> bool {
-        let ease = if before.has_overview {
-            1.0 - HYSTERESIS
-        } else {
-            1.0
-        };
+    /// Returns true if a run of `span_s` (s) has more swings than its strips can show, and they can be seen. `was_fast` says
+    /// whether that was so before.
+    fn is_fast(&self, swing: Swing, span_s: f64, was_fast: bool) -> bool {
+        let ease = if was_fast { 1.0 - HYSTERESIS } else { 1.0 };
         let arm_m = self.run.scenario().arm_m();
-        whole_s / swing.period_s > ease * FEW_SWINGS && swing.height_m > ease * LEAST_SWING * arm_m
+        span_s / swing.period_s > ease * FEW_SWINGS && swing.height_m > ease * LEAST_SWING * arm_m
     }
 
     /// Returns the swings of the tilt, or those of the traced point if the tilt does not swing.
     fn swing(&self) -> Option<Swing> {
-        let recording = self.run.recording();
         let arm_m = self.run.scenario().arm_m();
-        let now_s = self.run.now().time_s;
-        let height_m = |period_s: f64| {
-            let since_s = now_s - 2.0 * period_s;
-            let extent = |curve| recording.extent_between(since_s, now_s, curve);
-            let tilt_m = extent(RecordedCurve::Tilt)
-                .map_or(0.0, |tilt| (tilt.max - tilt.min).to_radians() * arm_m);
-            let z_m = extent(RecordedCurve::Z).map_or(0.0, |z| z.max - z.min);
-            tilt_m.max(z_m)
-        };
         let measured = self.reading.readouts.swing_s().map(|period_s| Swing {
             period_s,
-            height_m: height_m(period_s),
+            height_m: self
+                .height_of_swing(RecordedCurve::Tilt, period_s)
+                .to_radians()
+                * arm_m,
         });
         let is_seen = measured.is_some_and(|swing| swing.height_m > LEAST_SWING * arm_m);
         if is_seen {
@@ -163,59 +178,91 @@ impl Player {
 
     /// Returns the swings of x as they are recorded, over the latest half of the run.
     fn swing_of_point(&self) -> Option<Swing> {
-        let recording = self.run.recording();
-        let end_s = self.run.now().time_s;
-        let bins = recording.since(0.5 * end_s);
+        let now_s = self.run.now().time_s;
+        let bins = self.run.recording().since(0.5 * now_s);
         let turns: u32 = bins.map(|bin| bin.turns(RecordedCurve::X)).sum();
-        if turns < 3 {
-            return None;
-        }
-        let period_s = end_s / f64::from(turns);
-        let x = recording.extent_between(end_s - 2.0 * period_s, end_s, RecordedCurve::X)?;
-        Some(Swing {
+        let period_s = now_s / f64::from(turns);
+        (turns > 2).then(|| Swing {
             period_s,
-            height_m: x.max - x.min,
+            height_m: self.height_of_swing(RecordedCurve::X, period_s),
         })
     }
 
-    /// Returns the range of values of each strip. While the run is played, a range grows in steps and shrinks only with
-    /// another window.
-    fn ranges(
-        &self,
-        window: &TimeWindow,
-        before: &TimeWindow,
-        comparison: &Comparison,
-    ) -> [Extent; 4] {
-        let is_same = (window.begin_s, window.end_s) == (before.begin_s, before.end_s);
+    /// Returns how far `curve` went in the last `period_s` (s), without its drift from the period before, in its unit.
+    fn height_of_swing(&self, curve: RecordedCurve, period_s: f64) -> f64 {
         let now_s = self.run.now().time_s;
-        let others = [comparison.ghost(), comparison.pinned()];
-        RecordedCurve::ALL.map(|curve| {
-            let shown = |recording: &Recording, end_s: f64| {
-                recording.extent_between(window.begin_s, window.end_s.min(end_s), curve)
-            };
-            let run = shown(self.run.recording(), now_s);
-            let exact = self
-                .run
-                .overlay()
-                .and_then(|exact| shown(&exact.recording, now_s));
-            let ghosts = others.into_iter().flatten();
-            let extent = ghosts
-                .filter_map(|ghost| shown(&ghost.recording, f64::INFINITY))
-                .chain(run)
-                .chain(exact)
-                .reduce(Extent::and)
-                .unwrap_or(Extent::single(self.run.now().value(curve)));
-            let least = match curve {
-                RecordedCurve::Tilt => LEAST_RANGE.to_degrees(),
-                _ => LEAST_RANGE * self.run.scenario().arm_m(),
-            };
-            let tight = widened(extent, least);
+        let extent = |end_s: f64| {
+            let recording = self.run.recording();
+            recording.extent_between(end_s - period_s, end_s, curve)
+        };
+        match (extent(now_s), extent(now_s - period_s)) {
+            (Some(last), Some(before)) => {
+                let drift = 0.5 * ((last.max + last.min) - (before.max + before.min)).abs();
+                (last.max - last.min - drift).max(0.0)
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// Sets the range of values of each strip and of the overview. While the run is played, a range grows in steps, and that
+    /// of a strip shrinks only with another window.
+    fn set_ranges(&self, window: &mut TimeWindow, before: &TimeWindow, comparison: &Comparison) {
+        let is_same = (window.begin_s, window.end_s) == (before.begin_s, before.end_s);
+        window.ranges = RecordedCurve::ALL.map(|curve| {
+            let tight = widened(
+                self.extent(window, curve, comparison),
+                self.least_range(curve),
+            );
             if self.is_running() && is_same {
                 extended(before.range(curve), tight)
             } else {
                 tight
             }
-        })
+        });
+        let z = self
+            .run
+            .recording()
+            .whole()
+            .map(|whole| whole.extent(RecordedCurve::Z));
+        let z = z.unwrap_or(Extent::single(self.run.now().value(RecordedCurve::Z)));
+        let tight = widened(z, self.least_range(RecordedCurve::Z));
+        let is_longer = before.overview.min >= tight.min || before.overview.max <= tight.max;
+        window.overview = if self.is_running() && is_longer {
+            extended(before.overview, tight)
+        } else {
+            tight
+        };
+    }
+
+    /// Returns the extremes of `curve` in the window: of the run up to now, of the exact motion, and of other runs that are
+    /// shown beside it.
+    fn extent(&self, window: &TimeWindow, curve: RecordedCurve, comparison: &Comparison) -> Extent {
+        let now_s = self.run.now().time_s;
+        let shown = |recording: &Recording, end_s: f64| {
+            recording.extent_between(window.begin_s, window.end_s.min(end_s), curve)
+        };
+        let run = shown(self.run.recording(), now_s);
+        let exact = self
+            .run
+            .overlay()
+            .and_then(|exact| shown(&exact.recording, now_s));
+        let ghosts = [comparison.ghost(), comparison.pinned()]
+            .into_iter()
+            .flatten();
+        ghosts
+            .filter_map(|ghost| shown(&ghost.recording, f64::INFINITY))
+            .chain(run)
+            .chain(exact)
+            .reduce(Extent::and)
+            .unwrap_or(Extent::single(self.run.now().value(curve)))
+    }
+
+    /// Returns the least range of a strip: m, and degrees for the tilt.
+    fn least_range(&self, curve: RecordedCurve) -> f64 {
+        match curve {
+            RecordedCurve::Tilt => LEAST_RANGE.to_degrees(),
+            _ => LEAST_RANGE * self.run.scenario().arm_m(),
+        }
     }
 }
 

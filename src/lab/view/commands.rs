@@ -1,15 +1,14 @@
 //! The commands that change how the run is looked at, and those that the keys of its panes mean.
 
 use super::swings;
-use super::{Pane, View};
-use crate::engine::recording::RecordedCurve;
+use super::{FourthStrip, Pane, View};
 use crate::engine::run::Simulation;
 use crate::engine::scenario::screen::AUTO;
+use crate::engine::text::number::short;
 use crate::lab::action::{Direction, signed};
 use crate::lab::answer::{ActionResult, Done};
 use crate::lab::command::{Command, CursorTo, MOST_MAGNIFIED, SeekTarget};
 use crate::lab::playback::lookup::{self, StepNumbers};
-use crate::lab::playback::strip::Strip;
 use crate::lab::player::Player;
 use crate::lab::step_pane::StepPane;
 use crate::plot::camera::{Camera, Zoom};
@@ -22,6 +21,8 @@ const PAN_SHARE: f64 = 0.5;
 const RESIDUALS_TEXT: &str = "measured less run, where something was measured; m shows both again";
 const NO_DATA: &str = "there are no measured data beside the run: gyrolab --measured FILE";
 const TURN_DEG: f64 = 10.0;
+/// Swings are counted in words up to this number.
+const MOST_COUNTED_SWINGS: f64 = 100.0;
 
 impl View {
     /// Shows the run as `patch`, keys of `[view]` and their values, says.
@@ -36,23 +37,14 @@ impl View {
         let mut said = None;
         for key in patch.keys() {
             said = match key.as_str() {
-                "window_s" if look.window_s < least_s => {
+                "window_s" if look.window_s.is_some_and(|window_s| window_s < least_s) => {
+                    return too_short("overview spans", least_s);
+                }
+                "detail_s" if look.detail_s.is_some_and(|detail_s| detail_s < least_s) => {
                     return too_short("traces show", least_s);
                 }
-                "window_s" => Some(format!(
-                    "the traces show {} s; Home shows the usual time",
-                    look.window_s
-                )),
-                "detail_s" if look.detail_s < Some(least_s) => {
-                    return too_short("strip shows", least_s);
-                }
-                "detail_s" => look
-                    .detail_s
-                    .map(|detail_s| format!("the strip of the fast motion shows {detail_s} s")),
-                "detail_of" => Some(match look.detail_of {
-                    Some(curve) => format!("the upper strip shows {}", curve.name()),
-                    None => "the upper strip shows what swings: the tilt, or x".to_owned(),
-                }),
+                "detail_s" => Some(self.window_in_words(look.detail_s)),
+                "detail_of" => Some(fourth_strip_in_words(look.detail_of).to_owned()),
                 "phase" => {
                     step_pane.may_show(look.phase, player)?;
                     None
@@ -71,7 +63,10 @@ impl View {
     pub(in crate::lab) fn set_since(&mut self, since_s: Option<f64>) -> Done {
         self.since_s = since_s;
         Done::saying(match since_s {
-            Some(since_s) => format!("the traces begin at {since_s} s; Home shows the run again"),
+            Some(since_s) => format!(
+                "the traces begin at {} s; W follows the run again",
+                short(since_s)
+            ),
             None => "the traces follow the run".to_owned(),
         })
     }
@@ -79,7 +74,7 @@ impl View {
     pub(in crate::lab) fn magnify(&mut self, times: f64) -> Done {
         self.magnified = times;
         Done::saying(if times > 1.0 {
-            format!("values are magnified {times} times; Home shows all of them again")
+            format!("values are magnified {times} times; Z shows more of them")
         } else {
             "values are shown in full".to_owned()
         })
@@ -102,9 +97,9 @@ impl View {
         if let Some(step) = step {
             let StepNumbers { sample, .. } =
                 lookup::numbers(run, step).map_err(|missing| missing.to_string())?;
-            let (begin_s, window_s) = (self.begin_s(player), self.look.window_s);
-            if !(begin_s..=begin_s + window_s).contains(&sample.time_s) {
-                self.since_s = Some((sample.time_s - 0.5 * window_s).max(0.0));
+            if !self.window.contains(sample.time_s) {
+                let begin_s = sample.time_s - 0.5 * self.window.length_s();
+                self.since_s = Some(begin_s.max(0.0));
             }
         }
         self.cursor = step;
@@ -158,45 +153,89 @@ impl View {
         self.cursor.unwrap_or(player.step_number())
     }
 
-    /// The time at the left edge of the traces, s.
-    fn begin_s(&self, player: &Player) -> f64 {
-        let (now_s, window_s) = (player.run().now().time_s, self.look.window_s);
-        self.since_s
-            .unwrap_or_else(|| Strip::following(now_s, window_s, 1).begin_s)
-    }
-
-    /// The command that shows twice the time in the traces (`wider`), or half of it; where less than two time steps would
-    /// remain, which time is shown.
-    pub fn other_window(&self, wider: bool, player: &Player) -> Result<Command, String> {
-        let time_step_s = player.run().simulation().motion().time_step_s;
-        let window_s = self.look.window_s * if wider { 2.0 } else { 0.5 };
-        if window_s >= 2.0 * time_step_s && window_s.is_finite() {
-            Ok(Command::look("window_s", window_s))
-        } else {
-            Err(format!("the traces show {} s", self.look.window_s))
+    /// The command that shows the whole run in the traces, or a few swings of it where they show the whole run. With a
+    /// `count` it shows so many swings.
+    pub fn other_window(&self, count: Option<u64>, player: &Player) -> Result<Command, String> {
+        let whole_s = player.whole_s();
+        if self.window.has_overview && count.is_none() {
+            return Ok(Command::look("detail_s", whole_s));
+        }
+        if count.is_none() && self.look.detail_s.is_some() {
+            return Ok(Command::look("detail_s", AUTO));
+        }
+        let swings = count.unwrap_or(self.swings as u64) as f64;
+        match self.window.swing_s.map(|swing_s| swings * swing_s) {
+            Some(length_s) if length_s < whole_s => Ok(Command::look("detail_s", length_s)),
+            Some(_) => Err("the traces show the whole run: it has no more swings".to_owned()),
+            None => Err("the traces show the whole run: nothing swings in it".to_owned()),
         }
     }
 
-    /// The command that shows another curve in the strip of the fast motion than it shows now.
-    pub fn other_detail(&self, direction: Direction, times: i32, player: &Player) -> Command {
-        let shown = self.look.detail_of.unwrap_or(player.detail().curve);
-        let curves = [
-            RecordedCurve::X,
-            RecordedCurve::Y,
-            RecordedCurve::Z,
-            RecordedCurve::Tilt,
+    /// The commands that show the usual window at the run's time.
+    pub fn usual_window(&self) -> Vec<Command> {
+        vec![Command::look("detail_s", AUTO), Command::SinceS(None)]
+    }
+
+    /// The commands that show half the time about `about_s` (s), or twice the time.
+    pub fn zoomed_window(
+        &self,
+        about_s: f64,
+        is_larger: bool,
+        player: &Player,
+    ) -> Result<Vec<Command>, String> {
+        let factor = if is_larger { 0.5 } else { 2.0 };
+        let length_s = factor * self.window.length_s();
+        if length_s < 2.0 * player.motion().time_step_s {
+            return Err("two time steps are the shortest window".to_owned());
+        }
+        if length_s >= player.whole_s() {
+            let whole = Command::look("detail_s", player.whole_s());
+            return Ok(vec![whole, Command::SinceS(None)]);
+        }
+        let begin_s = about_s - factor * (about_s - self.window.begin_s);
+        Ok(vec![
+            Command::look("detail_s", length_s),
+            Command::SinceS(Some(begin_s.max(0.0))),
+        ])
+    }
+
+    fn window_in_words(&self, detail_s: Option<f64>) -> String {
+        match (detail_s, self.window.swing_s) {
+            (None, _) => "the traces show the usual window".to_owned(),
+            (Some(detail_s), Some(swing_s)) if detail_s < MOST_COUNTED_SWINGS * swing_s => {
+                let swings = detail_s / swing_s;
+                format!(
+                    "the traces show {} s: {swings:.1} swings; W shows the usual window",
+                    short(detail_s)
+                )
+            }
+            (Some(detail_s), _) => {
+                format!(
+                    "the traces show {} s; W shows the usual window",
+                    short(detail_s)
+                )
+            }
+        }
+    }
+
+    /// The command that shows another fourth strip in the traces.
+    pub fn other_fourth_strip(&self, times: i32) -> Command {
+        const CHOICES: [(FourthStrip, &str); 3] = [
+            (FourthStrip::Auto, AUTO),
+            (FourthStrip::Tilt, "tilt"),
+            (FourthStrip::None, "none"),
         ];
-        let now = curves.iter().position(|curve| *curve == shown).unwrap_or(0) as i32;
-        let by = match direction {
-            Direction::Up | Direction::PageUp => -times,
-            _ => times,
-        };
-        let next = (now + by).rem_euclid(curves.len() as i32) as usize;
-        Command::look("detail_of", curves[next])
+        let now = CHOICES
+            .iter()
+            .position(|(choice, _)| *choice == self.look.detail_of);
+        let next = now.map_or(1, |now| {
+            (now as i32 + times).rem_euclid(CHOICES.len() as i32)
+        });
+        Command::look("detail_of", CHOICES[next as usize].1)
     }
 
     pub fn moved_cursor(&self, fiftieths: i32, player: &Player) -> Command {
-        let steps = CURSOR_SHARE * self.look.window_s / player.motion().time_step_s;
+        let steps = CURSOR_SHARE * self.window.length_s() / player.motion().time_step_s;
         self.stepped_cursor(steps.round().max(1.0) as i64 * i64::from(fiftieths), player)
     }
 
@@ -206,27 +245,15 @@ impl View {
     }
 
     /// The command that moves the window to later times, `times` halves of its length, or to earlier ones.
-    pub fn panned(&self, times: i32, player: &Player) -> Command {
-        let by_s = PAN_SHARE * self.look.window_s * f64::from(times);
-        Command::SinceS(Some((self.begin_s(player) + by_s).max(0.0)))
+    pub fn panned(&self, times: i32) -> Command {
+        let by_s = PAN_SHARE * self.window.length_s() * f64::from(times);
+        Command::SinceS(Some((self.window.begin_s + by_s).max(0.0)))
     }
 
     /// The command that doubles the magnification `notches` times, or halves it.
     pub fn other_magnification(&self, notches: i32) -> Command {
         let times = self.magnified * 2_f64.powi(notches);
         Command::Magnify(times.clamp(1.0, MOST_MAGNIFIED))
-    }
-
-    /// The commands that show the run again, after the time or the values were chosen by hand.
-    pub fn whole(&self, player: &Player) -> Vec<Command> {
-        let usual_s = self.usual_window_s(player.run().scenario());
-        vec![
-            Command::look("detail_of", AUTO),
-            Command::Cursor(CursorTo::Nowhere),
-            Command::Magnify(1.0),
-            Command::look("window_s", usual_s),
-            Command::SinceS(None),
-        ]
     }
 
     /// The command that shows the round picture in focus `rungs` larger.
@@ -268,6 +295,16 @@ impl View {
     /// The command that fills the screen with the pane in focus, or shows all panes again.
     pub fn fill_toggled(&self) -> Command {
         Command::Fill((!self.filled).then_some(self.focus))
+    }
+}
+
+fn fourth_strip_in_words(strip: FourthStrip) -> &'static str {
+    match strip {
+        FourthStrip::Auto => "a fourth strip shows the tilt if the screen is large",
+        FourthStrip::Tilt => "a strip shows the tilt",
+        FourthStrip::None | FourthStrip::X | FourthStrip::Y | FourthStrip::Z => {
+            "the strips show x, y and z"
+        }
     }
 }
 

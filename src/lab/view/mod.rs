@@ -13,8 +13,6 @@ pub mod theme;
 pub mod window;
 
 use super::sheet::Sheet;
-use crate::engine::recording::RecordedCurve;
-use crate::engine::run::Clock;
 use crate::engine::scenario::{Scenario, keys};
 use crate::plot::camera::{Camera, Zoom};
 pub use pane::{HideablePart, Pane};
@@ -26,8 +24,6 @@ use theme::{Marker, Theme};
 use toml::{Table, Value};
 use window::TimeWindow;
 
-/// The longest time that one sweep of the traces may take at first, seconds of wall time.
-const LONGEST_SWEEP_S: f64 = 120.0;
 /// The panes of a bare screen, where none are chosen.
 const BARE: [Pane; 2] = [Pane::Traces, Pane::Above];
 /// How many swings the traces show where they have room for them.
@@ -40,13 +36,13 @@ pub const FPS: u32 = 15;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ViewSettings {
-    /// Length of time the traces show, s.
-    pub window_s: f64,
-    /// Length of time that the strip of the fast motion shows, s; `None`: about ten swings.
-    pub detail_s: Option<f64>,
-    /// What that strip shows; `None`: the tilt, or x where the tilt does not swing.
+    /// Length of time that the overview spans, s; `None`: the whole run.
+    pub window_s: Option<f64>,
+    /// Length of time that the traces show, s; `None`: a few swings, or the whole run.
     #[serde(deserialize_with = "where_known")]
-    pub detail_of: Option<RecordedCurve>,
+    pub detail_s: Option<f64>,
+    /// The strip below those of x, y and z.
+    pub detail_of: FourthStrip,
     /// Where the 3-D view is looked at from, if that was chosen. Otherwise it is turned so that the axle is seen aslant.
     pub camera: Option<Camera>,
     /// How much larger than the whole the round pictures are shown.
@@ -67,6 +63,20 @@ pub struct ViewSettings {
     pub bare: bool,
     /// Whether what was measured is shown less what the run says.
     pub residuals: bool,
+}
+
+/// The strip of the traces below those of x, y and z.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum FourthStrip {
+    /// The tilt, if the screen is large.
+    #[default]
+    Auto,
+    None,
+    X,
+    Y,
+    Z,
+    Tilt,
 }
 
 /// What a value says, or `None` for a word such as "auto" or "all".
@@ -228,7 +238,6 @@ impl View {
         let mut patch = scenario.file.view.clone().unwrap_or_default();
         patch.retain(|key, _| !["look_at", "next"].contains(&key)); // the scenario's, which may be edited
         let usual = ViewSettings {
-            window_s: self.usual_window_s(scenario),
             // What of these was chosen suits any run.
             camera: self.look.camera,
             zoom: self.look.zoom,
@@ -271,22 +280,6 @@ impl View {
         self.look
             .camera
             .take_if(|camera| *camera == Camera::default());
-    }
-
-    /// The time that the traces show of the run of `scenario` while none is chosen by hand, s.
-    pub fn usual_window_s(&self, scenario: &Scenario) -> f64 {
-        let file = &scenario.file;
-        let window_s = file.viewed("window_s").and_then(Value::as_float);
-        // The whole run, or what of it is played in two minutes.
-        window_s.unwrap_or_else(|| {
-            let speed = file
-                .viewed("speed")
-                .and_then(Value::as_float)
-                .unwrap_or(keys::DEFAULT_SPEED);
-            Clock::end_s(scenario)
-                .min(LONGEST_SWEEP_S * speed)
-                .max(2.0 * scenario.motion.time_step_s)
-        })
     }
 
     pub fn hides(&self, part: HideablePart) -> bool {

@@ -3,7 +3,7 @@
 use crate::engine::recording::{Extent, RecordedCurve};
 
 /// The window of the traces: all strips share it. From above and in 3-D, the path in the window is bright.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeWindow {
     pub begin_s: f64,
     pub end_s: f64,
@@ -15,6 +15,10 @@ pub struct TimeWindow {
     pub is_held: bool,
     /// The range of values that each strip shows, in the order of [`RecordedCurve::ALL`]: m, and degrees for the tilt.
     pub ranges: [Extent; 4],
+    /// The time that the overview spans, s, and its range of z, m.
+    pub span_begin_s: f64,
+    pub span_end_s: f64,
+    pub overview: Extent,
 }
 
 impl Default for TimeWindow {
@@ -26,6 +30,9 @@ impl Default for TimeWindow {
             has_overview: false,
             is_held: false,
             ranges: [Extent::single(0.0); 4],
+            span_begin_s: 0.0,
+            span_end_s: 1.0,
+            overview: Extent::single(0.0),
         }
     }
 }

@@ -11,10 +11,10 @@ pub mod help;
 pub mod hint;
 pub mod lesson;
 pub mod measured;
+pub mod overview;
 pub mod parameters;
 pub mod step;
 pub mod three_d;
-pub mod timeline;
 pub mod traces;
 
 use crate::engine::analysis::MeasuredNumber;
@@ -23,7 +23,6 @@ use crate::engine::text::printable::printable;
 use crate::engine::text::wrap::{columns, wrapped};
 use crate::lab::action::Direction;
 use crate::lab::comparison::DataComparison;
-use crate::lab::playback::detail::Detail;
 use crate::lab::playback::ghost::Ghost;
 use crate::lab::playback::live::LiveRun;
 use crate::lab::playback::reading::Reading;
@@ -110,7 +109,6 @@ pub struct PlotInputs<'a> {
     pub reading: Option<&'a Reading>,
     /// The time step that the step pane takes apart: the scene in space shows what its page is about.
     pub explained: Option<&'a StepWorkings>,
-    pub detail: Detail,
     pub cursor: Option<&'a Sample>,
 }
 
@@ -125,7 +123,6 @@ impl<'a> PlotInputs<'a> {
             measured: comparison.data(),
             reading: Some(&player.reading),
             explained: lab.step_pane().shown(),
-            detail: *player.detail(),
             cursor: player.cursor(),
         }
     }

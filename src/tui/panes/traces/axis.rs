@@ -1,13 +1,26 @@
 //! The axis of time under the strips, and the axis of values beside them.
 
 use crate::engine::text::number::{decimal, exponent, fixed};
+use crate::engine::text::wrap::columns;
 use crate::lab::playback::scale::{self, StripScale};
 use crate::lab::playback::strip::Strip;
+use crate::lab::view::theme::Theme;
+use crate::tui::panes::write;
+use crate::tui::theme::Role;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
 
 /// Times from this on, s, have more digits than a tick has room for.
 const LONG_TIME_S: f64 = 1e6;
 /// From this time on (s) it has more digits than anyone reads.
 const MOST_TIME_S: f64 = 1e15;
+/// Rows of a strip from which round values are between its ends, and from which there may be three of them.
+const ROWS_FOR_BETWEEN: usize = 7;
+const MANY_ROWS: usize = 9;
+/// Rows that are left free beside the ends.
+const ROWS_FROM_ENDS: usize = 2;
+/// Columns for each label of the axis of time.
+const COLUMNS_PER_TIME: usize = 9;
 /// Columns from one label to the next, at least.
 const TICK_LABEL_COLUMNS: usize = 2;
 /// What follows the first label, or the last of two.
@@ -20,7 +33,7 @@ pub fn times(strip: &Strip, width: usize) -> Vec<PlacedTick> {
     if strip.end_s() >= LONG_TIME_S {
         return both_ends(strip, width);
     }
-    let mut most = width / 3;
+    let mut most = (width / COLUMNS_PER_TIME).max(2);
     loop {
         let ticks = scale::ticks(strip.begin_s, strip.end_s(), most);
         let count = ticks.len();
@@ -94,36 +107,88 @@ fn ends(strip: &Strip, width: usize) -> (String, String) {
     (exponent(strip.begin_s, 3) + SECONDS_SUFFIX, later)
 }
 
-/// The labels of `scale` on `rows`, each with its row: round values, each in the row of its place, the highest first. Where
-/// there is room for less than two round values, both ends stand there.
-pub fn values(scale: &StripScale, rows: usize) -> Vec<PlacedTick> {
-    /// Rows for each value.
-    const ROWS_PER_LABEL: usize = 3;
-    let last = rows.saturating_sub(1);
-    let ticks = if rows > 2 * ROWS_PER_LABEL {
-        scale::ticks(scale.low, scale.high, rows / ROWS_PER_LABEL)
-    } else {
-        Vec::new()
-    };
-    if let [first, second, ..] = ticks[..] {
-        let digits = scale::decimals(second - first);
-        return ticks
-            .into_iter()
-            .rev()
-            .map(|value| {
-                (
-                    ((scale.from_top(value) * rows as f64) as usize).min(last),
-                    fixed(value + 0.0, digits),
-                )
-            })
-            .collect();
-    }
+/// A value beside a strip.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ValueTick {
+    /// The row of the strip.
+    pub row: usize,
+    pub label: String,
+    /// Whether it is between the ends: a dash then marks its row.
+    pub is_between: bool,
+}
+
+/// Returns the values beside a strip of `rows`: its greatest and its least value, and round values between where there is
+/// room.
+pub fn values(scale: &StripScale, rows: usize) -> Vec<ValueTick> {
     let digits = scale.decimals();
-    let mut placed = vec![(0, fixed(scale.high + 0.0, digits))];
+    let end = |row: usize, value: f64| ValueTick {
+        row,
+        label: signed(&fixed(value, digits)),
+        is_between: false,
+    };
+    let mut placed = vec![end(0, scale.high)];
     if rows > 1 {
-        placed.push((last, fixed(scale.low + 0.0, digits)));
+        placed.push(end(rows - 1, scale.low));
     }
+    if rows < ROWS_FOR_BETWEEN {
+        return placed;
+    }
+    let most = if rows < MANY_ROWS { 2 } else { 3 };
+    let ticks = scale::ticks(scale.low, scale.high, most);
+    let apart = match ticks[..] {
+        [first, second, ..] => second - first,
+        _ => scale.high - scale.low,
+    };
+    let between = ticks.into_iter().map(|value| ValueTick {
+        row: (scale.from_top(value) * (rows - 1) as f64).round() as usize,
+        label: signed(&fixed(value, scale::decimals(apart))),
+        is_between: true,
+    });
     placed
+        .extend(between.filter(|tick| (ROWS_FROM_ENDS..rows - ROWS_FROM_ENDS).contains(&tick.row)));
+    placed
+}
+
+/// Returns `number` with a minus sign as wide as a plus sign.
+pub fn signed(number: &str) -> String {
+    number.replacen('-', "−", 1)
+}
+
+/// The columns of ticks beside the strips, as wide as the widest of them needs.
+pub struct Gutter {
+    pub width: u16,
+}
+
+impl Gutter {
+    /// Returns the gutter for `scales` in strips of `rows` on a pane of `width` columns; it has at most half of them.
+    pub fn new(scales: &[StripScale], rows: usize, width: u16) -> Self {
+        let ticks = scales.iter().flat_map(|scale| values(scale, rows));
+        let widest = ticks.map(|tick| columns(&tick.label) as u16).max();
+        let needed = widest.unwrap_or(0) + 1;
+        Self {
+            width: if needed > width / 2 { 0 } else { needed },
+        }
+    }
+
+    /// Writes the values of `scale` beside `sheet`.
+    pub fn write(&self, scale: &StripScale, sheet: Rect, theme: &Theme, buf: &mut Buffer) {
+        let Some(x) = sheet.x.checked_sub(self.width).filter(|_| self.width > 0) else {
+            return;
+        };
+        let area = Rect {
+            x,
+            width: self.width,
+            ..sheet
+        };
+        let style = theme.style(Role::Label);
+        for tick in values(scale, sheet.height.into()) {
+            let before = self.width.saturating_sub(1 + columns(&tick.label) as u16);
+            write(area, (before, tick.row as u16), &tick.label, style, buf);
+            if tick.is_between {
+                write(area, (self.width - 1, tick.row as u16), "╴", style, buf);
+            }
+        }
+    }
 }
 
 #[cfg(test)]

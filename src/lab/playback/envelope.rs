@@ -1,0 +1,138 @@
+//! Where the columns of a picture cannot resolve the swings of a curve, and the envelope that is drawn there.
+
+/// The fewest dots by which a curve must turn back for a turning point: less is no swing. Slow motion drops out, because
+/// it does not turn back.
+const LEAST_SWING_DOTS: f64 = 2.0;
+/// Columns on either side in which turning points are counted. Swings are unresolved if half of the columns have one: they
+/// are then shorter than four columns.
+const NEIGHBORS: usize = 5;
+/// A gap in the envelope is closed if it is shorter than this, and a shorter piece of it is drawn as a line, columns.
+const SHORTEST_GAP: usize = 8;
+const SHORTEST_PIECE: usize = 6;
+/// Columns on either side over which the envelope takes the least and the greatest value.
+const REACH: usize = 2;
+
+/// The rows that a curve has in a column, in dots from the top: the upper end and the lower one.
+pub type Rows = (f64, f64);
+
+/// Returns for each column the upper and the lower edge of the envelope where the swings of `columns` are unresolved,
+/// else `None`.
+pub fn envelope(columns: &[Option<Rows>]) -> Vec<Option<Rows>> {
+    let turning = turning_points(columns);
+    let mut is_unresolved: Vec<bool> = (0..columns.len())
+        .map(|index| {
+            let near = index.saturating_sub(NEIGHBORS)..(index + NEIGHBORS).min(columns.len());
+            let drawn = columns[near.clone()].iter().flatten().count();
+            let turns = turning[near].iter().filter(|turns| **turns).count();
+            columns[index].is_some() && 2 * turns >= drawn && turns > 1
+        })
+        .collect();
+    fill_short(&mut is_unresolved, false, SHORTEST_GAP);
+    fill_short(&mut is_unresolved, true, SHORTEST_PIECE);
+    (0..columns.len())
+        .map(|index| {
+            let near = index.saturating_sub(REACH)..(index + REACH + 1).min(columns.len());
+            let all = columns[near].iter().flatten().copied();
+            all.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+                .filter(|_| is_unresolved[index] && columns[index].is_some())
+        })
+        .collect()
+}
+
+/// Returns the columns in which the curve turns back by [`LEAST_SWING_DOTS`] or more. In each column it goes from the end
+/// that is nearer to where it was to the other one.
+fn turning_points(columns: &[Option<Rows>]) -> Vec<bool> {
+    let mut turning = vec![false; columns.len()];
+    // Where the curve was, the farthest point in its direction, and the column of that; the direction is downward if true.
+    let mut position: Option<f64> = None;
+    let (mut farthest, mut farthest_column, mut is_down) = (0.0, 0, true);
+    for (index, column) in columns.iter().enumerate() {
+        let Some((upper, lower)) = *column else {
+            continue;
+        };
+        let from = position.unwrap_or(upper);
+        let ends = if (from - upper).abs() <= (from - lower).abs() {
+            [upper, lower]
+        } else {
+            [lower, upper]
+        };
+        for row in ends {
+            let ahead = if is_down {
+                row - farthest
+            } else {
+                farthest - row
+            };
+            if position.is_none() || ahead >= 0.0 {
+                (farthest, farthest_column) = (row, index);
+            } else if -ahead > LEAST_SWING_DOTS {
+                turning[farthest_column] = true;
+                is_down = !is_down;
+                (farthest, farthest_column) = (row, index);
+            }
+            position = Some(row);
+        }
+    }
+    turning
+}
+
+/// Replaces each run of `value` that is shorter than `shortest` and has the other value on both sides.
+fn fill_short(values: &mut [bool], value: bool, shortest: usize) {
+    let mut begin = 0;
+    while begin < values.len() {
+        let rest = &values[begin..];
+        let length = rest.iter().take_while(|other| **other == rest[0]).count();
+        let end = begin + length;
+        let is_inside = begin > 0 && end < values.len();
+        if values[begin] == value && is_inside && length < shortest {
+            values[begin..end].fill(!value);
+        }
+        begin = end;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 200 columns of a sine of `period` columns and `height` dots that drifts by `drift` dots a column.
+    fn columns(period: f64, height: f64, drift: f64) -> Vec<Option<Rows>> {
+        let row =
+            |at: f64| 0.5 * height * libm::sin(at / period * std::f64::consts::TAU) + drift * at;
+        (0..200)
+            .map(|column| {
+                let rows = (0..=40).map(|part| row(f64::from(column) + f64::from(part) / 40.0));
+                rows.map(|row| (row, row))
+                    .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+            })
+            .collect()
+    }
+
+    #[test]
+    fn an_envelope_is_drawn_only_where_swings_are_unresolved_and_seen() {
+        for (period, height, drift, count) in [
+            (0.3, 20.0, 0.0, 200),
+            (3.0, 20.0, 0.0, 200),
+            (3.0, 20.0, 1.0, 200),
+            (10.0, 20.0, 0.0, 0),
+            (5.0, 20.0, 0.0, 0),
+            (0.3, 1.5, 0.0, 0),
+            (0.3, 1.5, 4.0, 0),
+            (400.0, 30.0, 0.0, 0),
+        ] {
+            let envelope = envelope(&columns(period, height, drift));
+            let drawn = envelope.iter().flatten().count();
+            assert!(
+                drawn.abs_diff(count) <= 6,
+                "{period} {height} {drift}: {drawn}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_envelope_reaches_from_the_least_to_the_greatest() {
+        let envelope = envelope(&columns(0.7, 20.0, 0.0));
+        for (upper, lower) in envelope.into_iter().flatten() {
+            assert!(upper < -9.8 && lower > 9.8, "{upper} {lower}");
+        }
+    }
+}

@@ -1,0 +1,168 @@
+//! A canvas on which curves of different kinds share cells: the uppermost of a cell gives it its role.
+
+use crate::lab::view::theme::{Marker, Theme};
+use crate::tui::dots::on_sheet;
+use crate::tui::theme::Role;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+
+/// What a dot belongs to, the lowest first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Layer {
+    /// Between the edges of an envelope.
+    Fill,
+    Previous,
+    Exact,
+    /// The run before the window of the traces.
+    Earlier,
+    Run,
+    /// The shown moment.
+    Now,
+}
+
+const LAYERS: [Layer; 6] = [
+    Layer::Fill,
+    Layer::Previous,
+    Layer::Exact,
+    Layer::Earlier,
+    Layer::Run,
+    Layer::Now,
+];
+
+impl Layer {
+    fn role(self) -> Role {
+        match self {
+            Self::Fill => Role::Fill,
+            Self::Previous => Role::Previous,
+            Self::Exact => Role::Exact,
+            Self::Earlier => Role::RunEarlier,
+            Self::Run => Role::Run,
+            Self::Now => Role::Cursor,
+        }
+    }
+
+    /// The layers whose dots are shown in a cell of which this layer is the uppermost.
+    fn shown_with(self) -> &'static [Self] {
+        match self {
+            Self::Now => &[Self::Now, Self::Run, Self::Earlier],
+            Self::Run => &[Self::Run, Self::Earlier],
+            Self::Earlier => &[Self::Earlier],
+            Self::Exact => &[Self::Exact],
+            Self::Previous => &[Self::Previous],
+            Self::Fill => &[Self::Fill],
+        }
+    }
+
+    /// Where markers are as large as a cell, layers differ by their signs.
+    fn sign_layer(self) -> usize {
+        match self {
+            Self::Now | Self::Run | Self::Earlier => 0,
+            Self::Exact | Self::Fill => 1,
+            Self::Previous => 3,
+        }
+    }
+}
+
+type CanvasCell = [u8; LAYERS.len()];
+
+pub struct Canvas {
+    area: Rect,
+    marker: Marker,
+    cells: Vec<CanvasCell>,
+}
+
+impl Canvas {
+    pub fn new(area: Rect, marker: Marker) -> Self {
+        let cells = vec![CanvasCell::default(); area.width as usize * area.height as usize];
+        Self {
+            area,
+            marker,
+            cells,
+        }
+    }
+
+    /// Columns of dots.
+    pub fn width(&self) -> usize {
+        self.area.width as usize * self.marker.dots().0
+    }
+
+    /// Rows of dots.
+    pub fn height(&self) -> usize {
+        self.area.height as usize * self.marker.dots().1
+    }
+
+    /// Dots in a cell, across and down.
+    pub fn in_a_cell(&self) -> (usize, usize) {
+        self.marker.dots()
+    }
+
+    /// Sets the dot at column `x`, row `y`; outside the canvas nothing happens.
+    pub fn set(&mut self, x: usize, y: f64, layer: Layer) {
+        let Some((x, y)) = on_sheet((x as f64, y), (self.width(), self.height())) else {
+            return;
+        };
+        let (across, down) = self.marker.dots();
+        let cell = y / down * self.area.width as usize + x / across;
+        self.cells[cell][layer as usize] |= self.marker.bit(x % across, y % down);
+    }
+
+    /// Sets the dots of column `x` from the row `upper` to the row `lower`.
+    pub fn upright(&mut self, x: usize, (upper, lower): (f64, f64), layer: Layer) {
+        let last = self.height() as f64 - 1.0;
+        if !(upper <= last && lower >= 0.0) {
+            return; // outside, or no number
+        }
+        let rows = upper.max(0.0) as usize..=lower.min(last) as usize;
+        rows.for_each(|y| self.set(x, y as f64, layer));
+    }
+
+    pub fn render(&self, theme: &Theme, buf: &mut Buffer) {
+        let width = usize::from(self.area.width.max(1));
+        let is_filled = self.filled_columns(width);
+        for (index, position) in self.area.positions().enumerate() {
+            let cell = &self.cells[index];
+            let top = LAYERS
+                .into_iter()
+                .rev()
+                .find(|layer| cell[*layer as usize] != 0);
+            let (Some(top), Some(target)) = (top, buf.cell_mut(position)) else {
+                continue;
+            };
+            let shown = top.shown_with().iter();
+            let mut bits = shown.fold(0, |bits, layer| bits | cell[*layer as usize]);
+            if top >= Layer::Earlier && !is_filled[index % width] {
+                bits |= cell[Layer::Fill as usize] & self.checkered();
+            }
+            let sign = self.marker.sign(top.sign_layer(), bits);
+            target.set_char(sign).set_style(theme.style(top.role()));
+        }
+    }
+
+    /// Which columns of cells have a cell of fill alone, or are next to such a column. Elsewhere an envelope is too low for
+    /// that, and its cells are checkered.
+    fn filled_columns(&self, width: usize) -> Vec<bool> {
+        let mut has_fill = vec![false; width];
+        for (index, cell) in self.cells.iter().enumerate() {
+            let is_fill_alone = cell[Layer::Fill as usize] != 0
+                && cell[Layer::Earlier as usize..]
+                    .iter()
+                    .all(|bits| *bits == 0);
+            has_fill[index % width] |= is_fill_alone;
+        }
+        (0..width)
+            .map(|x| has_fill[x.saturating_sub(1)..(x + 2).min(width)].contains(&true))
+            .collect()
+    }
+
+    /// The bits of every second dot of a cell.
+    fn checkered(&self) -> u8 {
+        let (across, down) = self.marker.dots();
+        let mut bits = 0;
+        for (x, y) in (0..down).flat_map(|y| (0..across).map(move |x| (x, y))) {
+            if (x + y) % 2 == 0 {
+                bits |= self.marker.bit(x, y);
+            }
+        }
+        bits
+    }
+}

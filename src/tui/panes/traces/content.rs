@@ -1,0 +1,177 @@
+//! Which strips there are, and the range of values of each.
+
+use super::Traces;
+use crate::engine::data::compared::ComparedPoint;
+use crate::engine::recording::{Extent, RecordedCurve};
+use crate::lab::comparison::DataComparison;
+use crate::lab::playback::scale::StripScale;
+use crate::lab::view::FourthStrip;
+
+/// The fewest rows of a strip, with its rule, and the fewest with which a fourth strip joins the others by itself.
+const LEAST_ROWS: u16 = 3;
+const ROWS_OF_CHOSEN: u16 = 4;
+const ROWS_OF_FOURTH: u16 = 9;
+/// The least range of measured quantities, as a share of their size.
+const SHARE_LEAST: f64 = 1e-3;
+/// The least range of residuals, where nothing has been compared yet.
+const RESIDUAL_LEAST: f64 = 1e-9;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum StripContent {
+    Curve(RecordedCurve),
+    /// The quantity of this index among the measured ones, if it is none of those curves.
+    Measured(usize),
+}
+
+impl Traces<'_> {
+    /// Returns the strips that fit into `height` rows, from the top, and whether each shows residuals. Measured quantities
+    /// go before the others.
+    pub(super) fn contents(&self, height: u16) -> Vec<(StripContent, bool)> {
+        let measured = self.measured_contents();
+        let mut contents: Vec<_> = if measured.is_empty() {
+            self.curves(height)
+                .into_iter()
+                .map(|content| (content, false))
+                .collect()
+        } else {
+            let is_residual = self.0.view.look.residuals;
+            measured
+                .into_iter()
+                .map(|content| (content, is_residual))
+                .collect()
+        };
+        contents.truncate((height / LEAST_ROWS).max(1).into());
+        contents
+    }
+
+    /// Returns x, y and z, and a fourth strip if there is room. A chosen one takes the place of y where there is not.
+    fn curves(&self, height: u16) -> Vec<StripContent> {
+        let [x, y, z, tilt] = RecordedCurve::ALL.map(StripContent::Curve);
+        let (fourth, is_chosen) = match self.0.view.look.detail_of {
+            FourthStrip::None => (None, false),
+            FourthStrip::Auto => (Some(tilt), false),
+            FourthStrip::Tilt => (Some(tilt), true),
+            FourthStrip::X | FourthStrip::Y | FourthStrip::Z => (None, false),
+        };
+        let count = height / LEAST_ROWS;
+        match (fourth, count) {
+            (_, 0 | 1) => vec![z],
+            (None, 2) => vec![x, z],
+            (None, _) => vec![x, y, z],
+            (Some(fourth), 2) if is_chosen => vec![z, fourth],
+            (Some(_), 2) => vec![x, z],
+            (Some(fourth), _) if height >= 4 * ROWS_OF_FOURTH => vec![x, y, z, fourth],
+            (Some(_), _) if !is_chosen => vec![x, y, z],
+            (Some(fourth), _) if height >= 4 * ROWS_OF_CHOSEN => vec![x, y, z, fourth],
+            (Some(fourth), _) => vec![x, z, fourth],
+        }
+    }
+
+    /// Returns what was measured, the curves that every run has before the others.
+    fn measured_contents(&self) -> Vec<StripContent> {
+        let Some(measured) = self.0.measured else {
+            return Vec::new();
+        };
+        let others = (0..measured.quantities().count())
+            .filter(|index| measured.recorded(*index).is_some())
+            .map(StripContent::Measured);
+        let curves = RecordedCurve::ALL.map(StripContent::Curve);
+        let own = curves
+            .into_iter()
+            .filter(|content| self.index(*content).is_some());
+        own.chain(others).collect()
+    }
+
+    /// Returns the index of `content` among the measured quantities.
+    fn index(&self, content: StripContent) -> Option<usize> {
+        match content {
+            StripContent::Measured(index) => Some(index),
+            StripContent::Curve(curve) => {
+                let mut quantities = self.0.measured?.quantities();
+                quantities.position(|quantity| quantity.name == curve.column())
+            }
+        }
+    }
+
+    /// Returns the measured values of `content`; `None` if it was not measured.
+    pub(super) fn points(&self, content: StripContent) -> Option<&[ComparedPoint]> {
+        let index = self.index(content)?;
+        let curves = &self.0.measured?.compared.curves;
+        curves.get(index).map(Vec::as_slice)
+    }
+
+    /// Returns the name of `content` and its unit.
+    pub(super) fn named(&self, content: StripContent) -> (String, &'static str) {
+        match content {
+            StripContent::Curve(RecordedCurve::Tilt) => ("tilt".to_owned(), "°"),
+            StripContent::Curve(curve) => (curve.name().to_owned(), curve.unit()),
+            StripContent::Measured(index) => {
+                let quantities = self.0.measured.map(DataComparison::quantities);
+                let quantity = quantities.and_then(|mut quantities| quantities.nth(index));
+                quantity.map_or_else(Default::default, |quantity| {
+                    (quantity.words(), quantity.unit())
+                })
+            }
+        }
+    }
+
+    /// Returns the range of values of a strip, magnified about the value at the cursor or else the run's present one.
+    pub(super) fn scale(&self, content: StripContent, is_residual: bool) -> StripScale {
+        let magnified = self.0.view.magnified;
+        let (whole, about) = if is_residual {
+            (residual_scale(self.points(content)), 0.0)
+        } else {
+            (self.whole_scale(content), self.value_now(content))
+        };
+        if magnified > 1.0 {
+            whole.zoomed(magnified, about)
+        } else {
+            whole
+        }
+    }
+
+    fn whole_scale(&self, content: StripContent) -> StripScale {
+        let window = &self.0.view.window;
+        let shown = self.points(content).unwrap_or_default().iter();
+        let points = shown
+            .filter(|point| window.contains(point.time_s))
+            .map(|point| {
+                let sigma = point.sigma.unwrap_or(0.0);
+                Extent {
+                    min: point.value - sigma,
+                    max: point.value + sigma,
+                }
+            })
+            .reduce(Extent::and);
+        let (curve, least) = match content {
+            StripContent::Curve(curve) => (Some(window.range(curve)), 0.0),
+            StripContent::Measured(_) => (self.recorded_extent(content), f64::MIN_POSITIVE),
+        };
+        let all = [curve, points].into_iter().flatten().reduce(Extent::and);
+        let extent = all.unwrap_or(Extent::single(0.0));
+        let size = extent.max.abs().max(extent.min.abs());
+        let least = match content {
+            StripContent::Curve(_) => least,
+            StripContent::Measured(_) => least.max(SHARE_LEAST * size),
+        };
+        StripScale::of(extent, least)
+    }
+
+    fn value_now(&self, content: StripContent) -> f64 {
+        let now = self.0.run.now();
+        match (self.0.cursor, content) {
+            (Some(cursor), StripContent::Curve(curve)) => curve.at(cursor),
+            (None, StripContent::Curve(curve)) => now.value(curve),
+            (_, StripContent::Measured(_)) => self.value_at(content, now.time_s).unwrap_or(0.0),
+        }
+    }
+}
+
+/// Returns the scale of the residuals of `points`, with their uncertainties.
+fn residual_scale(points: Option<&[ComparedPoint]>) -> StripScale {
+    let residuals = points.unwrap_or_default().iter().filter_map(|point| {
+        let residual = point.residual()?;
+        Some(residual.abs() + point.sigma.unwrap_or(0.0))
+    });
+    StripScale::about_zero(residuals.fold(RESIDUAL_LEAST, f64::max))
+}

@@ -1,0 +1,312 @@
+//! A strip as it is drawn: its rule with what happens in its time, its curves, and the cursor.
+
+use super::axis::{Gutter, signed};
+use super::canvas::{Canvas, Layer};
+use super::content::StripContent;
+use super::curves::{CURVE_OWNERS, rows};
+use super::{Plot, TRACES_ROW, Traces, write};
+use crate::engine::recording::{Extent, RecordedCurve};
+use crate::engine::text::number::fixed;
+use crate::engine::text::wrap::columns;
+use crate::lab::playback::marks::Marks;
+use crate::tui::panes::rule;
+use crate::tui::points::{Ends, Points};
+use crate::tui::theme::Role;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::style::Style;
+
+/// On the first strip's rule while the window is held.
+const HELD_TEXT: &str = "every 1 s";
+const EXACT_WORD: &str = "exact";
+/// What the last strip's rule says of curves beside the run.
+const EXACT_LEGEND: &str = "╌╌ exact";
+const PREVIOUS_LEGEND: &str = "··· previous run";
+const PINNED_LEGEND: &str = "-- pinned run";
+/// What the rule says of a strip with measured values.
+const RESIDUAL_SUFFIX: &str = "measured - run";
+pub const PUSH_BAR: &str = "━";
+pub const EDIT_MARK: &str = "┴";
+const CURSOR_LINE: char = '│';
+/// The dots of the cursor's line in a cell of small dots.
+const CURSOR_BITS: u32 = 0x47;
+
+impl Traces<'_> {
+    /// Draws the strip `index` of `plots`.
+    pub(super) fn strip(
+        &self,
+        index: usize,
+        plot: &Plot,
+        plots: &[Plot],
+        gutter: &Gutter,
+        marks: &Marks,
+        buf: &mut Buffer,
+    ) {
+        let theme = &self.0.view.theme;
+        let (name, unit) = self.named(plot.content);
+        let title = match (plot.is_residual, unit) {
+            (true, _) => format!("{name}: {RESIDUAL_SUFFIX} ({unit})"),
+            (false, "") => name,
+            (false, _) => format!("{name} ({unit})"),
+        };
+        let is_held = index == 0 && self.0.view.window.is_held;
+        let has_focus = index == 0 && self.0.view.marks_focus_of(TRACES_ROW.id);
+        let right = is_held.then_some((HELD_TEXT, Role::Label));
+        rule(&title, right, has_focus, plot.area, theme, buf);
+        self.mark_rule(plot, marks, buf);
+        gutter.write(&plot.scale, plot.sheet, theme, buf);
+        let mut canvas = Canvas::new(plot.sheet, self.0.view.marker);
+        if plot.is_residual {
+            let row = (plot.scale.from_top(0.0) * (canvas.height() as f64 - 1.0)).round();
+            (0..canvas.width())
+                .step_by(2)
+                .for_each(|x| canvas.set(x, row, Layer::Run));
+        } else {
+            for owner in CURVE_OWNERS {
+                self.draw_curve(owner, plot, marks, &mut canvas);
+            }
+            self.draw_now(plot, &mut canvas);
+        }
+        canvas.render(theme, buf);
+        self.draw_points(plot, buf);
+        self.mark_exact_outside(plot, canvas.height(), buf);
+        if index + 1 == legend_index(plots) {
+            self.legend(plot, buf);
+        }
+        self.draw_cursor(plot, buf);
+    }
+
+    /// Marks on the rule of `plot` where pushes act, and where the run was edited.
+    fn mark_rule(&self, plot: &Plot, marks: &Marks, buf: &mut Buffer) {
+        let across = self.0.view.marker.dots().0;
+        let line = self.rule_line(plot);
+        let style = self.0.view.theme.style(Role::Push);
+        for &(begin_s, end_s) in &marks.pushes {
+            let shown = plot.strip.shown(begin_s, end_s);
+            for x in shown.start / across..shown.end.div_ceil(across) {
+                write(line, (x as u16, 0), PUSH_BAR, style, buf);
+            }
+        }
+        for x in marks
+            .edits
+            .iter()
+            .filter_map(|edit_s| plot.strip.column(*edit_s))
+        {
+            write(line, ((x / across) as u16, 0), EDIT_MARK, style, buf);
+        }
+    }
+
+    /// The part of the rule that is above the curves.
+    fn rule_line(&self, plot: &Plot) -> Rect {
+        Rect {
+            y: plot.area.y,
+            height: 1,
+            ..plot.sheet
+        }
+    }
+
+    /// Draws the dots of the shown moment, where the run's curve ends.
+    fn draw_now(&self, plot: &Plot, canvas: &mut Canvas) {
+        let now = self.0.run.now();
+        let value = match plot.content {
+            StripContent::Curve(curve) => Some(now.value(curve)),
+            StripContent::Measured(_) => self.value_at(plot.content, now.time_s),
+        };
+        let (Some(column), Some(value)) = (plot.strip.column(now.time_s), value) else {
+            return;
+        };
+        let (across, down) = canvas.in_a_cell();
+        let (wide, high) = (across.min(2), down.min(2));
+        let height = canvas.height();
+        let [Some((row, _))] = rows(&[Some(Extent::single(value))], &plot.scale, height)[..] else {
+            return;
+        };
+        if !(0.0..height as f64).contains(&row) {
+            return;
+        }
+        let column = column.min(canvas.width().saturating_sub(wide));
+        let row = row.min(height.saturating_sub(high) as f64);
+        for (x, y) in (0..wide).flat_map(|x| (0..high).map(move |y| (x, y))) {
+            canvas.set(column + x, row + y as f64, Layer::Now);
+        }
+    }
+
+    /// Draws the measured points of `plot`: those that the run has not reached are faint; as residuals they do not show.
+    fn draw_points(&self, plot: &Plot, buf: &mut Buffer) {
+        let (strip, sheet) = (&plot.strip, plot.sheet);
+        let all = self.points(plot.content).unwrap_or_default();
+        let begin = all.partition_point(|point| point.time_s < strip.begin_s);
+        let end = all.partition_point(|point| point.time_s <= strip.end_s());
+        let across = self.0.view.marker.dots().0;
+        let height = f64::from(sheet.height);
+        let mut points = Points::new(sheet, self.0.view.marker);
+        for point in &all[begin..end.max(begin)] {
+            let value = if plot.is_residual {
+                point.residual()
+            } else {
+                Some(point.value)
+            };
+            let (Some(value), Some(column)) = (value, strip.column(point.time_s)) else {
+                continue;
+            };
+            let role = if point.model.is_some() {
+                Role::Measured
+            } else {
+                Role::Label
+            };
+            // The lowest value is on the last row.
+            let row = |value: f64| plot.scale.from_top(value) * height;
+            let at = if row(value) == height {
+                height - 1.0
+            } else {
+                row(value)
+            };
+            let bar = point
+                .sigma
+                .map(|sigma| -> Ends { (row(value + sigma), row(value - sigma)) });
+            points.add(((column / across) as f64, at), None, bar, role);
+        }
+        points.render(&self.0.view.theme, buf);
+    }
+
+    /// Marks where the exact motion is above or below the strip.
+    fn mark_exact_outside(&self, plot: &Plot, height: usize, buf: &mut Buffer) {
+        let style = self.0.view.theme.style(Role::Exact);
+        let last = plot.sheet.height.saturating_sub(1);
+        let outside = self.exact_outside(plot, height);
+        for ((stretches, sign), y) in outside.into_iter().zip(["↑", "↓"]).zip([0, last]) {
+            for stretch in stretches {
+                let x = (stretch.start + stretch.end) / 2;
+                write(plot.sheet, (x as u16, y), sign, style, buf);
+            }
+        }
+    }
+
+    /// Names the curves beside the run: the exact motion at the end of its line where there is room, the others on the rule.
+    fn legend(&self, plot: &Plot, buf: &mut Buffer) {
+        let theme = &self.0.view.theme;
+        let is_named = self.name_exact(plot, buf);
+        let has_exact = self.0.run.overlay().is_some() && !is_named;
+        let words = [
+            (has_exact, EXACT_LEGEND, Role::Exact),
+            (self.0.ghost.is_some(), PREVIOUS_LEGEND, Role::Previous),
+            (self.0.pinned.is_some(), PINNED_LEGEND, Role::Previous),
+        ];
+        let mut right = plot.area.width;
+        for (_, text, role) in words.into_iter().filter(|(is_shown, ..)| *is_shown) {
+            let width = columns(text) as u16 + 2;
+            let Some(x) = right.checked_sub(width).filter(|x| *x > USUAL_TITLE) else {
+                return;
+            };
+            write(
+                plot.area,
+                (x, 0),
+                &format!(" {text} "),
+                theme.style(role),
+                buf,
+            );
+            right = x;
+        }
+    }
+
+    /// Writes the name of the exact motion beside the end of its line, if those cells are free.
+    fn name_exact(&self, plot: &Plot, buf: &mut Buffer) -> bool {
+        let StripContent::Curve(curve) = plot.content else {
+            return false;
+        };
+        let Some(exact) = self.0.run.overlay().map(|overlay| &overlay.now) else {
+            return false;
+        };
+        let across = self.0.view.marker.dots().0;
+        let Some(column) = plot.strip.column(exact.time_s) else {
+            return false;
+        };
+        let at = (column / across + 2) as u16;
+        let share = plot.scale.from_top(exact.value(curve));
+        let y =
+            (share * f64::from(plot.sheet.height)).clamp(0.0, f64::from(plot.sheet.height) - 1.0);
+        let cells =
+            (at..at + EXACT_WORD.len() as u16).map(|x| (plot.sheet.x + x, plot.sheet.y + y as u16));
+        let is_free = at + EXACT_WORD.len() as u16 <= plot.sheet.width
+            && cells
+                .into_iter()
+                .all(|at| buf.cell(at).is_some_and(|cell| cell.symbol() == " "));
+        if is_free {
+            let style = self.0.view.theme.style(Role::Exact);
+            write(plot.sheet, (at, y as u16), EXACT_WORD, style, buf);
+        }
+        is_free
+    }
+
+    /// Draws the cursor: a line over the whole strip, and its value on the rule.
+    fn draw_cursor(&self, plot: &Plot, buf: &mut Buffer) {
+        let Some(cursor) = self.0.cursor else {
+            return;
+        };
+        let Some(column) = plot.strip.column(cursor.time_s) else {
+            return;
+        };
+        let x = (column / self.0.view.marker.dots().0) as u16;
+        let style = self.0.view.theme.style(Role::Cursor);
+        cursor_line(x, plot.sheet, style, buf);
+        let value = match plot.content {
+            StripContent::Curve(curve) => Some(curve.at(cursor)),
+            StripContent::Measured(_) => self.value_at(plot.content, cursor.time_s),
+        };
+        let digits = plot.scale.decimals();
+        let model = value.map(|value| signed(&fixed(value, digits)));
+        let data = self.measured_at(plot.content, cursor.time_s);
+        let data = data.map(|value| format!("data {}", signed(&fixed(value, digits))));
+        let parts: Vec<_> = model.into_iter().chain(data).collect();
+        let label = format!(" {} ", parts.join(", "));
+        let line = self.rule_line(plot);
+        let width = columns(&label) as u16;
+        let most = line.width.saturating_sub(width);
+        let at = x.saturating_sub(width / 2).min(most);
+        write(
+            line,
+            (at, 0),
+            &label,
+            self.0.view.theme.style(Role::Heading),
+            buf,
+        );
+    }
+
+    /// Returns the value that was measured at the step at `time_s`.
+    fn measured_at(&self, content: StripContent, time_s: f64) -> Option<f64> {
+        let half_s = 0.5 * self.0.run.simulation().motion().time_step_s;
+        let points = self.points(content)?;
+        let next = points.partition_point(|point| point.time_s < time_s - half_s);
+        let point = points.get(next)?;
+        (point.time_s <= time_s + half_s).then_some(point.value)
+    }
+}
+
+/// Columns of a rule that its title may take.
+const USUAL_TITLE: u16 = 8;
+
+/// Returns the number of the strip, from 1, that names the curves beside the run: that of z, or else the last.
+fn legend_index(plots: &[Plot]) -> usize {
+    let z = StripContent::Curve(RecordedCurve::Z);
+    let index = plots.iter().position(|plot| plot.content == z);
+    index.map_or(plots.len(), |index| index + 1)
+}
+
+/// Draws a line from top to bottom at column `x` of `area`, through whatever is there.
+pub fn cursor_line(x: u16, area: Rect, style: Style, buf: &mut Buffer) {
+    if x >= area.width {
+        return;
+    }
+    for y in area.top()..area.bottom() {
+        let Some(cell) = buf.cell_mut((area.x + x, y)) else {
+            continue;
+        };
+        let shown = cell.symbol().chars().next().unwrap_or(' ');
+        let joined = match u32::from(shown).checked_sub(0x2800) {
+            Some(bits) if bits < 0x100 => char::from_u32(0x2800 | bits | CURSOR_BITS),
+            _ => None,
+        };
+        cell.set_char(joined.unwrap_or(CURSOR_LINE))
+            .set_style(style);
+    }
+}
