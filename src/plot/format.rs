@@ -184,9 +184,9 @@ mod tests {
             for format in [PageFormat::Svg, PageFormat::Pdf, PageFormat::Png] {
                 assert_eq!(write(&scene, format, None), Err(Unwritable::Place(1)));
             }
-            for pen in [pen(bad, &[]), pen(1.0, &[1.0, bad])] {
-                let scene = page(vec![line(1.0, 1.0, pen)]);
-                assert_eq!(rounded(&scene), Err(Unwritable::Place(0)));
+            for broken in [pen(bad, &[]), pen(1.0, &[1.0, bad])] {
+                let of_pen = page(vec![line(1.0, 1.0, broken)]);
+                assert_eq!(rounded(&of_pen), Err(Unwritable::Place(0)));
             }
         }
         for (width_pt, height_pt) in [

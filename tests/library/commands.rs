@@ -270,8 +270,8 @@ fn a_set_of_several_keys_is_one_act_or_none() {
     // The second cannot be: nothing is done.
     let wrong = commands("set = { 'motion.time_step_s' = 0.05, 'trace' = 'nobody' }").remove(0);
     assert!(desk.carry_out(&wrong).is_err());
-    let wrong = commands("set = { 'title' = 'mine', 'push.7.force_N.0' = 5 }").remove(0);
-    assert!(desk.carry_out(&wrong).is_err());
+    let unknown = commands("set = { 'title' = 'mine', 'push.7.force_N.0' = 5 }").remove(0);
+    assert!(desk.carry_out(&unknown).is_err());
     assert_eq!((desk.scenario().file, desk.step()), (untouched, 100));
 }
 
@@ -379,8 +379,8 @@ fn a_run_is_played_until_a_condition_holds() {
     assert_eq!((end, desk.step()), (Ok(()), 603));
     // Past the end of the scenario's run, and where it holds already not at all.
     let text = "[[do]]\nrun_until = \"step >= 2 * motion.steps and abs(z_m) > 0\"\n[[do]]\nrun_until = \"t_s > 0\"";
-    let (desk, end) = finished("method-2", text);
-    assert_eq!((end, desk.step()), (Ok(()), 4600));
+    let (past_the_end, at_last) = finished("method-2", text);
+    assert_eq!((at_last, past_the_end.step()), (Ok(()), 4600));
 }
 
 #[test]
@@ -399,14 +399,14 @@ fn a_condition_that_never_holds_is_given_up() {
     );
     assert_eq!(desk.step(), 10_000_000);
     // So many in all, not each.
-    let (desk, end) = finished(
+    let (both, given_up) = finished(
         "cusps",
         "[[do]]\ngo_to = 9000000\n[[do]]\ngo_to = \"start\"\n[[do]]\nrun_until = \"z_m > 1000\"",
     );
-    let told = end.unwrap_err();
+    let in_all = given_up.unwrap_err();
     let limit = "run_until: commands take at most 10,000,000 steps in all";
-    assert!(told.contains(limit), "{told}");
-    assert!(desk.step() < 2_000_000, "{}", desk.step());
+    assert!(in_all.contains(limit), "{in_all}");
+    assert!(both.step() < 2_000_000, "{}", both.step());
 }
 
 #[test]
@@ -415,19 +415,21 @@ fn commands_wait_for_those_before_them() {
     let text = "[[do]]\nspeed = 20\n[[do]]\nrun_until = \"t_s >= 20\"\n[[do]]\nwait_s = 5\n[[do]]\nstep = 7";
     let document = Document::parse("demo.toml", text).unwrap();
     desk.lab.take_commands(command::read(&document).unwrap());
-    let second = |desk: &mut Desk| (0..10).for_each(|_| desk.pass(Duration::from_millis(100)));
+    fn pass_second(desk: &mut Desk) {
+        (0..10).for_each(|_| desk.pass(Duration::from_millis(100)));
+    }
     (0..=5).for_each(|_| desk.pass(Duration::from_millis(100)));
     assert!(
         (80..130).contains(&desk.step()),
         "it plays at its pace: {}",
         desk.step()
     );
-    second(&mut desk);
+    pass_second(&mut desk);
     assert_eq!(desk.step(), 200);
     assert!(!desk.lab.script().is_done());
-    (0..3).for_each(|_| second(&mut desk));
+    (0..3).for_each(|_| pass_second(&mut desk));
     assert_eq!(desk.step(), 200);
-    (0..3).for_each(|_| second(&mut desk));
+    (0..3).for_each(|_| pass_second(&mut desk));
     assert_eq!((desk.step(), desk.lab.script().is_done()), (207, true));
 }
 
@@ -550,9 +552,9 @@ fn hidden_is_hidden() {
     }
     desk.commands("hide = ['health', 'predicted', 'look_at', 'parameters']");
     desk.wait(100);
-    let seen = picture(&desk, size);
+    let hidden = picture(&desk, size);
     for words in ["predicted", "parameters", &first] {
-        assert!(!seen.contains(words), "{words} in\n{seen}");
+        assert!(!hidden.contains(words), "{words} in\n{hidden}");
     }
     desk.commands("hide = []");
     assert!(picture(&desk, size).contains(&first));
@@ -647,9 +649,9 @@ fn a_picture_of_one_pane_shows_none_that_is_hidden() {
     desk.commands("hide = ['traces']");
     let seen = picture(&desk, (40, 20));
     assert!(!seen.contains("over time"), "{seen}");
-    let desk = opened_with(&["view.hide=['traces']"]);
-    let seen = picture(&desk, (40, 20));
-    assert!(!seen.contains("over time"), "{seen}");
+    let opened = opened_with(&["view.hide=['traces']"]);
+    let of_file = picture(&opened, (40, 20));
+    assert!(!of_file.contains("over time"), "{of_file}");
 }
 
 #[test]
@@ -666,8 +668,8 @@ fn a_push_begins_at_the_time_that_it_names() {
         .to_string();
     has_all(&late, ["begins at 2 s, and it is 3 s", "g and 2 s"]);
     desk.commands("push = { from_s = 0 }");
-    let push = desk.scenario().file.push.last().unwrap().clone();
-    assert_eq!(push.from_s, Some(3.0));
+    let late_push = desk.scenario().file.push.last().unwrap().clone();
+    assert_eq!(late_push.from_s, Some(3.0));
 }
 
 #[test]

@@ -64,7 +64,7 @@ impl Picture {
                 if corners != ('└', '┘') {
                     return Err(format!("the frame at {x}, {y} ends in {corners:?}"));
                 }
-                let is_gap = |row: &usize| !"│▲▼".contains(self.at(right, *row));
+                let is_gap = |below: &usize| !"│▲▼".contains(self.at(right, *below));
                 if let Some(gap) = (y + 1..bottom).find(is_gap) {
                     return Err(format!("the frame at {x}, {y} is broken in row {gap}"));
                 }

@@ -132,14 +132,14 @@ fn the_spin_dies_by_its_law_whatever_the_axle_does() {
     let body = wheel();
     let (_, along) = moments(&body);
     let cases: [(Friction, Law); 3] = [
-        (rubbing([0.0, 0.3, 0.0, 0.0]), |start, along, t| {
-            start * (-0.3 * t / along).exp()
+        (rubbing([0.0, 0.3, 0.0, 0.0]), |begun, inertia, t| {
+            begun * (-0.3 * t / inertia).exp()
         }),
-        (rubbing([2.0, 0.0, 0.0, 0.0]), |start, _, t| {
-            start.signum() * (start.abs() - 2.0 * t).max(0.0)
+        (rubbing([2.0, 0.0, 0.0, 0.0]), |begun, _, t| {
+            begun.signum() * (begun.abs() - 2.0 * t).max(0.0)
         }),
-        (rubbing([0.0, 0.0, 0.02, 0.0]), |start, along, t| {
-            start / (1.0 + start.abs() * 0.02 * t / (along * along))
+        (rubbing([0.0, 0.0, 0.02, 0.0]), |begun, inertia, t| {
+            begun / (1.0 + begun.abs() * 0.02 * t / (inertia * inertia))
         }),
     ];
     for (friction, law) in cases {
@@ -275,9 +275,9 @@ fn the_schemes_converge_on_the_exact_motion_in_their_orders() {
         ] {
             let loads = weight(friction);
             let begin = start(&body, [0.4, -0.3, 9.0]);
-            let at_end = |name: &str, steps: u32| {
-                let mut run = Run::new(name, &body, &loads, begin);
-                run.step(3.0 / f64::from(steps), steps).axle()
+            let at_end = |scheme: &str, count: u32| {
+                let mut run = Run::new(scheme, &body, &loads, begin);
+                run.step(3.0 / f64::from(count), count).axle()
             };
             let exact = at_end("exact", 300);
             let off = |steps| (at_end(name, steps) - exact).norm();
@@ -305,10 +305,10 @@ fn the_splitting_keeps_its_order_while_dry_friction_holds_a_lopsided_body() {
             *run.step(2.0 / f64::from(steps), steps)
         };
         let exact = at_end("exact", 300);
-        let omega = exact
+        let turning = exact
             .orientation
             .tr_mul(&observables::angular_velocity(&body, &exact));
-        assert!(omega.z.abs() < 1e-12 && omega.norm() > 0.1, "{omega}");
+        assert!(turning.z.abs() < 1e-12 && turning.norm() > 0.1, "{turning}");
         for part in [
             |state: &State| state.orientation.column(0).into_owned(),
             |state: &State| state.momentum,
@@ -482,7 +482,7 @@ fn waking(across: f64, load: f64, spin: f64, decay_s: f64) -> f64 {
     let mut state = [Complex::new(1.0, 0.0), Complex::new(0.0, 0.0)];
     let (mut t, h) = (0.0, 1e-3);
     while state[0].norm() < 10.0 {
-        let moved = |k: [Complex; 2], h: f64| [state[0] + k[0] * h, state[1] + k[1] * h];
+        let moved = |k: [Complex; 2], dt: f64| [state[0] + k[0] * dt, state[1] + k[1] * dt];
         let k1 = slope(t, state);
         let k2 = slope(t + 0.5 * h, moved(k1, 0.5 * h));
         let k3 = slope(t + 0.5 * h, moved(k2, 0.5 * h));
@@ -553,7 +553,7 @@ fn theory_under_friction_is_of_the_moment_and_predicts_no_motion() {
         "measured_precession_rad_per_s",
         "measured_nutation_period_s",
     ] {
-        let of = |readouts: &Readouts| find(name).unwrap().read_from(readouts);
+        let of = |of_run: &Readouts| find(name).unwrap().read_from(of_run);
         assert_eq!(of(&rubbed), ReadoutValue::Nothing, "{name}");
         assert_ne!(of(&spared), ReadoutValue::Nothing, "{name}");
     }

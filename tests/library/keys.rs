@@ -31,11 +31,11 @@ fn the_footer_has_the_keys_of_a_pane_once_that_was_touched() {
     footer_begins(&stage, " Left cursor W zoom [ pan");
     has(footer(&stage), " space . p t e x f o ? help q quit");
     // From the values, back to the run.
-    let mut stage = Stage::open("method-2", &[], SMALL);
-    stage.press("e");
-    footer_begins(&stage, " / find");
-    stage.key(Key::Esc);
-    footer_begins(&stage, " space pause . step");
+    let mut again = Stage::open("method-2", &[], SMALL);
+    again.press("e");
+    footer_begins(&again, " / find");
+    again.key(Key::Esc);
+    footer_begins(&again, " space pause . step");
 }
 
 #[test]
@@ -171,7 +171,7 @@ fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
     let (folders, files): (Vec<_>, Vec<_>) = entries.partition(|path| path.is_dir());
     let below = folders
         .iter()
-        .flat_map(|folder| self::files(folder, extension));
+        .flat_map(|inner| self::files(inner, extension));
     files
         .into_iter()
         .filter(|path| path.extension().is_some_and(|end| end == extension))

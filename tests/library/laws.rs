@@ -114,8 +114,8 @@ fn measured_order(name: &str, dt: f64) -> f64 {
     let start = tilted(0.5, [0.0, -3.0, 60.0]);
     let steps = (1.0 / dt).round() as u64;
     let truth = run("rk4", &body, &weight(), &start, dt / 64.0, 64 * steps);
-    let error = |dt, steps| {
-        let end = run(name, &body, &weight(), &start, dt, steps);
+    let error = |step, count| {
+        let end = run(name, &body, &weight(), &start, step, count);
         (end.orientation - truth.orientation).norm() + (end.momentum - truth.momentum).norm() / 60.0
     };
     let order = (error(dt, steps) / error(dt / 2.0, 2 * steps)).log2();

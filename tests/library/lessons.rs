@@ -306,10 +306,14 @@ fn line_ends_a_byte_order_mark_and_comments_change_nothing() {
         "Stop the push.",
         "<!-- a {comment}\n\n## no page -->\n\nStop the push.",
     );
-    let pages = |lesson: &Lesson| -> Vec<usize> {
-        lesson.pages.iter().map(|page| page.blocks.len()).collect()
+    let blocks = |read_lesson: &Lesson| -> Vec<usize> {
+        read_lesson
+            .pages
+            .iter()
+            .map(|page| page.blocks.len())
+            .collect()
     };
-    assert_eq!(pages(&read(&commented)), pages(&lesson));
+    assert_eq!(blocks(&read(&commented)), blocks(&lesson));
 }
 
 #[test]
@@ -332,8 +336,8 @@ fn a_file_that_is_too_long_is_refused_with_its_length() {
     }
     let told = reading::read_file(folder.path()).unwrap_err();
     has(told.to_string(), "is a folder");
-    let told = reading::open("no-such-lesson").unwrap_err();
-    has(told.to_string(), "no lesson of that name");
+    let unknown = reading::open("no-such-lesson").unwrap_err();
+    has(unknown.to_string(), "no lesson of that name");
 }
 
 proptest! {

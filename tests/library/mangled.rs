@@ -154,7 +154,7 @@ fn happen(text: &mut String, accident: &Accident) {
             }
         }
         Accident::Scheme(name) => {
-            let key = |name: &str| format!("scheme = \"{name}\"");
+            let key = |scheme_name: &str| format!("scheme = \"{scheme_name}\"");
             for known in scheme::names() {
                 *text = text.replace(&key(known), &key(name));
             }

@@ -153,10 +153,10 @@ fn columns_with(picture: &str, signs: &str) -> Vec<usize> {
 fn the_run_before_is_seen_wherever_the_run_does_not_hide_it() {
     // The height of a steady top is a level line: at every height it is as dense.
     for tilt_deg in 20..45 {
-        let steady = |tilt_deg| {
+        let steady = |angle| {
             run(
                 "steady-slow",
-                &[&format!("start.tilt_deg={tilt_deg}")],
+                &[&format!("start.tilt_deg={angle}")],
                 "",
                 3000,
             )
@@ -228,9 +228,9 @@ fn pushes_and_edits_are_marked_where_they_were() {
         assert_eq!(columns_with(&picture, ":"), [14, 28], "{picture}");
     }
     // Later the window begins at 20 s: it has the edit at 30 s, and no longer the push.
-    let now = run("wobble-push", &[], EDITS, 950);
-    assert_eq!(now.now().time_s, 55.0);
-    let picture = traces(&now, None, Some(40.0), Marker::Braille);
+    let later = run("wobble-push", &[], EDITS, 950);
+    assert_eq!(later.now().time_s, 55.0);
+    let picture = traces(&later, None, Some(40.0), Marker::Braille);
     assert_eq!(columns_with(&picture, ":"), [9], "{picture}");
     assert!(!picture.contains("push"), "{picture}");
 }
@@ -327,10 +327,10 @@ fn a_band_is_named_even_and_its_swings_are_found_below() {
     let picture = text(&buf);
     assert!(picture.contains("z 1.04 .. 1.14 m swings"), "{picture}");
     for marker in [Marker::HalfBlock, Marker::Dot, Marker::Ascii] {
-        let mut buf = Buffer::empty(Rect::new(0, 0, 27, 19));
-        divided(&now, marker, &mut buf);
-        let picture = text(&buf);
-        assert!(picture.contains("x -0.5 .. 0.5 m swings"), "{picture}");
+        let mut small = Buffer::empty(Rect::new(0, 0, 27, 19));
+        divided(&now, marker, &mut small);
+        let band = text(&small);
+        assert!(band.contains("x -0.5 .. 0.5 m swings"), "{band}");
     }
     assert!(
         picture.lines().last().unwrap().contains("zoom"),
@@ -464,8 +464,8 @@ fn the_nearer_mass_is_drawn_over_the_farther_one() {
     let run = run("method-2", &set, "", 0);
     let mut view = view(&run, Marker::Braille);
     (view.camera.yaw_deg, view.camera.pitch_deg) = (0.0, 0.0);
-    let scene = |view: &View| {
-        let picture = drawn(ThreeD(seen_alone(&run, view)), (60, 24));
+    let scene = |seen: &View| {
+        let picture = drawn(ThreeD(seen_alone(&run, seen)), (60, 24));
         // The legend has these signs too.
         let above_legend = picture.split("L angular momentum").next();
         above_legend.unwrap_or_default().to_owned()
@@ -510,9 +510,9 @@ const VALUES: [(&str, &str, bool); 22] = [
 fn list(key: &str) -> ValueList {
     let scenario = preset("wobble-push", &[]);
     let parameters = parameters(&table_of(&scenario.file), &scenario);
-    let listed = |&(key, text, is_default): &(&str, &str, bool)| {
+    let listed = |&(name, text, is_default): &(&str, &str, bool)| {
         let mut own = parameters.iter();
-        let mut parameter = own.find(|own| own.key == key).unwrap().clone();
+        let mut parameter = own.find(|own| own.key == name).unwrap().clone();
         (parameter.value, parameter.is_default) = (text.into(), is_default);
         parameter.frame = None;
         ListedValue::from(parameter)
@@ -548,7 +548,7 @@ fn drawn_parameters(list: &ValueList, (focus, filled): (bool, bool), size: (u16,
 fn the_parameters_are_an_editor_when_in_focus() {
     let size = (26, 19);
     let dt = list("motion.time_step_s");
-    let shown = |list, how, size| text(&drawn_parameters(list, how, size));
+    let shown = |list, how, area| text(&drawn_parameters(list, how, area));
     insta::assert_snapshot!("editor_small", shown(&dt, (true, false), size));
     insta::assert_snapshot!("editor_tall", shown(&dt, (true, false), (26, 45)));
     insta::assert_snapshot!("editor_fills_80", shown(&dt, (true, true), (80, 19)));
@@ -623,8 +623,8 @@ fn a_long_text_scrolls_in_its_field() {
     "0123456789速い独楽abcdef"
         .chars()
         .for_each(|c| form.edit_field(FieldEdit::Type(c)));
-    let field = |form: &InputForm| {
-        let picture = asked(form, (20, 4));
+    let field = |shown: &InputForm| {
+        let picture = asked(shown, (20, 4));
         let line = picture.lines().nth(1).unwrap().to_owned();
         line.trim_matches('│').to_owned()
     };

@@ -83,11 +83,8 @@ fn a_long_message_has_the_rows_that_it_needs() {
     // Without a hint there is one line for it, and that about the numbers' health, which comes back.
     stage.commands("hide = ['look_at']").wait(6.0);
     stage.shows("turns a step").press("m");
-    let notice = stage.lab.notice().unwrap();
-    assert!(
-        notice.len() > 38 && said(&stage).contains(&notice),
-        "{notice}"
-    );
+    let again = stage.lab.notice().unwrap();
+    assert!(again.len() > 38 && said(&stage).contains(&again), "{again}");
     stage.shows_no("turns a step").wait(6.0);
     stage.shows("turns a step");
 }

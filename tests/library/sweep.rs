@@ -142,8 +142,8 @@ fn a_line_counts_as_a_row_only_if_every_field_is_a_value_of_its_readout() {
         (5, &["cusp", "cusps ", "\"cusps\"", "1"]),
         (6, &["repor", "x", "report,x", "\"report"]),
     ];
-    for (place, cells) in wrong {
-        for cell in cells {
+    for (place, bad) in wrong {
+        for cell in bad {
             assert!(!is_row(&with(place, cell)), "{cell:?} at {place}");
         }
     }

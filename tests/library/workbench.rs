@@ -46,9 +46,9 @@ fn a_strip_that_stands_still_at_high_speed_says_so() {
         let mut stage = Stage::open("wobble-push", &["view.speed=1"], size);
         stage.wait(4.0).shows_no("held");
         let fast = ["view.speed=1000", "motion.steps=1000000"];
-        let mut stage = Stage::open("wobble-push", &fast, size);
-        stage.wait(4.0).shows("held");
-        stage.commands("pause = true").shows_no("held");
+        let mut quick = Stage::open("wobble-push", &fast, size);
+        quick.wait(4.0).shows("held");
+        quick.commands("pause = true").shows_no("held");
     }
 }
 
@@ -64,7 +64,14 @@ fn pictures_of_what_lies_on_top() {
 #[test]
 fn the_keys_of_zoom_pan_and_whole_are_named_where_they_act() {
     let mut stage = Stage::open("wobble-push", &[], SMALL);
-    let keys = |stage: &Stage| stage.picture().trim_end().lines().last().map(str::to_owned);
+    let keys = |screen: &Stage| {
+        screen
+            .picture()
+            .trim_end()
+            .lines()
+            .last()
+            .map(str::to_owned)
+    };
     stage.wait(1.0).press("W");
     stage.shows("Home shows the usual time");
     stage.key(Key::Home);
@@ -131,12 +138,12 @@ fn a_legend_names_every_mark_of_the_exact_motion() {
     stage.shows("L angular momentum").shows("dL = τ dt");
     stage.shows("F push").shows("+ pivot").shows("* axle top");
     stage.shows("dots: exact");
-    let mut stage = Stage::open("wobble-push", &[], LARGE);
-    stage.commands("pause = true\ngo_to = '10 s'");
-    stage.wait(0.3);
-    stage.shows("L angular momentum").shows("dL = τ dt");
-    stage.shows("Ω angular velocity").shows("g weight");
-    stage.shows("τ torque").shows("F push");
+    let mut large = Stage::open("wobble-push", &[], LARGE);
+    large.commands("pause = true\ngo_to = '10 s'");
+    large.wait(0.3);
+    large.shows("L angular momentum").shows("dL = τ dt");
+    large.shows("Ω angular velocity").shows("g weight");
+    large.shows("τ torque").shows("F push");
 }
 
 #[test]
@@ -222,8 +229,8 @@ fn a_note_that_may_not_hold_any_more_is_not_shown() {
     stage.shows_no("almost a circle");
     stage.commands("open = 'method-2'").shows("almost a circle");
     Stage::open("method-2", &["motion.steps=50", "view.speed=2"], SMALL).shows("almost a circle");
-    let set = ["motion.time_step_s=0.01", "view.look_at=\"mine\""];
-    Stage::open("method-2", &set, SMALL).shows("mine");
+    let own = ["motion.time_step_s=0.01", "view.look_at=\"mine\""];
+    Stage::open("method-2", &own, SMALL).shows("mine");
 }
 
 #[test]
@@ -291,8 +298,8 @@ fn the_strips_have_room_for_the_exact_motion_too() {
     let set = ["motion.scheme=\"report\"", "motion.time_step_s=0.02"];
     let mut stage = Stage::open("cusps", &set, SMALL);
     stage.wait(3.0).commands("pause = true");
-    let highest = |stage: &Stage| {
-        let picture = stage.picture();
+    let highest = |screen: &Stage| {
+        let picture = screen.picture();
         let label = picture.lines().find(|line| line.contains("│tilt "));
         let words = label.unwrap().split(' ');
         let numbers: Vec<f64> = words.filter_map(|word| word.parse().ok()).collect();

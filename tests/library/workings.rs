@@ -418,15 +418,15 @@ fn a_watched_run_gives_the_workings_of_any_step_kept_or_not() {
         let mut known = vec![None];
         each_step(&scenario, |step| known.push(step.workings().cloned()));
         let mut run = LiveRun::new(Arc::clone(&scenario));
-        for (step, known) in known.iter().enumerate() {
+        for (step, expected) in known.iter().enumerate() {
             // Some are asked for when they are past, the others are kept as the run goes.
             run.keep_workings(step % 3 == 1);
             if step > 0 {
                 run.step().unwrap();
             }
             assert_eq!(run.simulation().now().workings().is_some(), step % 3 == 1);
-            assert_eq!(&run.workings(), known, "{} step {step}", scheme.name);
-            assert_eq!(&run.workings(), known, "{} step {step}", scheme.name);
+            assert_eq!(&run.workings(), expected, "{} step {step}", scheme.name);
+            assert_eq!(&run.workings(), expected, "{} step {step}", scheme.name);
         }
         run.keep_workings(true);
         run.begin_seek(25);

@@ -122,13 +122,13 @@ fn with_a_file_the_summary_goes_to_stderr_and_the_json_to_stdout() {
     let output = done(lab.run(&format!("{RUN} -o a.csv")));
     assert!(output.stdout.is_empty());
     has_all(stderr(&output), ["Method 1", "wall time"]);
-    let output = done(lab.run(&format!("{RUN} -o b.csv --json")));
-    let json: serde_json::Value = serde_json::from_str(stdout(&output)).unwrap();
+    let with_json = done(lab.run(&format!("{RUN} -o b.csv --json")));
+    let json: serde_json::Value = serde_json::from_str(stdout(&with_json)).unwrap();
     assert_eq!(json["steps"], 3);
-    has(stderr(&output), "Method 1");
-    let output = done(lab.run(&format!("{RUN} -o -")));
-    assert_eq!(stdout(&output), lab.read("a.csv"));
-    has(stderr(&output), "Method 1");
+    has(stderr(&with_json), "Method 1");
+    let to_stdout = done(lab.run(&format!("{RUN} -o -")));
+    assert_eq!(stdout(&to_stdout), lab.read("a.csv"));
+    has(stderr(&to_stdout), "Method 1");
     assert_eq!(lab.read("a.csv"), lab.read("b.csv"));
 }
 
@@ -236,11 +236,11 @@ fn every_nth_row_and_always_the_last() {
         assert_eq!(steps(&run(count, every)), expected, "{count} {every}");
     }
     // Longer than a block of steps between two looks at the signals.
-    let (all, some) = (run(10000, 1), run(10000, 999));
-    let mut expected = parts(&all).2;
+    let (every_row, few_rows) = (run(10000, 1), run(10000, 999));
+    let mut expected = parts(&every_row).2;
     expected.retain(|row| row[0] % 999.0 == 0.0 || row[0] == 10000.0);
     // --every changes which rows there are, and nothing in them.
-    assert_eq!(parts(&some).2, expected);
+    assert_eq!(parts(&few_rows).2, expected);
 }
 
 #[test]

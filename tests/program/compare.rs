@@ -103,12 +103,12 @@ fn the_table_names_scenario_kind_and_columns() {
         })
         .collect();
     assert_eq!(table(&text).len(), 1 + expected.len());
-    for (row, begin) in table(&text)[1..].iter().zip(expected) {
-        assert!(words(row).starts_with(&begin), "{begin}: {text}");
+    for (row, cells) in table(&text)[1..].iter().zip(expected) {
+        assert!(words(row).starts_with(&cells), "{cells}: {text}");
     }
     let lopsided = told(&lab, &format!("cusps --duration 1 --set \"{LUMP}\""));
-    let begin = "Cusps, 1 s, against the exact motion (integration held to 1e-12)\n";
-    assert!(lopsided.starts_with(begin), "{lopsided}");
+    let by_integration = "Cusps, 1 s, against the exact motion (integration held to 1e-12)\n";
+    assert!(lopsided.starts_with(by_integration), "{lopsided}");
 }
 
 #[test]
@@ -232,8 +232,11 @@ fn a_scheme_whose_numbers_break_has_no_error_to_show() {
         assert_eq!(broke, none, "{csv}");
     }
     // Nor has one beside an exact motion that leaves the range of numbers.
-    let csv = told(&lab, &format!("{} -o -", args("1e100")));
-    assert!(rows(&csv).iter().all(|row| row[3] == "n/a"), "{csv}");
+    let unbounded = told(&lab, &format!("{} -o -", args("1e100")));
+    assert!(
+        rows(&unbounded).iter().all(|row| row[3] == "n/a"),
+        "{unbounded}"
+    );
 }
 
 #[test]

@@ -138,8 +138,8 @@ fn a_file_is_what_its_name_says() {
     let words = ["t.csv.part", "a sweep that is not whole yet"];
     ground.refused("figure t.csv.part -o x.svg", 1, &words);
     // Every number there is, of which a page holds a few.
-    let words = "do not fit on a page: choose some with --kind";
-    ground.refused("figure s.csv -o x.svg", 1, &[words]);
+    let too_many = "do not fit on a page: choose some with --kind";
+    ground.refused("figure s.csv -o x.svg", 1, &[too_many]);
     done(ground.run("figure s.csv -o x.svg --kind z_m,tilt_deg"));
 }
 
@@ -256,21 +256,21 @@ fn colours_that_were_turned_off_and_on_again_are_no_choice() {
     lab.ask("\x1b", "q quit");
     lab.quit();
     has_kept("auto");
-    let mut lab = without_colours(&ground);
-    assert!(!is_coloured(&lab));
+    let mut monochrome = without_colours(&ground);
+    assert!(!is_coloured(&monochrome));
     // What is remembered does not win over NO_COLOR either; the user's own file does.
-    lab.ask("c\x1b[B\x1b[B\x1b[B\x1b[B\r", "colours on");
-    lab.ask("\x1b", "q quit");
-    lab.quit();
+    monochrome.ask("c\x1b[B\x1b[B\x1b[B\x1b[B\r", "colours on");
+    monochrome.ask("\x1b", "q quit");
+    monochrome.quit();
     has_kept("always");
-    let mut lab = without_colours(&ground);
-    assert!(!is_coloured(&lab));
-    lab.quit();
+    let mut still_monochrome = without_colours(&ground);
+    assert!(!is_coloured(&still_monochrome));
+    still_monochrome.quit();
     std::fs::create_dir_all(ground.config().join("gyrolab")).unwrap();
     ground.write("config/gyrolab/config.toml", "colour = 'always'\n");
-    let mut lab = without_colours(&ground);
-    assert!(is_coloured(&lab));
-    lab.quit();
+    let mut by_own_file = without_colours(&ground);
+    assert!(is_coloured(&by_own_file));
+    by_own_file.quit();
 }
 
 #[test]

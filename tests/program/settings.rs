@@ -50,18 +50,22 @@ fn what_was_chosen_is_there_at_the_next_start() {
     );
     assert_eq!(ground.mode("state/gyrolab/settings.toml"), 0o600);
     for args in [&[][..], &["--resume"]] {
-        let mut lab = match args {
+        let mut again = match args {
             [] => open(&ground, &[]),
             args => ground.open(args),
         };
-        lab.wait_for("q quit");
-        assert!(is_ascii(&lab) && !has_colours(&lab), "{}", lab.screen());
-        lab.quit();
+        again.wait_for("q quit");
+        assert!(
+            is_ascii(&again) && !has_colours(&again),
+            "{}",
+            again.screen()
+        );
+        again.quit();
     }
     // An option wins.
-    let mut lab = open(&ground, &["--markers", "braille", "--color", "always"]);
-    assert!(!is_ascii(&lab) && has_colours(&lab));
-    lab.quit();
+    let mut with_options = open(&ground, &["--markers", "braille", "--color", "always"]);
+    assert!(!is_ascii(&with_options) && has_colours(&with_options));
+    with_options.quit();
     // A picture does not depend on what was chosen.
     let shown = ground.run("show method-2");
     assert!(stdout(&shown).contains('┌'));
@@ -82,9 +86,9 @@ fn the_users_own_file_wins_and_is_never_written() {
             .unwrap()
             .contains("braille")
     );
-    let mut lab = open(&ground, &[]);
-    assert!(is_ascii(&lab), "{}", lab.screen());
-    lab.quit();
+    let mut again = open(&ground, &[]);
+    assert!(is_ascii(&again), "{}", again.screen());
+    again.quit();
     let file = ground.config().join("gyrolab/config.toml");
     assert_eq!(fs::read_to_string(file).unwrap(), text);
     let shown = ground.run("show method-2");
@@ -111,15 +115,15 @@ fn broken_files_are_told_and_keep_nobody_out() {
     fs::create_dir_all(&folder).unwrap();
     for text in ["marker = [", "marker = 'dots'", "\u{1b}]0;x\u{7}"] {
         fs::write(folder.join("settings.toml"), text).unwrap();
-        let mut lab = open(&ground, &[]);
-        lab.wait_for("settings.toml:1: ");
-        lab.wait_for("not used");
-        lab.ask("c\x1b[B\x1b[B\x1b[B\r", "dots half-block");
-        lab.ask("\x1b", "q quit");
-        lab.quit();
-        let mut lab = open(&ground, &[]);
-        assert!(!lab.words().contains("not used"), "{}", lab.screen());
-        lab.quit();
+        let mut told = open(&ground, &[]);
+        told.wait_for("settings.toml:1: ");
+        told.wait_for("not used");
+        told.ask("c\x1b[B\x1b[B\x1b[B\r", "dots half-block");
+        told.ask("\x1b", "q quit");
+        told.quit();
+        let mut next = open(&ground, &[]);
+        assert!(!next.words().contains("not used"), "{}", next.screen());
+        next.quit();
         fs::remove_file(folder.join("settings.toml")).unwrap();
     }
 }
@@ -148,8 +152,8 @@ fn dots_that_this_terminal_cannot_show_are_not_taken_from_another() {
     lab.ask("c\x1b[B\x1b[B\x1b[B\r", "dots braille");
     lab.ask("\x1b", "q quit");
     lab.quit();
-    let mut lab = ground.open_with(&PLAIN, &[("TERM", "xterm"), ("LANG", "C")]);
-    lab.wait_for("q quit");
-    assert!(is_ascii(&lab));
-    lab.quit();
+    let mut plain = ground.open_with(&PLAIN, &[("TERM", "xterm"), ("LANG", "C")]);
+    plain.wait_for("q quit");
+    assert!(is_ascii(&plain));
+    plain.quit();
 }

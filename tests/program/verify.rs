@@ -89,8 +89,8 @@ fn what_differs_is_told_with_exit_code_1() {
     let output = ground.run("verify a.csv b.csv c.csv d.csv");
     let words = "b.csv: is no CSV that gyrolab wrote";
     failed(&output, &[words, "d.csv: there is no such file"]);
-    let words = ", the row of step 12: t_s is 1.3";
-    has_all(stdout(&output), [words, "c.csv: the same"]);
+    let wrong_row = ", the row of step 12: t_s is 1.3";
+    has_all(stdout(&output), [wrong_row, "c.csv: the same"]);
     ground.refused("verify", 2, &[]);
     ground.refused("verify /", 1, &[]);
 }

@@ -10,8 +10,8 @@ pub fn has(text: impl AsRef<str>, words: impl AsRef<str>) {
 /// Asserts that `text` contains each of `words`.
 #[track_caller]
 pub fn has_all(text: impl AsRef<str>, words: impl IntoIterator<Item = impl AsRef<str>>) {
-    for words in words {
-        has(&text, words);
+    for one in words {
+        has(&text, one);
     }
 }
 

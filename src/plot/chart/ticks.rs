@@ -351,8 +351,8 @@ mod tests {
             prop_assert!(ticks.major.len() <= 9 && ticks.minor.len() <= 60);
             let (low, high) = (low.abs().min(high.abs()), low.abs().max(high.abs()));
             if low > 0.0 && high.is_finite() && high > low {
-                let ticks = Ticks::log(low, high, at_most(6));
-                prop_assert!(ticks.major.len() <= 9, "{:?}", ticks.major);
+                let decades = Ticks::log(low, high, at_most(6));
+                prop_assert!(decades.major.len() <= 9, "{:?}", decades.major);
             }
         }
     }
