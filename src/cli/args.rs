@@ -382,7 +382,7 @@ pub(super) fn time(text: &str) -> Result<f64, String> {
     bare(
         text,
         |seconds| *seconds >= 0.0 && seconds.is_finite(),
-        IN_SECONDS,
+        MEANT_IN_SECONDS,
         "must be a time in seconds, 0 or more",
     )
 }
@@ -421,12 +421,12 @@ pub(super) fn bare<T: FromStr>(
 
 pub(super) fn steps(text: &str) -> Result<u64, String> {
     let rule = "must be a whole number of steps, 0 or more, in digits";
-    bare(text, |_| true, IN_STEPS, rule)
+    bare(text, |_| true, MEANT_IN_STEPS, rule)
 }
 
 pub(super) fn length(text: &str) -> Result<u64, String> {
     let rule = "must be a whole number of steps, 1 or more, in digits";
-    let steps = bare(text, |steps| *steps > 0, IN_STEPS, rule)?;
+    let steps = bare(text, |steps| *steps > 0, MEANT_IN_STEPS, rule)?;
     if i64::try_from(steps).is_err() {
         return Err("is more steps than can be counted".to_owned());
     }
@@ -452,7 +452,7 @@ pub(super) fn positive(text: &str) -> Result<f64, String> {
     bare(
         text,
         |number| *number > 0.0 && number.is_finite(),
-        IN_SECONDS,
+        MEANT_IN_SECONDS,
         "must be a number greater than zero",
     )
 }
@@ -471,8 +471,8 @@ pub(super) fn size(text: &str) -> Result<(u16, u16), String> {
 }
 
 /// How a time is given, and how a step, which is no time.
-pub(super) const IN_SECONDS: &str = "in seconds";
-const IN_STEPS: &str = "in time steps";
+pub(super) const MEANT_IN_SECONDS: &str = "in seconds";
+const MEANT_IN_STEPS: &str = "in time steps";
 
 /// What is said of a number with a unit behind it, as `20s`; the number is to be given `meant`.
 fn without_unit(text: &str, meant: &str) -> Option<String> {
@@ -481,7 +481,7 @@ fn without_unit(text: &str, meant: &str) -> Option<String> {
     let value: f64 = number.parse().ok()?;
     let is_unit = !unit.is_empty() && value.is_finite() && value >= 0.0;
     is_unit.then(|| match unit {
-        "s" | "sec" | "second" | "seconds" if meant == IN_SECONDS => {
+        "s" | "sec" | "second" | "seconds" if meant == MEANT_IN_SECONDS => {
             format!("must be a number without a unit: write {number}, {meant}")
         }
         _ => format!("must be a number without a unit ({unit}), {meant}"),

@@ -25,7 +25,7 @@ const PAGE_SHARE: usize = 48;
 /// The rows of a page above a pane whose run it plays, where they do not stand side by side.
 const PAGE_ROWS: u16 = 8;
 /// The height the whole lab wants.
-const HEIGHT: u16 = 24;
+const FULL_LAB_HEIGHT: u16 = 24;
 /// From this height on a hint may have two lines.
 const TWO_LINES_FROM: u16 = 18;
 /// On lower screens the lines below the panes leave at least these rows to the panes, and a hint has at most this many lines.
@@ -94,8 +94,8 @@ impl ScreenLayout {
         let hint = (1..lines).fold(hint, |hint, _| hint.union(cut_bottom(&mut rest, true)));
         let health = cut_bottom(&mut rest, has_health);
         // The values have all the lines where they fill a screen that has no more than they need.
-        let is_full = area.height == HEIGHT && view.is_filled_by(Pane::Parameters);
-        let timeline = cut_bottom(&mut rest, area.height >= HEIGHT && !is_full);
+        let is_full = area.height == FULL_LAB_HEIGHT && view.is_filled_by(Pane::Parameters);
+        let timeline = cut_bottom(&mut rest, area.height >= FULL_LAB_HEIGHT && !is_full);
         let measured = cut_bottom(&mut rest, view.measured && area.height >= 8);
         Self {
             title,
@@ -105,7 +105,7 @@ impl ScreenLayout {
             health,
             hint,
             keys,
-            is_cramped: area.width < FULL_LAB_WIDTH || area.height < HEIGHT,
+            is_cramped: area.width < FULL_LAB_WIDTH || area.height < FULL_LAB_HEIGHT,
         }
     }
 
@@ -118,7 +118,7 @@ impl ScreenLayout {
     /// The panes that stand side by side on `area`, with the lines of the whole lab around them, while none fills it.
     pub fn side_by_side(area: Rect, view: &View) -> Vec<Pane> {
         let unfilled = View {
-            filled: false,
+            fullscreen: false,
             ..view.clone()
         };
         let layout = Self::new(area, &unfilled, true);
@@ -156,7 +156,7 @@ fn place_panes(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     if area.is_empty() {
         return Vec::new();
     }
-    if !view.filled && view.may_show(Pane::Lesson) && area.width >= BESIDE_PAGE_FROM {
+    if !view.fullscreen && view.may_show(Pane::Lesson) && area.width >= BESIDE_PAGE_FROM {
         let share = area.width as usize * PAGE_SHARE / 100;
         let [page, rest] = split_columns(
             area,
@@ -166,20 +166,20 @@ fn place_panes(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
         panes.insert(0, (Pane::Lesson, page));
         return panes;
     }
-    if !view.filled && view.may_show(Pane::Lesson) && view.focus == Pane::Lesson {
+    if !view.fullscreen && view.may_show(Pane::Lesson) && view.focus == Pane::Lesson {
         let plays = view.sheet.as_ref().is_some_and(|sheet| sheet.plays);
         if !plays || area.height < 2 * PAGE_ROWS {
             return vec![(Pane::Lesson, area)];
         }
         let [page, rest] = split_rows(area, PAGE_ROWS);
-        let mut beside = beside_page(view);
-        beside.filled = true;
-        let mut panes = place_panes(rest, &beside);
+        let mut companions = beside_page(view);
+        companions.fullscreen = true;
+        let mut panes = place_panes(rest, &companions);
         panes.insert(0, (Pane::Lesson, page));
         return panes;
     }
     let joined = panes_with_room(area.width);
-    if view.filled || area.width < TWO_FROM {
+    if view.fullscreen || area.width < TWO_FROM {
         vec![(view.focus, area)]
     } else if let Some(asked) = asked(view) {
         with_asked(asked, area, view)
@@ -200,9 +200,11 @@ fn beside_page(view: &View) -> View {
         ..view.clone()
     };
     if without.focus == Pane::Lesson {
-        let beside = without.beside.filter(|pane| without.may_show(*pane));
+        let companion = without
+            .companion_pane
+            .filter(|pane| without.may_show(*pane));
         let first = without.to_show().first().copied();
-        without.focus = beside.or(first).unwrap_or(Pane::Traces);
+        without.focus = companion.or(first).unwrap_or(Pane::Traces);
     }
     without
 }

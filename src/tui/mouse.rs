@@ -83,7 +83,7 @@ impl Pointer {
         }
         if layout.timeline.contains(at) {
             self.held = Some(Held::Place);
-            let time_s = Timeline::of(lab).time_s(layout.timeline, at.x)?;
+            let time_s = Timeline::new(lab).time_s(layout.timeline, at.x)?;
             lab.carry_out_now(&Command::GoTo(SeekTarget::Time(time_s)));
             return None;
         }
@@ -113,7 +113,7 @@ impl Pointer {
                 let run = lab.player().run();
                 let furthest = run.furthest();
                 let furthest_s = Clock::at(run.scenario(), furthest).time_s(furthest);
-                let time_s = Timeline::of(lab).time_s(layout.timeline, at.x);
+                let time_s = Timeline::new(lab).time_s(layout.timeline, at.x);
                 if let Some(time_s) = time_s {
                     // Time that the run has not reached would take long: a press goes there.
                     lab.carry_out_now(&Command::GoTo(SeekTarget::Time(time_s.min(furthest_s))));
@@ -138,7 +138,7 @@ fn pane_at(layout: &ScreenLayout, at: Position) -> Option<(Pane, Rect)> {
 
 /// Sets the cursor on the traces to the time at `at`, where there is one.
 fn read_off(place: Rect, at: Position, lab: &mut Lab) {
-    if let Some(time_s) = Traces(PlotInputs::of(lab)).time_s(place, at) {
+    if let Some(time_s) = Traces(PlotInputs::from_lab(lab)).time_s(place, at) {
         let to = CursorTo::Place(SeekTarget::Time(time_s));
         lab.carry_out_now(&Command::Cursor(to));
     }

@@ -12,7 +12,7 @@ use std::fmt::Write; // which cannot fail on a `String`
 
 /// A cell, px.
 const CELL_WIDTH_PX: u32 = 8;
-const HEIGHT: u32 = 16;
+const CELL_HEIGHT_PX: u32 = 16;
 /// From a cell's upper edge to the line on which letters stand, px.
 const BASE: u32 = 12;
 /// Fonts whose letters are as wide as a cell at this size, px.
@@ -30,7 +30,7 @@ pub fn svg(lab: &Lab, (columns, lines): (u16, u16), background: Background) -> S
     };
     let [width, height] = [
         u32::from(columns) * CELL_WIDTH_PX,
-        u32::from(lines) * HEIGHT,
+        u32::from(lines) * CELL_HEIGHT_PX,
     ];
     let title = xml(&lab.player().run().scenario().file.title);
     let mut out = format!(
@@ -44,7 +44,7 @@ pub fn svg(lab: &Lab, (columns, lines): (u16, u16), background: Background) -> S
             .filter_map(|x| Some((u32::from(x) * CELL_WIDTH_PX, buf.cell((x, y))?)))
             .collect();
         for run in row.chunk_by(|a, b| look_of(a.1) == look_of(b.1)) {
-            put(&mut out, run, u32::from(y) * HEIGHT, paper);
+            put(&mut out, run, u32::from(y) * CELL_HEIGHT_PX, paper);
         }
     }
     out + "</svg>\n"
@@ -81,8 +81,9 @@ fn put(out: &mut String, cells: &[(u32, &Cell)], top: u32, paper: [&'static str;
     let [ink, ground] = colours;
     if ground != paper[1] {
         let width = cells.len() as u32 * CELL_WIDTH_PX;
-        *out +=
-            &format!("<path fill=\"{ground}\" d=\"M{left} {top}h{width}v{HEIGHT}h-{width}z\"/>\n");
+        *out += &format!(
+            "<path fill=\"{ground}\" d=\"M{left} {top}h{width}v{CELL_HEIGHT_PX}h-{width}z\"/>\n"
+        );
     }
     let dim = if first.modifier.contains(Modifier::DIM) {
         " opacity=\".65\""

@@ -529,7 +529,7 @@ fn drawn_parameters(list: &ValueList, (focus, filled): (bool, bool), size: (u16,
     let mut now = run("wobble-push", &[], "", 500);
     let reading = &Reading::new(&mut now, &Pace::new(1.0, false));
     let mut view = view(&now, Marker::Braille);
-    view.filled = filled;
+    view.fullscreen = filled;
     view.focus = [Pane::Traces, Pane::Parameters][usize::from(focus)];
     let mut buf = Buffer::empty(Rect::new(0, 0, size.0, size.1));
     Parameters {
@@ -686,7 +686,7 @@ proptest! {
         let mut now = run("wobble-push", &[], "", 3);
         let reading = &Reading::new(&mut now, &Pace::new(1.0, false));
         let mut view = view(&now, Marker::Ascii);
-        (view.filled, view.focus) = (filled, Pane::Parameters);
+        (view.fullscreen, view.focus) = (filled, Pane::Parameters);
         let pane = Parameters {
             scenario: now.scenario(),
             motion: now.simulation().motion(),

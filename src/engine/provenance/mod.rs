@@ -148,8 +148,8 @@ pub enum FileFormat {
 }
 
 impl FileFormat {
-    /// The form of a file by its first bytes; `None` where it is no figure.
-    pub fn of(bytes: &[u8]) -> Option<Self> {
+    /// Returns the format of a file by its first bytes, or `None` if it is no figure.
+    pub fn detect(bytes: &[u8]) -> Option<Self> {
         let text = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes);
         match text.trim_ascii_start() {
             _ if bytes.starts_with(b"%PDF-") => Some(Self::Pdf),
@@ -193,7 +193,7 @@ impl FileFormat {
 
 /// The `picture`, a file that this program wrote, with its origin in it; `None` where that is too long.
 pub fn embed(picture: &[u8], origin: &Origin) -> Option<Vec<u8>> {
-    FileFormat::of(picture)?.embed(picture, &origin.text(picture)?)
+    FileFormat::detect(picture)?.embed(picture, &origin.text(picture)?)
 }
 
 /// A figure that was read.
@@ -208,11 +208,11 @@ pub struct FigureFile {
 }
 
 impl FigureFile {
-    /// The figure whose file has these bytes; or why no run can be had of it.
+    /// Parses the bytes of a figure's file. The error says why no run can be extracted from it.
     ///
-    /// A file may be large: it is neither copied, nor are two copies of its text kept with it for longer than is needed.
-    pub fn of(mut file: Vec<u8>) -> Result<Self, String> {
-        let form = FileFormat::of(&file).ok_or(NO_RUN_TEXT)?;
+    /// A file may be large: it is not copied, and two copies of its text exist only as long as needed.
+    pub fn parse(mut file: Vec<u8>) -> Result<Self, String> {
+        let form = FileFormat::detect(&file).ok_or(NO_RUN_TEXT)?;
         let Extracted { carrier, text } = form.extract(&file)?;
         let text = String::from_utf8(text).map_err(|_| BROKEN)?;
         let (before, rest) = file.split_at(carrier.start);
@@ -250,7 +250,7 @@ impl FigureFile {
     /// The same for what `reader` gives, of which only the first bytes are looked at where it is no figure.
     pub fn read(reader: &mut impl BufRead) -> Result<Option<Self>, String> {
         let first = reader.fill_buf().map_err(|error| unread(&error))?;
-        if FileFormat::of(first).is_none() {
+        if FileFormat::detect(first).is_none() {
             return Ok(None);
         }
         let mut file = Vec::new();
@@ -259,7 +259,7 @@ impl FigureFile {
         if file.len() as u64 > LONGEST_FIGURE {
             return Err("is longer than 128 MiB, the most that is read of a figure".to_owned());
         }
-        Self::of(file).map(Some)
+        Self::parse(file).map(Some)
     }
 }
 

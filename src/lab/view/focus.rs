@@ -8,7 +8,7 @@ impl View {
     pub(in crate::lab) fn toggled(&self, pane: Pane) -> Vec<Command> {
         let with_it = [Pane::ThreeD, pane];
         let mut commands = Vec::new();
-        if self.filled {
+        if self.fullscreen {
             commands.push(Command::Fill(None));
         }
         if self.look.show.contains(&pane) == self.shows(pane) {
@@ -26,19 +26,19 @@ impl View {
 
     /// Fills the screen with `pane` and moves the focus there; with `None` shows all panes again.
     pub fn fill(&mut self, pane: Option<Pane>) {
-        self.filled = pane.is_some();
+        self.fullscreen = pane.is_some();
         self.focus = pane.unwrap_or(self.focus);
-        self.is_touched |= self.filled;
+        self.is_touched |= self.fullscreen;
     }
 
     pub fn is_filled_by(&self, pane: Pane) -> bool {
-        self.filled && self.focus == pane
+        self.fullscreen && self.focus == pane
     }
 
     /// The panes that can have the focus: those side by side on the screen, or every pane that may be shown where the
     /// screen holds one or two at a time.
     fn focusable(&self) -> Vec<Pane> {
-        if !self.filled && self.side_by_side.len() > 2 {
+        if !self.fullscreen && self.side_by_side.len() > 2 {
             // A pane that was hidden since the screen was last fitted is still in this list.
             let mut panes = self.shown_among(&self.side_by_side);
             if !panes.is_empty() {
@@ -77,7 +77,7 @@ impl View {
 
     /// Moves the focus to `pane`, which fills the screen if it is not on it.
     pub fn turn_to(&mut self, pane: Pane) {
-        self.filled = self.is_filled_by(pane) || !self.focusable().contains(&pane);
+        self.fullscreen = self.is_filled_by(pane) || !self.focusable().contains(&pane);
         (self.focus, self.is_touched) = (pane, true);
     }
 
@@ -105,8 +105,8 @@ impl View {
     /// Moves the focus to the first pane that can have it, if the one in focus no longer can.
     pub fn keep_focus(&mut self) {
         self.keep_focus_among(&self.focusable());
-        if self.focus != Pane::Lesson && !self.filled {
-            self.beside = Some(self.focus);
+        if self.focus != Pane::Lesson && !self.fullscreen {
+            self.companion_pane = Some(self.focus);
         }
     }
 

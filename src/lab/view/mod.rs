@@ -104,7 +104,7 @@ pub struct View {
     pub focus: Pane,
     /// Whether the user turned to it, or pressed a key of its own: the footer then names those.
     pub is_touched: bool,
-    pub filled: bool,
+    pub fullscreen: bool,
     pub marker: Marker,
     pub theme: Theme,
     /// Time at the left edge of the traces, s; `None`: they follow the run.
@@ -115,14 +115,14 @@ pub struct View {
     /// The step at which the traces are read off.
     pub cursor: Option<u64>,
     /// The step of a turn of the tilt from which swings are counted.
-    pub mark: Option<u64>,
+    pub swing_mark: Option<u64>,
     /// Where the 3-D view is looked at from.
     pub camera: Camera,
     /// The phase to which the step pane returns from its last page.
     pub page_before: StepPageChoice,
     pub pointed_at: Option<Pane>,
     /// The pane beside the text where there is room for one: the last that had the focus, or the first that was chosen.
-    pub beside: Option<Pane>,
+    pub companion_pane: Option<Pane>,
     /// The text beside the panes.
     pub sheet: Option<Arc<Sheet>>,
     /// The first row of the text that is shown; `None`: the row that brings its important paragraph into view.
@@ -144,17 +144,17 @@ impl View {
             look: ViewSettings::default(),
             focus: Pane::ALL[0],
             is_touched: false,
-            filled: false,
+            fullscreen: false,
             marker,
             theme,
             since_s: None,
             magnified: 1.0,
             cursor: None,
-            mark: None,
+            swing_mark: None,
             camera: Camera::default(),
             page_before: StepPageChoice::default(),
             pointed_at: None,
-            beside: None,
+            companion_pane: None,
             sheet: None,
             sheet_scrolled: None,
             measured: false,
@@ -199,7 +199,7 @@ impl View {
 
     pub fn turn_to_sheet(&mut self) {
         if self.sheet.is_some() {
-            self.filled &= self.focus == Pane::Lesson;
+            self.fullscreen &= self.focus == Pane::Lesson;
             self.focus = Pane::Lesson;
         }
     }
@@ -223,7 +223,7 @@ impl View {
             residuals: self.look.residuals,
             ..ViewSettings::default()
         };
-        (self.since_s, self.magnified, self.cursor, self.mark) = (None, 1.0, None, None);
+        (self.since_s, self.magnified, self.cursor, self.swing_mark) = (None, 1.0, None, None);
         if self.look.camera.is_none() {
             self.camera = Camera::default();
         }
@@ -240,13 +240,13 @@ impl View {
     pub fn set_look(&mut self, look: ViewSettings) {
         let before = std::mem::replace(&mut self.look, look);
         if before.show != self.look.show {
-            self.beside = self.look.show.first().copied();
+            self.companion_pane = self.look.show.first().copied();
             self.side_by_side = self.to_show(); // until the lab is fitted to its screen again
         }
         let mut shown = self.look.show.iter();
         let requested = shown.find(|pane| pane.is_on_request() && !before.show.contains(pane));
         if let Some(pane) = requested
-            && !self.filled
+            && !self.fullscreen
         {
             self.focus = *pane;
         }
@@ -294,7 +294,7 @@ impl View {
 
     /// Whether `pane` is on the screen, if that has room for it.
     pub fn shows(&self, pane: Pane) -> bool {
-        self.is_filled_by(pane) || (!self.filled && self.may_show(pane))
+        self.is_filled_by(pane) || (!self.fullscreen && self.may_show(pane))
     }
 
     pub fn to_show(&self) -> Vec<Pane> {

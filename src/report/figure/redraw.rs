@@ -34,7 +34,7 @@ pub fn redraw(
     })?;
     let drawn = source.draw(watch)?.ok_or(Unverified::Stopped)?;
     let again = write(&drawn.scene, format(&figure, &source), Some(&figure.origin));
-    let again = FigureFile::of(again.map_err(|error| error.to_string())?)?;
+    let again = FigureFile::parse(again.map_err(|error| error.to_string())?)?;
     if figure.origin.all(Payload::Table).next().is_some() {
         notes.push("drawn from the table in it; gyrolab verify computes that where it has a file of its own".to_owned());
     }

@@ -59,7 +59,7 @@ pub const FROM_ABOVE_ROW: PaneRow = PaneRow {
     rank: 1,
     least: (27, 17),
     draw: |lab, area, buf| {
-        FromAbove(PlotInputs::of(lab)).render(area, buf);
+        FromAbove(PlotInputs::from_lab(lab)).render(area, buf);
     },
     keys: ZOOM_KEYS,
     arrows: None,

@@ -1,7 +1,7 @@
 //! The help: keys and words, searched by typing; Enter does the key that is selected. Keys are grouped by their
 //! purpose, and the words are those of the glossary.
 
-use super::{popup_frame, rows, write};
+use super::{SELECTED_MARK, popup_frame, rows, write};
 use crate::engine::text::wrap::{columns, wrapped};
 use crate::lab::action::Action;
 use crate::lab::values::list::Match;
@@ -17,7 +17,6 @@ const NAMES_COLUMN: usize = 2;
 const COLUMN_GAP: usize = 2;
 /// A text that would have fewer columns than this stands below its key, not in a column of its own.
 const LEAST_TEXT: usize = 40;
-const SELECTED: &str = "►";
 
 fn selected(lab: &Lab) -> Option<HelpEntry> {
     let found = find_entries(&lab.popups().help.text);
@@ -88,7 +87,7 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
         if line.entry == Some(selected) {
             buf.set_style(place, theme.style(Role::Selected));
             if line.is_first {
-                write(place, (0, 0), SELECTED, theme.style(Role::Focus), buf);
+                write(place, (0, 0), SELECTED_MARK, theme.style(Role::Focus), buf);
             }
         }
     }
@@ -214,7 +213,7 @@ pub struct HelpEntry {
 }
 
 /// The groups of the keys of other modes, in order.
-const PLACES: [(Mode, &str); 5] = [
+const MODE_GROUPS: [(Mode, &str); 5] = [
     (Mode::Browser, "in the list of presets and files"),
     (Mode::Filter, "while a part of a name is typed"),
     (Mode::Find, "while a value is searched for"),
@@ -284,7 +283,7 @@ pub fn entries() -> Vec<HelpEntry> {
     });
     let keys = of_lab.flat_map(of_mode).chain(of_pane);
     keys.chain(words)
-        .chain(PLACES.into_iter().flat_map(of_mode))
+        .chain(MODE_GROUPS.into_iter().flat_map(of_mode))
         .collect()
 }
 

@@ -37,6 +37,9 @@ use ratatui::style::{Modifier, Style};
 use ratatui::widgets::{Block, Clear, Widget};
 use std::borrow::Cow;
 
+/// The mark of the selected line of a list.
+const SELECTED_MARK: &str = "►";
+
 /// A row of the table of panes: what the layout, the focus, the footer and the help need to know.
 #[derive(Debug)]
 pub struct PaneRow {
@@ -128,7 +131,7 @@ pub struct PlotInputs<'a> {
 }
 
 impl<'a> PlotInputs<'a> {
-    pub fn of(lab: &'a Lab) -> Self {
+    pub fn from_lab(lab: &'a Lab) -> Self {
         let (player, comparison) = (lab.player(), lab.comparison());
         Self {
             view: lab.view(),

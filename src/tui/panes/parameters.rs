@@ -5,7 +5,7 @@
 
 mod lines;
 
-use super::{PaneRow, Width, frame, leave_one_out, shortened, write};
+use super::{PaneRow, SELECTED_MARK, Width, frame, leave_one_out, shortened, write};
 use crate::engine::scenario::{Motion, Scenario};
 use crate::engine::text::printable::printable;
 use crate::engine::text::wrap::columns;
@@ -28,8 +28,7 @@ use ratatui::widgets::Widget;
 const UNIT_COLUMN: u16 = 19;
 /// How many columns of values that can be edited stand side by side at most; the readouts have one more.
 const MOST_EDITED: u16 = 6;
-/// What marks the selected line, and a list that goes on above or below.
-const SELECTED: &str = "►";
+/// The marks of a list that continues above or below.
 const MORE_ABOVE: &str = "▲";
 const MORE_BELOW: &str = "▼";
 /// From this height on there is room for the readouts to watch, below the values.
@@ -82,7 +81,7 @@ impl Widget for Parameters<'_> {
         if inside.is_empty() {
             return;
         }
-        match (list, self.view.filled) {
+        match (list, self.view.fullscreen) {
             (Some(list), true) => self.edited_and_read(list, inside, buf),
             (Some(list), false) => self.edited_above_read(list, inside, buf),
             (None, _) => self.most_important(inside, buf),
@@ -221,7 +220,7 @@ impl Parameters<'_> {
         let (shown, above, below) = around_selected(lines, room);
         self.columns(shown.chunks(height.max(1)), wide, place, buf);
         // On the frame, or in the last column of the lines, which is empty.
-        let x = if self.view.filled && area.width == count * wide {
+        let x = if self.view.fullscreen && area.width == count * wide {
             area.right() - 1
         } else {
             area.right()
@@ -274,7 +273,7 @@ impl Parameters<'_> {
         let unit = value_end + UNIT_COLUMN - VALUE_END;
         write(area, (unit, 0), &line.unit, theme.style(Role::Quiet), buf);
         if line.is_selected {
-            write(area, (0, 0), SELECTED, theme.style(Role::Focus), buf);
+            write(area, (0, 0), SELECTED_MARK, theme.style(Role::Focus), buf);
             buf.set_style(area, theme.style(Role::Selected));
         }
     }

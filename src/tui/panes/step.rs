@@ -5,7 +5,7 @@ mod numbers;
 mod page;
 mod why;
 
-use super::{PaneRow, Width, frame};
+use super::{PaneRow, SELECTED_MARK, Width, frame};
 use crate::engine::scenario::Scenario;
 use crate::engine::text::number::{rounded, shortest, significant};
 use crate::engine::text::wrap::columns;
@@ -171,7 +171,7 @@ impl PhasePage<'_> {
         let mut at = 0;
         for (phase, number) in self.explained.workings.phases().zip(1..) {
             let (mark, role) = if number == self.number {
-                ("►", Role::Focus)
+                (SELECTED_MARK, Role::Focus)
             } else {
                 (" ", Role::Quiet)
             };
@@ -285,7 +285,7 @@ impl PhasePage<'_> {
         let yours = numbers.iter().find(|it| it.symbol == quantity.symbol)?;
         let mut lines = numbers::lines(yours, format, false);
         if lines == numbers::lines(quantity, format, false) {
-            lines = vec![StepPageLine::of(
+            lines = vec![StepPageLine::new(
                 numbers::SYMBOL + 1,
                 "the same",
                 Role::Measured,

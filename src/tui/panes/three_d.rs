@@ -57,7 +57,7 @@ pub const THREE_D_ROW: PaneRow = PaneRow {
     rank: 3,
     least: (40, 17),
     draw: |lab, area, buf| {
-        ThreeD(PlotInputs::of(lab)).render(area, buf);
+        ThreeD(PlotInputs::from_lab(lab)).render(area, buf);
     },
     keys: ZOOM_KEYS,
     arrows: Some(|lab, direction, times| one(lab.view().turned(direction, times))),
@@ -73,7 +73,7 @@ impl Widget for ThreeD<'_> {
         let Some(inside) = round_frame(&THREE_D_ROW, zoom, &self.0, area, buf) else {
             return;
         };
-        let subject = SceneSubject::of(self.0);
+        let subject = SceneSubject::new(self.0);
         let most = (inside.height / ROWS_A_LINE).max(1) as usize;
         let lines = subject.legend_lines(inside.width as usize, most) as u16;
         let [picture, legend] = split_rows(inside, inside.height - lines);
@@ -102,7 +102,7 @@ struct SceneSubject<'a> {
 }
 
 impl<'a> SceneSubject<'a> {
-    fn of(seen: PlotInputs<'a>) -> Self {
+    fn new(seen: PlotInputs<'a>) -> Self {
         let run = seen.run;
         let mechanics = &run.scenario().body.mechanics;
         let state = match seen.reading {
@@ -112,7 +112,7 @@ impl<'a> SceneSubject<'a> {
         let ages = seen
             .reading
             .map(|reading| Ages::from_readouts(&reading.readouts));
-        let shape = DrawnBody::of(run);
+        let shape = DrawnBody::new(run);
         let reach = shape.reach();
         let [torque, change] = torques(run, state);
         Self {
@@ -125,7 +125,7 @@ impl<'a> SceneSubject<'a> {
             shape,
             torque,
             change,
-            shown_phase: StepArrows::of(seen.explained, seen.view),
+            shown_phase: StepArrows::of_shown_phase(seen.explained, seen.view),
         }
     }
 

@@ -12,10 +12,10 @@ use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-const AHEAD: &str = "·";
-const REACHED: &str = "─";
+const AHEAD_LINE: &str = "·";
+const REACHED_LINE: &str = "─";
 const PUSH_MARK: &str = "═";
-const EDIT: &str = ":";
+const EDIT_MARK: &str = ":";
 /// The scenario's end, where the run has gone on beyond it.
 const END_MARK: &str = "│";
 /// How far the pinned run has been.
@@ -40,7 +40,7 @@ pub struct Timeline {
 }
 
 impl Timeline {
-    pub fn of(lab: &Lab) -> Self {
+    pub fn new(lab: &Lab) -> Self {
         let run = lab.player().run();
         let (scenario, furthest) = (run.scenario(), run.furthest());
         let now_s = run.now().time_s;
@@ -100,9 +100,9 @@ impl Timeline {
         let reached = self.column(self.furthest_s, width);
         let way = |column| {
             if column <= reached && self.furthest_s > 0.0 {
-                (REACHED, Role::Text)
+                (REACHED_LINE, Role::Text)
             } else {
-                (AHEAD, Role::Quiet)
+                (AHEAD_LINE, Role::Quiet)
             }
         };
         let mut signs: Vec<_> = (0..width).map(way).collect();
@@ -120,7 +120,7 @@ impl Timeline {
             put(self.column(self.end_s, width), END_MARK, Role::Text);
         }
         for &edit_s in self.marks.edits.iter().filter(|edit_s| **edit_s <= whole_s) {
-            put(self.column(edit_s, width), EDIT, Role::Heading);
+            put(self.column(edit_s, width), EDIT_MARK, Role::Heading);
         }
         if let Some(pinned_s) = self.pinned_s {
             put(self.column(pinned_s, width), PINNED_MARK, Role::Pinned);
@@ -131,7 +131,7 @@ impl Timeline {
 }
 
 pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
-    let timeline = Timeline::of(lab);
+    let timeline = Timeline::new(lab);
     let Some(line) = timeline.line(area) else {
         return;
     };

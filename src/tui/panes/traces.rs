@@ -37,8 +37,8 @@ const HELD: [&str; 3] = ["zoom, held for a second each", "zoom, held", "held"];
 const LESS_RUN: &str = " less run";
 const STRIP_NAME_WIDTH: u16 = 5;
 /// What marks the time of an edit, and the time where the run stands.
-const EDIT: char = ':';
-const PEN: char = '│';
+const EDIT_LINE: char = ':';
+const NOW_LINE: char = '│';
 const CURSOR_MARK: char = '┃';
 
 pub const TRACES_ROW: PaneRow = PaneRow {
@@ -48,7 +48,7 @@ pub const TRACES_ROW: PaneRow = PaneRow {
     rank: 0,
     least: (27, 0),
     draw: |lab, area, buf| {
-        Traces(PlotInputs::of(lab)).render(area, buf);
+        Traces(PlotInputs::from_lab(lab)).render(area, buf);
     },
     keys: TRACES_PANE_KEYS,
     arrows: Some(|lab, direction, times| {
@@ -158,10 +158,10 @@ impl Traces<'_> {
         let across = self.0.view.marker.dots().0;
         let column = |time_s: f64| plot.strip.column(time_s).map(|column| column / across);
         if let Some(now) = column(self.0.run.now().time_s) {
-            upright(now as u16 + 1, PEN, quiet, plot.sheet, buf);
+            upright(now as u16 + 1, NOW_LINE, quiet, plot.sheet, buf);
         }
         for edit in marks.edits.iter().filter_map(|edit_s| column(*edit_s)) {
-            upright(edit as u16, EDIT, quiet, plot.sheet, buf);
+            upright(edit as u16, EDIT_LINE, quiet, plot.sheet, buf);
         }
     }
 

@@ -26,7 +26,7 @@ pub struct StepPageSection {
 }
 
 impl StepPageLine {
-    pub fn of(column: usize, text: impl Into<String>, role: Role) -> Self {
+    pub fn new(column: usize, text: impl Into<String>, role: Role) -> Self {
         Self::default().and(column, text, role)
     }
 
@@ -50,7 +50,7 @@ impl StepPageSection {
         let lines = wrapped(text, width.saturating_sub(indent)).into_iter();
         let indented = lines.enumerate().map(|(line, text)| {
             let column = if line == 0 { 0 } else { indent };
-            StepPageLine::of(column, text, role)
+            StepPageLine::new(column, text, role)
         });
         Self::new(rank, indented.collect())
     }

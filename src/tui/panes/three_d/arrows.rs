@@ -19,7 +19,7 @@ use ratatui::layout::Rect;
 const OMEGA_ARROW_LENGTH: f64 = 1.17;
 /// Lengths of the other arrows, as shares of the body's size. Only their directions have a meaning.
 const WEIGHT: f64 = 0.35;
-const TORQUE: f64 = 0.5;
+const TORQUE_ARROW_SHARE: f64 = 0.5;
 const PUSH_ARROW_LENGTH: f64 = 0.4;
 /// How far the axis of a turn goes beyond the body on both sides, as a share of its size.
 const AXIS: f64 = 1.0;
@@ -102,7 +102,7 @@ impl SceneSubject<'_> {
             .direction("L", direction(&state.momentum))
             .map(|along| along * (MOMENTUM_ARROW_LENGTH * arm));
         if let Some(torque) = self.direction("τ", self.torque) {
-            arrows.push(("τ", pivot, torque * (TORQUE * reach)));
+            arrows.push(("τ", pivot, torque * (TORQUE_ARROW_SHARE * reach)));
         }
         if let (Some(change), Some(tip)) = (self.direction("dL", self.change), momentum) {
             arrows.push(("dL", tip, change * (CHANGE_ARROW_SHARE * reach)));
@@ -229,7 +229,7 @@ pub struct StepArrows<'a> {
 
 impl<'a> StepArrows<'a> {
     /// The phase on the page of the step pane of `view`, if that is on the screen.
-    pub fn of(explained: Option<&'a StepWorkings>, view: &View) -> Option<Self> {
+    pub fn of_shown_phase(explained: Option<&'a StepWorkings>, view: &View) -> Option<Self> {
         let shown = explained.filter(|_| view.shows(Pane::Step))?;
         let (phase, ..) = shown.phase(view.look.phase)?;
         let row = view.look.sum_to.and_then(|rows| rows.checked_sub(1));

@@ -15,7 +15,7 @@ use ratatui::layout::Rect;
 use std::ops::RangeInclusive;
 
 /// Digits after the point of a value at the cursor.
-const DECIMALS: usize = 6;
+const CURSOR_DECIMALS: usize = 6;
 /// Least range of z, as a share of the distance between pivot and traced point: a smaller swing is drawn small.
 const Z_LEAST: f64 = 0.05;
 /// Least range of the tilt, degrees. Below it there is only rounding error, and the labels would have too many digits.
@@ -38,7 +38,7 @@ enum Whose {
     Run,
 }
 
-const ALL: [Whose; 4] = [Whose::Before, Whose::Pinned, Whose::Exact, Whose::Run];
+const DRAWING_ORDER: [Whose; 4] = [Whose::Before, Whose::Pinned, Whose::Exact, Whose::Run];
 
 pub(super) struct Plot {
     pub content: StripContent,
@@ -86,7 +86,7 @@ impl Traces<'_> {
                 },
             });
         }
-        for whose in ALL {
+        for whose in DRAWING_ORDER {
             self.add_curves(whose, marks, &mut plots);
         }
         plots
@@ -255,9 +255,10 @@ impl Traces<'_> {
         let unit = self.named(plot.content).1;
         let measured = self
             .measured_at(plot.content, cursor.time_s)
-            .map(|value| format!(", data {}", fixed(value, DECIMALS)))
+            .map(|value| format!(", data {}", fixed(value, CURSOR_DECIMALS)))
             .unwrap_or_default();
-        let words = value.map(|value| format!("{} {unit}{measured}", fixed(value, DECIMALS)));
+        let words =
+            value.map(|value| format!("{} {unit}{measured}", fixed(value, CURSOR_DECIMALS)));
         Some((column as u16, words.unwrap_or_default()))
     }
 
@@ -304,7 +305,7 @@ impl Traces<'_> {
     /// The extent of all that the strip of `content` shows. The exact motion, the run before and the pinned one count as a
     /// whole, so that the scale stays while the run catches up with them.
     fn extent(&self, content: StripContent, strip: Option<&Strip>) -> Extent {
-        let recordings = ALL
+        let recordings = DRAWING_ORDER
             .into_iter()
             .filter_map(|whose| self.recorded(whose, content));
         let extents = recordings
