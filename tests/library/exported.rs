@@ -351,17 +351,6 @@ fn lines_that_are_not_the_runs_are_found() {
 }
 
 #[test]
-fn what_other_programs_do_to_a_file_is_told() {
-    let text = String::from_utf8(GOOD.clone()).unwrap();
-    let dos = difference(text.replace('\n', "\r\n").as_bytes());
-    assert!(dos.to_string().contains("CR LF from line 1 on"), "{dos}");
-    let marked = format!("\u{feff}{text}");
-    assert_eq!(verified(marked.as_bytes()).unwrap().difference, None);
-    let late = text.replace("\n40,", "\n\u{feff}40,");
-    difference(late.as_bytes());
-}
-
-#[test]
 fn an_edited_header_is_found_by_what_it_changes() {
     let text = String::from_utf8(GOOD.clone()).unwrap();
     for (old, new) in [

@@ -9,7 +9,7 @@ use gyrolab::plot::chart::{Chart, ChartAxis, ChartSeries, Panel, SeriesStyle};
 use gyrolab::plot::ink::WHITE;
 use gyrolab::plot::{PageFormat, PageScene, Paint, Point, SceneItem, write};
 use gyrolab::report::figure::course::{RunSampler, SampleRequest, SampledRun};
-use gyrolab::report::figure::kind::FigureKind;
+use gyrolab::report::figure::kind::{FIGURE_KIND_NAMES, FigureKind, RESIDUALS};
 use gyrolab::report::figure::labels::FigureLabels;
 use gyrolab::report::figure::of_runs::{self, DrawnFigure, FigureRun, KnownNumbers};
 use gyrolab::report::figure::{FigureSource, FigureSpec, of_table};
@@ -195,13 +195,11 @@ fn every_preset_has_a_tidy_figure_of_every_kind() {
     for name in PRESETS.iter().map(|preset| preset.name) {
         let steps = scenario(name, &[]).steps.min(STEPS);
         let runs = [run(name, &[&format!("motion.steps={steps}")])];
-        for kind in [
-            "traces",
-            "above",
-            "3d",
-            "tilt_deg",
-            "energy_J,Lx_Js,azimuth_deg,step,segment",
-        ] {
+        // Residuals are of measured data.
+        let kinds = FIGURE_KIND_NAMES
+            .into_iter()
+            .filter(|kind| *kind != RESIDUALS);
+        for kind in kinds.chain(["tilt_deg", "energy_J,Lx_Js,azimuth_deg,step,segment"]) {
             for (width_mm, exact) in [(178.0, true), (40.0, false)] {
                 let asked = FigureSpec {
                     exact,

@@ -78,6 +78,22 @@ fn keys_of_lessons_are_where_a_lesson_is() {
     }
 }
 
+/// The letters that are no key of the lab in any pane, for whoever adds a key.
+const FREE_LETTERS: &str = "jlABCDEFGHIJKOQRTVY";
+
+#[test]
+fn the_free_letters_are_these() {
+    let keys = keys();
+    let letters = ('a'..='z').chain('A'..='Z');
+    let free: String = letters
+        .filter(|letter| !keys.contains(&letter.to_string()))
+        .collect();
+    assert_eq!(
+        free, FREE_LETTERS,
+        "a key was added or removed: change FREE_LETTERS in tests/library/keys.rs"
+    );
+}
+
 /// A letter and its capital are two sides of one thing, or one of them is no key.
 #[test]
 fn no_capital_does_something_else_than_its_letter() {
@@ -86,7 +102,11 @@ fn no_capital_does_something_else_than_its_letter() {
     for letter in 'a'..='z' {
         let both = [letter, letter.to_ascii_uppercase()];
         let are_keys = both.iter().all(|key| keys.contains(&key.to_string()));
-        assert_eq!(are_keys, PAIRS.contains(&letter), "{letter}");
+        assert_eq!(
+            are_keys,
+            PAIRS.contains(&letter),
+            "{letter}: if its capital is its counterpart, add it to PAIRS in tests/library/keys.rs"
+        );
     }
 }
 

@@ -24,7 +24,11 @@ fn the_table_of_presets_is_the_folder() {
         .filter_map(|name| name.strip_suffix(".toml").map(str::to_owned))
         .collect();
     let table = PRESETS.iter().map(|preset| preset.name.to_owned());
-    assert_eq!(files, table.collect());
+    assert_eq!(
+        files,
+        table.collect(),
+        "the folder and PRESETS in src/engine/scenario/presets.rs differ"
+    );
 }
 
 #[test]

@@ -60,7 +60,11 @@ fn the_table_is_whole_and_its_names_say_their_units() {
             "1/s" => "_per_second",
             unit => &format!("_{unit}"),
         };
-        assert!(readout.name.ends_with(ending), "{}", readout.name);
+        assert!(
+            readout.name.ends_with(ending),
+            "{} does not end with {ending}: a unit of another ending has its arm in tests/library/readouts.rs",
+            readout.name
+        );
         assert!(readout.meaning.len() > 3, "{}", readout.name);
     }
     assert_eq!(nearest("tilt"), "did you mean tilt_deg?");

@@ -40,7 +40,11 @@ fn the_table_of_sweeps_is_the_folder() {
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
         .collect();
     let names = SWEEPS.iter().map(|sweep| format!("{}.toml", sweep.name));
-    assert_eq!(files, names.collect());
+    assert_eq!(
+        files,
+        names.collect(),
+        "the folder and SWEEPS in src/studies/sweep/mod.rs differ"
+    );
     for sweep in SWEEPS {
         let about = shipped(sweep.name).about().unwrap_or_default().to_owned();
         assert!(

@@ -116,21 +116,3 @@ fn notes_follow_the_lab_from_page_to_page() {
     assert_eq!(code(&ended), 130);
     lab.quit();
 }
-
-#[test]
-fn the_manual_has_a_page_for_the_class() {
-    let ground = Ground::new();
-    let class = done(ground.run("man class"));
-    has_all(
-        stdout(&class),
-        [
-            "MaxStartups 60:30:120",
-            "PerSourcePenaltyExemptList",
-            "server-access -a -r",
-        ],
-    );
-    failed(
-        &ground.run("man clas"),
-        &["no topic named clas", "did you mean class?"],
-    );
-}

@@ -92,11 +92,3 @@ fn check_takes_files_of_commands() {
     let words = "bad.toml:2: do.0.open (\"method-3\") is no preset: did you mean";
     ground.refused("check bad.toml", 1, &[words]);
 }
-
-#[test]
-fn the_manual_lists_every_command() {
-    let manual = Ground::new().stdout("man");
-    for row in gyrolab::lab::command::COMMANDS.iter() {
-        has(&manual, format!("{} = ", row.name));
-    }
-}

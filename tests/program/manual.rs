@@ -2,8 +2,6 @@
 
 use crate::support::ground::{GYROLAB, Ground, done, stdout};
 use crate::support::words::{has, has_all, has_no};
-use std::collections::BTreeSet;
-use std::path::Path;
 use std::process::Command;
 
 #[test]
@@ -110,40 +108,6 @@ fn the_topics_hold_the_tables_of_the_program() {
             "{topic}"
         );
     }
-}
-
-/// Every environment variable that the sources read stands in the manual.
-#[test]
-fn the_manual_names_every_environment_variable() {
-    let ground = Ground::new();
-    let manual = ground.stdout("man");
-    let (_, section) = manual.split_once("\nENVIRONMENT\n").unwrap();
-    let (section, _) = section.split_once("\nFILES\n").unwrap();
-    let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_';
-    let names: BTreeSet<_> = section.split(|c| !is_part(c)).collect();
-    // A library reads this one.
-    assert!(names.contains("RAYON_NUM_THREADS"));
-    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let mut folders = vec![source];
-    let mut found = 0;
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-                continue;
-            }
-            let text = std::fs::read_to_string(&path).unwrap_or_default();
-            for call in ["env::var(\"", "var_os(\"", "variable(\""] {
-                for (at, _) in text.match_indices(call) {
-                    let name = text[at + call.len()..].split('"').next().unwrap();
-                    assert!(names.contains(name), "{name}: {path:?}");
-                    found += 1;
-                }
-            }
-        }
-    }
-    assert!(found >= 4, "{found}");
 }
 
 /// What bash completes `line` to, its words parted as bash parts them.

@@ -2,7 +2,7 @@
 
 use crate::support::ground::{Ground, done, failed, refused, stderr};
 use crate::support::pty::Terminal;
-use crate::support::words::{has, has_all, has_no};
+use crate::support::words::{has, has_no};
 
 const PUSHED: &str = "[[push]]\npoint = \"top\"\nforce_N = [0, 0, 1]\n";
 
@@ -216,20 +216,6 @@ fn a_written_file_is_named_with_its_rows() {
 fn a_precession_that_there_is_not_is_told_why() {
     let words = "none in this run: the axle passes through the vertical";
     has(Ground::new().stdout("run method-1"), words);
-}
-
-#[test]
-fn the_manual_has_the_keys_of_the_lab_and_the_values_of_options() {
-    let ground = Ground::new();
-    let manual = ground.stdout("man");
-    let keys = manual.find("KEYS IN THE LAB").unwrap();
-    has_all(&manual[keys..], ["\n  space ", "\n  d ", "\n  f "]);
-    has_all(
-        &manual,
-        ["--at <STEP>", "--resume [<NAME>]", "-o, --output <FILE>"],
-    );
-    let words = "scenario or run file may hold; the keys to press are in gyrolab man";
-    has(ground.stdout("keys --help"), words);
 }
 
 const NO_COLOR: [(&str, &str); 3] = [("TERM", "xterm"), ("LANG", "C.UTF-8"), ("NO_COLOR", "1")];

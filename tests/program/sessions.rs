@@ -12,25 +12,6 @@ const CTRL_Z: &str = "\u{1a}";
 const CLEAR: &str = "\u{15}";
 const AS_LEFT: &str = "as it was left";
 
-#[test]
-fn seventy_six_acts_each_earlier_than_the_one_before_are_come_back_to() {
-    let ground = Ground::new();
-    let mut lab = ground.open("method-2 --paused");
-    lab.wait_for("q quit");
-    lab.press("157g");
-    lab.wait_for_step(157);
-    for step in (81..157).rev() {
-        lab.press("p,");
-        lab.wait_for_step(step);
-    }
-    lab.quit();
-    lab.wait_for("comes back to step 81 of Method 2");
-    let mut resumed = ground.open("--resume");
-    resumed.wait_for(AS_LEFT);
-    resumed.wait_for_step(81);
-    resumed.quit();
-}
-
 /// A file size limit of zero does for a full disk: a file can be made, and no byte of it be written.
 #[test]
 fn on_a_full_disk_the_trouble_stays_and_nothing_is_promised() {

@@ -633,10 +633,6 @@ fn the_shipped_sweeps_are_listed_and_printed() {
         ground.write("mine.toml", &ground.stdout(&format!("presets {name}")));
         ground.stdout("check mine.toml");
     }
-    has_all(
-        ground.stdout("man sweep"),
-        ["SLURM_ARRAY_TASK_ID", "parallel"],
-    );
 }
 
 /// On a terminal there is something to see before the first row, and no rate or time left is made up.

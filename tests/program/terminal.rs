@@ -435,18 +435,3 @@ fn what_is_wrong_on_the_command_line_is_refused_in_words() {
         Ground::new().refused(args, code, &[words]);
     }
 }
-
-#[test]
-fn a_time_step_is_gone_through_phase_by_phase() {
-    let mut lab = Terminal::open("--paused");
-    lab.wait_for("q quit");
-    lab.ask("v", "No time step has been taken yet");
-    lab.ask(".", "step 1: 1 of 7, inertia");
-    lab.ask(".", "step 1: 2 of 7, angular velocity");
-    lab.ask(",,", "No time step has been taken yet");
-    lab.ask(".......", "step 1: 7 of 7, new momentum");
-    lab.ask(".", "step 2: 1 of 7, inertia");
-    lab.ask("y", "why sideways, not down?");
-    lab.ask("v", "from above");
-    lab.quit();
-}

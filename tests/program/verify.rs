@@ -96,17 +96,6 @@ fn what_differs_is_told_with_exit_code_1() {
 }
 
 #[test]
-fn what_stands_behind_the_last_row_is_told_even_if_it_is_empty() {
-    let ground = Ground::new();
-    done(ground.run("run method-2 --steps 4 -o a.csv"));
-    let good = ground.read("a.csv");
-    for more in ["\n", "\n\n\n", " \n", "x"] {
-        let told = differs(&ground, &format!("{good}{more}"));
-        has(&told, "have come to their end");
-    }
-}
-
-#[test]
 fn a_long_run_that_differs_is_not_played_on() {
     let ground = Ground::new();
     done(ground.run("run method-2 --steps 3 -o a.csv"));
@@ -238,6 +227,8 @@ fn ends_of_lines_are_told_of_a_sweep_as_of_a_run() {
             (&good[..good.len() - 4], cut),
             (without, "it is cut off"),
             (&format!("{good}\n"), "have come to their end"),
+            (&format!("{good} \n"), "have come to their end"),
+            (&format!("{good}x"), "have come to their end"),
         ] {
             has(differs(&ground, text), words);
         }
