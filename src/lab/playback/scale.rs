@@ -112,28 +112,6 @@ pub fn decimals(apart: f64) -> usize {
         .clamp(0.0, 9.0) as usize
 }
 
-/// Returns the multiples of a number 1, 2 or 5 times a power of ten from `low` to `high`: as many as there can be, at
-/// most `most`.
-pub fn ticks(low: f64, high: f64, most: usize) -> Vec<f64> {
-    let range = high - low;
-    if !(range > 0.0 && range.is_finite()) || most == 0 {
-        return Vec::new();
-    }
-    let first = nice_numbers::rung_below(range / most as f64);
-    for rung in first..first + 4 {
-        let apart = nice_numbers::rung(rung);
-        let from = (low / apart - STRIP_TICK_ROUNDING).ceil();
-        let to = (high / apart + STRIP_TICK_ROUNDING).floor();
-        if to - from < most as f64 {
-            let count = (to - from + 1.0).max(0.0) as usize;
-            return (0..count)
-                .map(|index| rounded((from + index as f64) * apart, STRIP_TICK_DIGITS))
-                .collect();
-        }
-    }
-    Vec::new()
-}
-
 /// Returns the smallest of 1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten that is not below `value` (> 0).
 fn nice_above(value: f64) -> f64 {
     const TICK_STEPS: [f64; 11] = [1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0];
@@ -178,21 +156,6 @@ mod tests {
             let within = |room| scale.in_words_within(room).unwrap_or_default();
             assert_eq!(within(width), words, "{scale:?} within {width}");
             assert!((0..40).all(|room| within(room).chars().count() <= room));
-        }
-    }
-
-    #[test]
-    fn ticks_are_round_and_no_more_than_there_is_room_for() {
-        for (low, high, most, expected) in [
-            (0.0, 230.0, 6, &[0.0, 50.0, 100.0, 150.0, 200.0][..]),
-            (0.0, 230.0, 2, &[0.0, 200.0]),
-            (-0.8, 0.8, 5, &[-0.5, 0.0, 0.5]),
-            (12.25, 12.35, 3, &[12.25, 12.3, 12.35]),
-            (1.0, 1.0, 5, &[]),
-            (0.0, f64::INFINITY, 5, &[]),
-            (0.0, 1.0, 0, &[]),
-        ] {
-            assert_eq!(ticks(low, high, most), expected, "{low} to {high}");
         }
     }
 }

@@ -171,6 +171,22 @@ impl Ticks {
     }
 }
 
+/// Returns the round values from `low` to `high`, the finest of which there are at most `most`.
+pub fn round_values(low: f64, high: f64, most: usize) -> Vec<f64> {
+    let range = high - low;
+    if !(range > 0.0 && range.is_finite()) || most == 0 {
+        return Vec::new();
+    }
+    let first = nice_numbers::rung_below(range / most as f64);
+    let finest = (first..first + 4).find_map(|rung| {
+        let step = nice_numbers::rung(rung);
+        let (from, to) = between(low / step, high / step);
+        let numbers = RoundMultiples::of_rung(rung);
+        (to - from < most as i64).then(|| (from..=to).map(|count| numbers.value(count)).collect())
+    });
+    finest.unwrap_or_default()
+}
+
 fn between(low: f64, high: f64) -> (i64, i64) {
     (ceil(low), floor(high))
 }
@@ -324,6 +340,21 @@ mod tests {
         assert_eq!(labels(&close), ["0.02", "0.05", "0.1"]);
         let narrow = Ticks::log(0.031, 0.034, at_most(8));
         assert!(narrow.major.len() >= 3);
+    }
+
+    #[test]
+    fn values_are_round_and_no_more_than_there_is_room_for() {
+        for (low, high, most, expected) in [
+            (0.0, 230.0, 6, &[0.0, 50.0, 100.0, 150.0, 200.0][..]),
+            (0.0, 230.0, 2, &[0.0, 200.0]),
+            (-0.8, 0.8, 5, &[-0.5, 0.0, 0.5]),
+            (12.25, 12.35, 3, &[12.25, 12.3, 12.35]),
+            (1.0, 1.0, 5, &[]),
+            (0.0, f64::INFINITY, 5, &[]),
+            (0.0, 1.0, 0, &[]),
+        ] {
+            assert_eq!(round_values(low, high, most), expected, "{low} to {high}");
+        }
     }
 
     proptest! {

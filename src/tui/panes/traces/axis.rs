@@ -3,6 +3,7 @@
 use crate::engine::text::number::{decimal, exponent, fixed};
 use crate::lab::playback::scale::{self, StripScale};
 use crate::lab::playback::strip::Strip;
+use crate::plot::chart::ticks::round_values;
 
 /// Times from this on, s, have more digits than a tick has room for.
 const LONG_TIME_S: f64 = 1e6;
@@ -22,7 +23,7 @@ pub fn times(strip: &Strip, width: usize) -> Vec<PlacedTick> {
     }
     let mut most = width / 3;
     loop {
-        let ticks = scale::ticks(strip.begin_s, strip.end_s(), most);
+        let ticks = round_values(strip.begin_s, strip.end_s(), most);
         let count = ticks.len();
         match round_times(strip, width, &ticks) {
             Some(placed) => return placed,
@@ -101,7 +102,7 @@ pub fn values(scale: &StripScale, rows: usize) -> Vec<PlacedTick> {
     const ROWS_PER_LABEL: usize = 3;
     let last = rows.saturating_sub(1);
     let ticks = if rows > 2 * ROWS_PER_LABEL {
-        scale::ticks(scale.low, scale.high, rows / ROWS_PER_LABEL)
+        round_values(scale.low, scale.high, rows / ROWS_PER_LABEL)
     } else {
         Vec::new()
     };
