@@ -72,12 +72,11 @@ fn inside(from: Point, to: Point, frame: &PageRectangle) -> Option<[Point; 2]> {
     if begin.partial_cmp(&end).is_none_or(Ordering::is_gt) {
         return None;
     }
-    let point = |share: f64| match share {
+    Some([begin, end].map(|share| match share {
         0.0 => from,
         1.0 => to,
         share => at(from.x + share * dx, from.y + share * dy),
-    };
-    Some([point(begin), point(end)])
+    }))
 }
 
 /// Some of the points, the first and the last among them: none of the others lies farther than `within_pt` from the line

@@ -5,6 +5,7 @@
 //! digits only leave an offset to it.
 
 use crate::engine::text::nice_numbers;
+use crate::plot::ink::{self, LABEL_PT};
 
 /// Numbers from this power of ten on leave a power to the title, and those up to the other.
 const LARGE_POWER: i32 = 4;
@@ -24,6 +25,13 @@ const MOST_ZEROS: i32 = 12;
 pub struct Tick {
     pub at: f64,
     pub label: String,
+}
+
+impl Tick {
+    /// Returns half of the width of its label, pt.
+    pub fn half_width(&self) -> f64 {
+        0.5 * ink::width(&self.label, LABEL_PT)
+    }
 }
 
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -125,12 +133,8 @@ impl Ticks {
                 Self::linear(low, high, fits)
             };
         }
-        let all = |every: i64| -> Vec<Tick> {
-            let powers = (first..=last).filter(|power| power.rem_euclid(every) == 0);
-            powers.map(|power| decade(power as i32)).collect()
-        };
         let every = (1..=last - first + 1)
-            .find(|&every| fits(&all(every)))
+            .find(|&every| fits(&decades(first, last, every)))
             .unwrap_or(last - first + 1);
         let minor = match every {
             1 => (first - 1..=last).flat_map(parts_of_decade).collect(),
@@ -140,7 +144,7 @@ impl Ticks {
                 .collect::<Vec<_>>(),
         };
         Self {
-            major: all(every),
+            major: decades(first, last, every),
             minor: minor
                 .into_iter()
                 .filter(|at| (low..=high).contains(at))
@@ -212,6 +216,12 @@ fn leading_power(largest: f64) -> i32 {
 /// 2, 3, ..., 9 times ten to this power.
 fn parts_of_decade(power: i64) -> impl Iterator<Item = f64> {
     (2..10).map(move |digit| f64::from(digit) * nice_numbers::rung(3 * power))
+}
+
+/// Returns ticks at the powers of ten from `first` to `last` that are multiples of `every`.
+fn decades(first: i64, last: i64, every: i64) -> Vec<Tick> {
+    let powers = (first..=last).filter(|power| power.rem_euclid(every) == 0);
+    powers.map(|power| decade(power as i32)).collect()
 }
 
 fn decade(power: i32) -> Tick {
