@@ -27,6 +27,8 @@ fn wrong_arguments_are_told_in_words() {
         ("run cusps --steps 0", whole),
         ("cusps --fps 100", "must be a whole number from 1 to 60"),
         ("run cusps --folder x", "--folder is for the lab"),
+        ("show cusps --size 0x9", "80x24"),
+        ("show cusps --size 1000x501", "1000x500"),
         ("run cusps --dt 0.1", "--time-step 0.05 holds the seconds"),
         (
             "figure cusps -o x.svg --kind measured_tilt_swing_deg",

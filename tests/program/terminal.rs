@@ -416,22 +416,3 @@ fn show_prints_plain_text_of_the_size_asked_for() {
     assert!(!wing_nut.contains("the upper strip shows"), "{wing_nut}");
     has_all(&wing_nut, ["turns over"]);
 }
-
-#[test]
-fn what_is_wrong_on_the_command_line_is_refused_in_words() {
-    for (args, code, words) in [
-        ("no-such-preset", 1, "no preset of that name"),
-        ("show", 2, "SCENARIO"),
-        ("show cusps --size 0x9", 2, "80x24"),
-        ("show cusps --size 1000x501", 2, "1000x500"),
-        ("--scheme euler", 2, "report"),
-        ("--at x", 2, "a whole number of steps"),
-        (
-            "--set motion.time_step_s=-1",
-            1,
-            "must be greater than zero",
-        ),
-    ] {
-        Ground::new().refused(args, code, &[words]);
-    }
-}

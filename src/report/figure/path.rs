@@ -235,7 +235,7 @@ mod tests {
         assert!(most < 2.0 / 300.0, "{most}");
         let bounded = |step: f64| {
             let angle = |number: u32| step * f64::from(number);
-            let point = |angle: f64| [libm::cos(angle), libm::sin(angle), 0.0];
+            let point = |turned: f64| [libm::cos(turned), libm::sin(turned), 0.0];
             recorded(false, (0..600_000).map(|number| point(angle(number))))
         };
         // Chords that are never repeated become points; a path that stands still is one point.
