@@ -125,7 +125,7 @@ impl Teacher {
         }
         let (step, is_running) = (player.step_number(), player.is_running());
         let before = self.state.shown.as_ref();
-        let still = before.filter(|run| !is_running && run.snapshot.step == step);
+        let still = before.filter(|shown| !is_running && shown.snapshot.step == step);
         Some(PresentedRun {
             snapshot: Snapshot {
                 name: lab.runs().name().to_owned(),
@@ -134,7 +134,7 @@ impl Teacher {
                 step,
                 ..lab.snapshot()
             },
-            at_ms: still.map_or_else(unix_ms, |run| run.at_ms),
+            at_ms: still.map_or_else(unix_ms, |shown| shown.at_ms),
             is_running,
         })
     }

@@ -320,7 +320,7 @@ impl Comparison {
     pub fn pinned_end_s(&self, run: &LiveRun) -> Option<f64> {
         match &self.pinned {
             Some(Pinned::Present) => Some(furthest_s(run)),
-            Some(Pinned::Before(run)) => Some(run.end_s()),
+            Some(Pinned::Before(ghost)) => Some(ghost.end_s()),
             Some(Pinned::Returning(_)) | None => None,
         }
     }

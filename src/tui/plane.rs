@@ -114,7 +114,7 @@ impl LabelCells {
         let rows = y.saturating_sub(LABEL_ROWS_DOWN)
             ..=(y + LABEL_ROWS_DOWN).min(self.height.saturating_sub(1));
         let cells = rows.flat_map(|row| columns.clone().map(move |column| (column, row)));
-        let free = cells.filter(|cell| self.is_free(*cell, width));
+        let free = cells.filter(|other| self.is_free(*other, width));
         // A row is about twice as high as a column is wide; of two places as near, the one to the right.
         let place = free
             .min_by_key(|&(column, row)| {

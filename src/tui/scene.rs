@@ -224,10 +224,10 @@ impl DotScene {
             }
             let depth = &mut at_dot[y * width + x];
             *depth = depth.min(speck.depth);
-            for y in y.saturating_sub(1)..(y + 2).min(height) {
-                for x in x.saturating_sub(1)..(x + 2).min(width) {
-                    let depth = &mut nearest[y * width + x];
-                    *depth = depth.min(speck.depth);
+            for row in y.saturating_sub(1)..(y + 2).min(height) {
+                for column in x.saturating_sub(1)..(x + 2).min(width) {
+                    let nearest_depth = &mut nearest[row * width + column];
+                    *nearest_depth = nearest_depth.min(speck.depth);
                 }
             }
         }

@@ -100,7 +100,7 @@ fn put(out: &mut String, cells: &[(u32, &Cell)], top: u32, paper: [&'static str;
         CellMark::Dots => {
             let dots: String = cells
                 .iter()
-                .map(|(left, cell)| dots(cell, *left, top))
+                .map(|(edge, cell)| dots(cell, *edge, top))
                 .collect();
             let _ = writeln!(out, "<path fill=\"{ink}\"{dim} d=\"{dots}\"/>");
         }

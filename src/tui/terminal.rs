@@ -179,9 +179,9 @@ impl Screen {
             signal_hook::low_level::emulate_default_handler(SIGTSTP)?;
         }
         // If the handler of SIGCONT ran only after this, the terminal would be taken over twice.
-        let begin = Instant::now();
+        let stopped = Instant::now();
         while LAST_JOB_SIGNAL.swap(NEITHER, Ordering::SeqCst) != RESUMED
-            && begin.elapsed() < HEARD_WITHIN
+            && stopped.elapsed() < HEARD_WITHIN
         {
             thread::sleep(Duration::from_millis(1));
         }

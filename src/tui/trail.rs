@@ -139,21 +139,26 @@ impl Trail {
         if self.around == Around::Body {
             let columns = x.saturating_sub(NEAR_DOTS)..=x + NEAR_DOTS;
             let rows = y.saturating_sub(NEAR_DOTS)..=y + NEAR_DOTS;
-            let dots = rows.flat_map(|y| columns.clone().map(move |x| (x, y)));
-            return dots.filter(|&(x, y)| self.age(x, y).is_some()).count() >= CROWD;
+            let dots = rows.flat_map(|row| columns.clone().map(move |column| (column, row)));
+            return dots
+                .filter(|&(column, row)| self.age(column, row).is_some())
+                .count()
+                >= CROWD;
         }
         let (left, above) = (x.wrapping_sub(1), y.wrapping_sub(1));
         let around = [(left, y), (x + 1, y), (x, above), (x, y + 1)];
-        around.into_iter().all(|(x, y)| self.age(x, y).is_some())
+        around
+            .into_iter()
+            .all(|(column, row)| self.age(column, row).is_some())
     }
 
     fn is_beside_recent(&self, x: usize, y: usize) -> bool {
         let columns = [x.wrapping_sub(1), x, x + 1];
         let rows = [y.wrapping_sub(1), y, y + 1];
-        rows.iter().any(|y| {
+        rows.iter().any(|row| {
             columns
                 .iter()
-                .any(|x| self.age(*x, *y) == Some(Age::Recent))
+                .any(|column| self.age(*column, *row) == Some(Age::Recent))
         })
     }
 

@@ -117,13 +117,13 @@ impl Origin {
                 "its run was changed after it was drawn: the SHA-256 is another".to_owned(),
             );
         }
-        let (length, rest) = rest.split_once('\n').ok_or(BROKEN)?;
-        let length = length
+        let (first_line, head_and_files) = rest.split_once('\n').ok_or(BROKEN)?;
+        let (head, mut files) = first_line
             .strip_prefix(", head ")
-            .and_then(|it| it.parse().ok());
-        let length = length.filter(|length| *length <= LONGEST_HEAD);
-        let cut = length.and_then(|length| rest.split_at_checked(length));
-        let (head, mut rest) = cut.ok_or(BROKEN)?;
+            .and_then(|length| length.parse().ok())
+            .filter(|length| *length <= LONGEST_HEAD)
+            .and_then(|length| head_and_files.split_at_checked(length))
+            .ok_or(BROKEN)?;
         let mut origin: Self = toml::from_str(head).map_err(|error| {
             let [version, why] =
                 [head.lines().next().unwrap_or_default(), error.message()].map(|it| brief(it, 120));
@@ -131,10 +131,10 @@ impl Origin {
             format!("its metadata ({version}) is not understood by gyrolab {own}: {why}")
         })?;
         for file in &mut origin.files {
-            let (own, after) = rest.split_at_checked(file.bytes).ok_or(BROKEN)?;
-            (file.text, rest) = (own.to_owned(), after);
+            let (own, after) = files.split_at_checked(file.bytes).ok_or(BROKEN)?;
+            (file.text, files) = (own.to_owned(), after);
         }
-        let is_whole = rest.is_empty() && !origin.files.is_empty();
+        let is_whole = files.is_empty() && !origin.files.is_empty();
         is_whole.then_some(origin).ok_or(BROKEN.to_owned())
     }
 }

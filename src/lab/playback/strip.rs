@@ -297,7 +297,7 @@ fn is_fast(index: usize, turns: f64, swings: &[Option<Extent>], ends: (usize, us
     let before = here.saturating_sub(away).max(ends.0);
     let after = (here + away).min(ends.1);
     let middles = [before, here, after]
-        .map(|index| swings[index].map_or(0.0, |swing| 0.5 * (swing.min + swing.max)));
+        .map(|at| swings[at].map_or(0.0, |swing| 0.5 * (swing.min + swing.max)));
     let carried = (middles[0] - middles[1])
         .abs()
         .min((middles[2] - middles[1]).abs());

@@ -49,10 +49,10 @@ pub fn title(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let title = &lab.player().run().scenario().file.title;
     let least = columns(title).min(LEAST_TITLE);
     let fitting = details.iter().find(|text| columns(text) + least <= room);
-    if let Some(details) = fitting {
-        let short = shortened(title, room - columns(details));
+    if let Some(detail) = fitting {
+        let short = shortened(title, room - columns(detail));
         let x = write(left, (1, 0), &short, theme.style(Role::Heading), buf);
-        write(left, (x, 0), details, theme.style(Role::Quiet), buf);
+        write(left, (x, 0), detail, theme.style(Role::Quiet), buf);
     }
 }
 

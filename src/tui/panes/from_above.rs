@@ -9,7 +9,6 @@ use crate::engine::recording::RecordedSample;
 use crate::engine::run::Clock;
 use crate::engine::text::wrap::columns;
 use crate::lab::playback::ages::{Age, Ages};
-use crate::lab::playback::path::PathFromAbove;
 use crate::lab::view::Pane;
 use crate::lab::view::theme::Marker;
 use crate::plot::camera::Zoom;
@@ -74,8 +73,10 @@ impl Widget for FromAbove<'_> {
             return;
         };
         let most = (inside.height / ROWS_A_LINE).clamp(1, MOST_LEGEND_LINES) as usize;
-        let (plane, _) = self.plane(split_rows(inside, inside.height - 1)[0]);
-        let lines = self.legend(&plane, inside.width.into(), most).len();
+        let (plane_over_one_line, _) = self.plane(split_rows(inside, inside.height - 1)[0]);
+        let lines = self
+            .legend(&plane_over_one_line, inside.width.into(), most)
+            .len();
         let [picture, legend] = split_rows(inside, inside.height - lines as u16);
         let (plane, radius_m) = self.plane(picture);
         self.path(&plane, picture, buf);
@@ -103,21 +104,20 @@ impl FromAbove<'_> {
         let before = self.0.ghost.map(|ghost| &ghost.path);
         let pinned = self.0.pinned.map(|ghost| &ghost.path);
         let paths = [Some(self.0.run.path()), exact, before, pinned];
-        let about = |path: &PathFromAbove| {
+        let radii = paths.into_iter().flatten().map(|path| {
             if middle == Vector2::zeros() {
                 path.radius
             } else {
                 path.radius_about(middle.x, middle.y).max(middle.norm())
             }
-        };
-        let radii = paths.into_iter().flatten().map(about);
+        });
         let away = self.places().iter().map(|place| (place.at - middle).norm());
         let radius = radii.chain(away).fold(LEAST_RADIUS_M, f64::max);
         // In steps of 5 %, so that the scale does not change all the time.
         let radius = libm::exp((libm::log(radius) / RADIUS_STEP).ceil() * RADIUS_STEP) * 1.02;
         let zoom = self.0.view.look.zoom.above;
         let half = radius / zoom;
-        let plane = |middle| Plane::new(picture, self.0.view.marker, middle, (half, half));
+        let plane = |at| Plane::new(picture, self.0.view.marker, at, (half, half));
         let whole = plane((middle.x, middle.y));
         if zoom <= 1.0 {
             return (whole, half);

@@ -154,10 +154,10 @@ fn heading(entry: &HelpEntry, width: usize) -> Vec<HelpLine> {
     };
     let lines = wrapped(&text, width.saturating_sub(1)).into_iter();
     lines
-        .map(|text| HelpLine {
+        .map(|line| HelpLine {
             entry: None,
             is_first: false,
-            pieces: vec![(1, text, Role::Heading)],
+            pieces: vec![(1, line, Role::Heading)],
         })
         .collect()
 }

@@ -268,8 +268,8 @@ const MOST_SHOWN_PUSHES: usize = 20;
 fn leave_one_out<T>(items: &mut Vec<T>, rank: impl Fn(&T) -> u8) -> bool {
     let ranks = items.iter().map(rank).enumerate();
     let last = ranks
-        .max_by_key(|&(_, rank)| rank)
-        .filter(|&(_, rank)| rank > 0);
+        .max_by_key(|&(_, its_rank)| its_rank)
+        .filter(|&(_, its_rank)| its_rank > 0);
     last.map(|(index, _)| items.remove(index)).is_some()
 }
 

@@ -421,7 +421,7 @@ fn by_group(lines: &[ParameterLine], height: usize) -> Option<Vec<&[ParameterLin
         end += group.len();
     }
     columns.push(&lines[begin..]);
-    let fits = columns.iter().all(|lines| lines.len() <= height);
+    let fits = columns.iter().all(|column| column.len() <= height);
     fits.then_some(columns)
 }
 

@@ -232,8 +232,8 @@ impl<'a> SceneSubject<'a> {
         }
         if let Some(axis) = self.state.momentum.try_normalize(f64::MIN_POSITIVE) {
             let angle = libm::acos(axis.z.clamp(-1.0, 1.0)).to_degrees() / (3.0 * TILT_DEG);
-            for angle in [angle.floor(), angle.ceil()] {
-                let (sin, cos) = libm::sincos((angle * 3.0 * TILT_DEG).to_radians());
+            for whole in [angle.floor(), angle.ceil()] {
+                let (sin, cos) = libm::sincos((whole * 3.0 * TILT_DEG).to_radians());
                 let length = MOMENTUM_ARROW_LENGTH * self.arm;
                 circles.push((
                     libm::hypot(length * sin, CHANGE_ARROW_SHARE * self.reach),

@@ -280,7 +280,7 @@ impl Traces<'_> {
                 None,
                 point.sigma.map(|sigma| -> Ends {
                     let ends = [value + sigma, value - sigma];
-                    ends.map(|end| plot.scale.from_top(end) * height).into()
+                    ends.map(|bound| plot.scale.from_top(bound) * height).into()
                 }),
                 role,
             );

@@ -204,7 +204,7 @@ impl TableView<'_> {
     }
 
     fn rows(&self, groups: &[Range<usize>], shown: Range<usize>) -> Vec<StepPageLine> {
-        let texts: Vec<_> = groups
+        let texts_of_groups: Vec<_> = groups
             .iter()
             .map(|group| self.texts(group, &shown))
             .collect();
@@ -216,7 +216,7 @@ impl TableView<'_> {
             };
             let name = (self.name)(self.table.points[row]);
             let mut name = shortened(&name, POINT_NAME_WIDTH - 1).into_owned();
-            for (index, (group, texts)) in groups.iter().zip(&texts).enumerate() {
+            for (index, (group, texts)) in groups.iter().zip(&texts_of_groups).enumerate() {
                 let mut line = StepPageLine::new(0, std::mem::take(&mut name), role);
                 if self.has_mass_aside(group) {
                     let mass = significant(self.table.row(row)[0], MASS_DIGITS);

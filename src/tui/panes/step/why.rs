@@ -230,17 +230,17 @@ fn from_above(explained: &StepWorkings, view: &View, area: Rect, buf: &mut Buffe
     arrows
         .extend(torque.map(|torque| (tip, torque * (TORQUE_ARROW_LENGTH * length), "τ", Role::X)));
     let change_arrow = change.map(|change| change * (CHANGE_ARROW_LENGTH * length));
-    arrows.extend(change_arrow.map(|change| (momentum_tip, change, "dL", Role::X)));
+    arrows.extend(change_arrow.map(|arrow| (momentum_tip, arrow, "dL", Role::X)));
     let corners: Vec<_> = arrows
         .iter()
-        .map(|(from, along, ..)| from + along)
+        .map(|(from, arrow, ..)| from + arrow)
         .chain([tip])
         .collect();
     let mut picture = ArrowDiagram::new(area, view, around(&corners), |half| {
         1.3 * half + 0.05 * length
     });
-    for (from, along, name, role) in arrows {
-        picture.arrow(from, along, name, role);
+    for (from, arrow, name, role) in arrows {
+        picture.arrow(from, arrow, name, role);
         if name == "L" {
             picture.line(origin, tip, Ink::Strong(Role::Text));
         }

@@ -151,9 +151,9 @@ impl SceneSubject<'_> {
         let text = Ink::Strong(Role::Text);
         scene.rod(&(axle * foot), &(axle * top), Ink::Strong(Role::Focus));
         for at in &self.shape.free {
-            let foot = axle * at.z;
+            let on_axle = axle * at.z;
             scene.line(
-                &foot,
+                &on_axle,
                 &(state.orientation * at),
                 LineStroke::Dotted(2),
                 text,
@@ -213,8 +213,8 @@ impl SceneSubject<'_> {
             scene.line(&(axle * rim.height_m), &spoke, stroke, ink);
         }
         for at in &self.shape.free {
-            let foot = axle * at.z;
-            scene.line(&foot, &(state.orientation * at), stroke, ink);
+            let on_axle = axle * at.z;
+            scene.line(&on_axle, &(state.orientation * at), stroke, ink);
         }
         for line in self.shape.solids.iter().flat_map(|solid| &solid.lines) {
             for (from, to) in pieces(line, state) {

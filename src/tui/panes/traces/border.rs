@@ -88,13 +88,13 @@ impl Traces<'_> {
         buf: &mut Buffer,
     ) {
         let mut pushed = self.pushed(marks, strip, border.width);
-        let style = self.0.view.theme.style(Role::Push);
+        let of_push = self.0.view.theme.style(Role::Push);
         let mut put = |x: usize, text, style: Style| write(border, (x as u16, 0), text, style, buf);
         for x in (0..pushed.len()).filter(|x| pushed[*x]) {
-            put(x, BORDER_BAR, style);
+            put(x, BORDER_BAR, of_push);
         }
         for x in words(&pushed) {
-            put(x, WORD, style);
+            put(x, WORD, of_push);
             let end = (x + WORD.len()).min(pushed.len());
             pushed[x..end].fill(true);
         }
@@ -105,12 +105,12 @@ impl Traces<'_> {
         let across = self.0.view.marker.dots().0;
         let cells = dots.start / across..(dots.end - 1) / across + 1;
         let role = StripContent::Curve(self.0.detail.curve).role();
-        let style = self.0.view.theme.style(role);
+        let of_zoom = self.0.view.theme.style(role);
         for x in cells.clone() {
-            put(x, ZOOM_BAR, style);
+            put(x, ZOOM_BAR, of_zoom);
         }
         if let Some(x) = word(&pushed, cells, 0) {
-            put(x, ZOOM_MARK, style);
+            put(x, ZOOM_MARK, of_zoom);
         }
     }
 

@@ -78,8 +78,8 @@ impl Traces<'_> {
         };
         let at_s = self.0.cursor.map_or(now_s, |cursor| cursor.time_s);
         let short = self.0.detail.strip(columns, across > 1, at_s);
-        let is_zoom = short.window_s < WHOLE_TIME_SHARE * self.0.view.look.window_s;
-        let (upper, lower) = self.shown(inside.height, is_zoom, beside > 0);
+        let has_zoom = short.window_s < WHOLE_TIME_SHARE * self.0.view.look.window_s;
+        let (upper, lower) = self.shown(inside.height, has_zoom, beside > 0);
         let weight: u16 = lower.iter().map(|content| self.weight(*content)).sum();
         let height = match (upper.is_empty(), lower.is_empty()) {
             (true, _) => 0,

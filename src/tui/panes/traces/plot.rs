@@ -255,7 +255,7 @@ impl Traces<'_> {
         let unit = self.named(plot.content).1;
         let measured = self
             .measured_at(plot.content, cursor.time_s)
-            .map(|value| format!(", data {}", fixed(value, CURSOR_DECIMALS)))
+            .map(|data| format!(", data {}", fixed(data, CURSOR_DECIMALS)))
             .unwrap_or_default();
         let words =
             value.map(|value| format!("{} {unit}{measured}", fixed(value, CURSOR_DECIMALS)));
