@@ -113,8 +113,8 @@ impl Teacher {
     fn shown(&mut self, lab: &Lab) -> Option<PresentedRun> {
         let player = lab.player();
         let scenario = player.run().scenario();
-        let is_known = |(known, _): &(_, _)| Arc::ptr_eq(known, scenario);
-        if !self.run.as_ref().is_some_and(is_known) {
+        let known = self.run.as_ref().map(|(known, _)| known);
+        if !known.is_some_and(|known| Arc::ptr_eq(known, scenario)) {
             self.run = Some((Arc::clone(scenario), published(scenario)));
         }
         let (_, run) = self.run.as_ref()?;

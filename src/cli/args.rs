@@ -313,23 +313,9 @@ impl Args for LayoutArgs {
 
 impl FromArgMatches for LayoutArgs {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
-        let value = |row: &SchemaRow| {
-            let name = layout_option_name(row);
-            if matches.value_source(name) != Some(ValueSource::CommandLine) {
-                return None; // the header of a CSV may have another default
-            }
-            Some(match row.kind {
-                ValueKind::Flag => matches.get_flag(name).into(),
-                ValueKind::Lines => {
-                    let columns = matches.get_many::<Value>(name)?;
-                    Value::Array(columns.cloned().collect())
-                }
-                _ => matches.get_one::<Value>(name)?.clone(),
-            })
-        };
         let values = LAYOUT_KEYS
             .iter()
-            .filter_map(|row| Some((row.path.to_owned(), value(row)?)));
+            .filter_map(|row| Some((row.path.to_owned(), given_value(row, matches)?)));
         let file = Table::from_iter(values).try_into::<LayoutFile>();
         file.map(Self)
             .map_err(|error| clap::Error::raw(ErrorKind::ValueValidation, error))
@@ -339,6 +325,23 @@ impl FromArgMatches for LayoutArgs {
         *self = Self::from_arg_matches(matches)?;
         Ok(())
     }
+}
+
+/// Returns the value of the option for a row of [`LAYOUT_KEYS`], if the command line gives it: the header of a CSV may
+/// have another default.
+fn given_value(row: &SchemaRow, matches: &ArgMatches) -> Option<Value> {
+    let name = layout_option_name(row);
+    if matches.value_source(name) != Some(ValueSource::CommandLine) {
+        return None;
+    }
+    Some(match row.kind {
+        ValueKind::Flag => matches.get_flag(name).into(),
+        ValueKind::Lines => {
+            let columns = matches.get_many::<Value>(name)?;
+            Value::Array(columns.cloned().collect())
+        }
+        _ => matches.get_one::<Value>(name)?.clone(),
+    })
 }
 
 /// The option for a row of [`LAYOUT_KEYS`]; one without a default needs an output.

@@ -67,8 +67,9 @@ pub struct File {
 
 impl File {
     pub fn new(holds: Payload, name: &str, text: &str) -> Self {
-        let fits = || text.len() <= MOST_DATA || packed(text.as_bytes()).len() <= MOST_DATA;
-        let travels = holds == Payload::Run || fits();
+        let travels = holds == Payload::Run
+            || text.len() <= MOST_DATA
+            || packed(text.as_bytes()).len() <= MOST_DATA;
         let carried = if travels { text } else { "" };
         Self {
             holds,

@@ -98,14 +98,15 @@ impl Timeline {
     /// The signs of a line of `width` columns, each with its role.
     fn signs(&self, width: u16) -> Vec<(&'static str, Role)> {
         let reached = self.column(self.furthest_s, width);
-        let way = |column| {
-            if column <= reached && self.furthest_s > 0.0 {
-                (REACHED_LINE, Role::Text)
-            } else {
-                (AHEAD_LINE, Role::Quiet)
-            }
-        };
-        let mut signs: Vec<_> = (0..width).map(way).collect();
+        let mut signs: Vec<_> = (0..width)
+            .map(|column| {
+                if column <= reached && self.furthest_s > 0.0 {
+                    (REACHED_LINE, Role::Text)
+                } else {
+                    (AHEAD_LINE, Role::Quiet)
+                }
+            })
+            .collect();
         let mut put = |column: u16, sign, role| {
             if let Some(cell) = signs.get_mut(column as usize) {
                 *cell = (sign, role);
