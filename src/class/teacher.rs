@@ -113,8 +113,8 @@ impl Teacher {
     fn shown(&mut self, lab: &Lab) -> Option<PresentedRun> {
         let player = lab.player();
         let scenario = player.run().scenario();
-        let is_known = |(known, _): &(_, _)| Arc::ptr_eq(known, scenario);
-        if !self.run.as_ref().is_some_and(is_known) {
+        let known = self.run.as_ref().map(|(known, _)| known);
+        if !known.is_some_and(|known| Arc::ptr_eq(known, scenario)) {
             self.run = Some((Arc::clone(scenario), published(scenario)));
         }
         let (_, run) = self.run.as_ref()?;
@@ -125,7 +125,7 @@ impl Teacher {
         }
         let (step, is_running) = (player.step_number(), player.is_running());
         let before = self.state.shown.as_ref();
-        let still = before.filter(|run| !is_running && run.snapshot.step == step);
+        let still = before.filter(|shown| !is_running && shown.snapshot.step == step);
         Some(PresentedRun {
             snapshot: Snapshot {
                 name: lab.runs().name().to_owned(),
@@ -134,7 +134,7 @@ impl Teacher {
                 step,
                 ..lab.snapshot()
             },
-            at_ms: still.map_or_else(unix_ms, |run| run.at_ms),
+            at_ms: still.map_or_else(unix_ms, |shown| shown.at_ms),
             is_running,
         })
     }

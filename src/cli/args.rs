@@ -309,23 +309,9 @@ impl Args for LayoutArgs {
 
 impl FromArgMatches for LayoutArgs {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
-        let value = |row: &SchemaRow| {
-            let name = layout_option_name(row);
-            if matches.value_source(name) != Some(ValueSource::CommandLine) {
-                return None; // the header of a CSV may have another default
-            }
-            Some(match row.kind {
-                ValueKind::Flag => matches.get_flag(name).into(),
-                ValueKind::Lines => {
-                    let columns = matches.get_many::<Value>(name)?;
-                    Value::Array(columns.cloned().collect())
-                }
-                _ => matches.get_one::<Value>(name)?.clone(),
-            })
-        };
         let values = LAYOUT_KEYS
             .iter()
-            .filter_map(|row| Some((row.path.to_owned(), value(row)?)));
+            .filter_map(|row| Some((row.path.to_owned(), given_value(row, matches)?)));
         let file = Table::from_iter(values).try_into::<LayoutFile>();
         file.map(Self)
             .map_err(|error| clap::Error::raw(ErrorKind::ValueValidation, error))
@@ -335,6 +321,23 @@ impl FromArgMatches for LayoutArgs {
         *self = Self::from_arg_matches(matches)?;
         Ok(())
     }
+}
+
+/// Returns the value of the option for a row of [`LAYOUT_KEYS`], if the command line gives it: the header of a CSV may
+/// have another default.
+fn given_value(row: &SchemaRow, matches: &ArgMatches) -> Option<Value> {
+    let name = layout_option_name(row);
+    if matches.value_source(name) != Some(ValueSource::CommandLine) {
+        return None;
+    }
+    Some(match row.kind {
+        ValueKind::Flag => matches.get_flag(name).into(),
+        ValueKind::Lines => {
+            let columns = matches.get_many::<Value>(name)?;
+            Value::Array(columns.cloned().collect())
+        }
+        _ => matches.get_one::<Value>(name)?.clone(),
+    })
 }
 
 /// The option for a row of [`LAYOUT_KEYS`]; one without a default needs an output.
@@ -378,7 +381,7 @@ pub(super) fn time(text: &str) -> Result<f64, String> {
     bare(
         text,
         |seconds| *seconds >= 0.0 && seconds.is_finite(),
-        IN_SECONDS,
+        MEANT_IN_SECONDS,
         "must be a time in seconds, 0 or more",
     )
 }
@@ -417,12 +420,12 @@ pub(super) fn bare<T: FromStr>(
 
 pub(super) fn steps(text: &str) -> Result<u64, String> {
     let rule = "must be a whole number of steps, 0 or more, in digits";
-    bare(text, |_| true, IN_STEPS, rule)
+    bare(text, |_| true, MEANT_IN_STEPS, rule)
 }
 
 pub(super) fn length(text: &str) -> Result<u64, String> {
     let rule = "must be a whole number of steps, 1 or more, in digits";
-    let steps = bare(text, |steps| *steps > 0, IN_STEPS, rule)?;
+    let steps = bare(text, |steps| *steps > 0, MEANT_IN_STEPS, rule)?;
     if i64::try_from(steps).is_err() {
         return Err("is more steps than can be counted".to_owned());
     }
@@ -448,7 +451,7 @@ pub(super) fn positive(text: &str) -> Result<f64, String> {
     bare(
         text,
         |number| *number > 0.0 && number.is_finite(),
-        IN_SECONDS,
+        MEANT_IN_SECONDS,
         "must be a number greater than zero",
     )
 }
@@ -467,8 +470,8 @@ pub(super) fn size(text: &str) -> Result<(u16, u16), String> {
 }
 
 /// How a time is given, and how a step, which is no time.
-pub(super) const IN_SECONDS: &str = "in seconds";
-const IN_STEPS: &str = "in time steps";
+pub(super) const MEANT_IN_SECONDS: &str = "in seconds";
+const MEANT_IN_STEPS: &str = "in time steps";
 
 /// What is said of a number with a unit behind it, as `20s`; the number is to be given `meant`.
 fn without_unit(text: &str, meant: &str) -> Option<String> {
@@ -477,7 +480,7 @@ fn without_unit(text: &str, meant: &str) -> Option<String> {
     let value: f64 = number.parse().ok()?;
     let is_unit = !unit.is_empty() && value.is_finite() && value >= 0.0;
     is_unit.then(|| match unit {
-        "s" | "sec" | "second" | "seconds" if meant == IN_SECONDS => {
+        "s" | "sec" | "second" | "seconds" if meant == MEANT_IN_SECONDS => {
             format!("must be a number without a unit: write {number}, {meant}")
         }
         _ => format!("must be a number without a unit ({unit}), {meant}"),

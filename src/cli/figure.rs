@@ -261,8 +261,8 @@ fn add(source: &mut FigureSource, name: &str, args: &FigureArgs) -> anyhow::Resu
         );
     };
     let folder = path.parent().unwrap_or(Path::new(""));
-    let one =
-        FigureSource::of(&figure.origin, folder).map_err(|problems| problems.in_file(name))?;
+    let one = FigureSource::from_origin(&figure.origin, folder)
+        .map_err(|problems| problems.in_file(name))?;
     for run in one.runs {
         let document = Document::from_file(&run.named, &run.scenario.file)?;
         add_runs(source, &run.named, &document, args)?;

@@ -409,11 +409,11 @@ fn chosen(mut measured: MeasuredData, rows: Option<&RowRange>) -> Result<Measure
             "there is no row {beyond}: the data have {count}"
         )));
     }
-    let has = |number| {
+    let kept = measured.keep_rows(|row| {
         let mut ranges = rows.ranges.iter();
-        ranges.any(|(first, last)| (*first..=*last).contains(&number))
-    };
-    if measured.keep_rows(|row| has(row + 1)) == 0 {
+        ranges.any(|(first, last)| (*first..=*last).contains(&(row + 1)))
+    });
+    if kept == 0 {
         return Err(refused("these rows hold no measured value".to_owned()));
     }
     Ok(measured)

@@ -77,11 +77,10 @@ pub(super) fn notes(name: &str) -> anyhow::Result<ExitCode> {
 
 /// Returns the name of the session that is meant: of those with an open lesson, the one in use that was written last.
 fn find(folder: &Path, name: &str) -> anyhow::Result<Option<String>> {
-    let is_meant =
-        |session: &ListedSession| session.name == name || name.is_empty() && session.is_in_use;
     let open = session::list(folder)?
         .into_iter()
-        .filter(|session| is_meant(session) && open_in(session).is_some());
+        .filter(|session| session.name == name || name.is_empty() && session.is_in_use)
+        .filter(|session| open_in(session).is_some());
     let newest = open.max_by_key(|session| session.written);
     Ok(newest.map(|session| session.name))
 }

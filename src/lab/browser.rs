@@ -95,8 +95,9 @@ impl Browser {
         let also = self.also.as_deref().filter(|_| folder == self.first);
         let mut files = Vec::new();
         for listed in also.into_iter().chain([folder]) {
-            let ends_as_one = |name: &str| name.ends_with(".toml") || name.ends_with(".csv");
-            files.extend(names_in(listed, Path::is_file, ends_as_one));
+            files.extend(names_in(listed, Path::is_file, |name| {
+                name.ends_with(".toml") || name.ends_with(".csv")
+            }));
         }
         files.retain(|name| may_be_read(Path::new(name)));
         let all = files.len();

@@ -320,7 +320,7 @@ impl Comparison {
     pub fn pinned_end_s(&self, run: &LiveRun) -> Option<f64> {
         match &self.pinned {
             Some(Pinned::Present) => Some(furthest_s(run)),
-            Some(Pinned::Before(run)) => Some(run.end_s()),
+            Some(Pinned::Before(ghost)) => Some(ghost.end_s()),
             Some(Pinned::Returning(_)) | None => None,
         }
     }
@@ -380,10 +380,10 @@ mod tests {
     #[test]
     fn a_run_that_was_played_stays_as_a_ghost() {
         let (mut player, mut comparison) = (Player::new(scenario(), false), Comparison::default());
-        let mut go_over = |player: &mut Player, change| {
+        let mut go_over = |from: &mut Player, change| {
             let scenario = scenario();
-            comparison.leave(player, change, &scenario);
-            player.change_run(
+            comparison.leave(from, change, &scenario);
+            from.change_run(
                 change,
                 &scenario,
                 crate::engine::run::Clock::end_s(&scenario),
@@ -394,16 +394,13 @@ mod tests {
             is_act: false,
             is_again: false,
         };
-        let step = |player: &mut Player, steps| {
-            player.step(steps).unwrap();
-        };
         assert_eq!(go_over(&mut player, anew), None, "it stood at its start");
-        step(&mut player, 100);
+        player.step(100).unwrap();
         let end_s = go_over(&mut player, anew);
         assert!(end_s.is_some_and(|end_s| (end_s - 10.0).abs() < 1e-9));
         assert_eq!(player.step_number(), 100, "to the same time");
         player.restart(&scenario()); // a run that was stopped on its way there
-        step(&mut player, 1);
+        player.step(1).unwrap();
         assert_eq!(go_over(&mut player, anew), end_s, "one step is no run");
         assert_eq!(go_over(&mut player, RunChange::Opens), None);
     }

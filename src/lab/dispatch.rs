@@ -127,7 +127,7 @@ impl Lab {
             change,
             RunChange::BeginsAnew { .. } | RunChange::Returns { .. }
         ) {
-            self.view.mark = None; // it is a turn of the run that was left
+            self.view.swing_mark = None; // it is a turn of the run that was left
         }
         self.edits.follow(&self.player);
         let now = self.player.run().scenario();

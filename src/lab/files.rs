@@ -262,7 +262,7 @@ impl Files {
                 1 => format!("{stem}{about}.{extension}"),
                 _ => format!("{stem}{about}-{number}.{extension}"),
             })
-            .find(|name| !self.path_of(name).exists())
+            .find(|free_name| !self.path_of(free_name).exists())
             .unwrap_or_default()
     }
 }

@@ -11,7 +11,7 @@ use super::messages::{self, halt_in_words};
 use super::player::Halt;
 use super::popups::Mode;
 use super::view::Pane;
-use super::{Cleared, CommandScript, Lab, Snapshot, pasted};
+use super::{Cleared, CommandScript, Lab, Snapshot, paste_rows};
 use crate::engine::run::NotFinite;
 use crate::engine::scenario::{Document, Problems};
 use std::ops::ControlFlow;
@@ -199,7 +199,7 @@ impl Lab {
 
     /// Puts rows that were pasted beside the run; undo takes them back.
     fn take_rows(&mut self, text: &str) -> ActionResult {
-        let (words, command) = pasted::keep(text, &self.files, &self.comparison, &self.player)?;
+        let (words, command) = paste_rows::keep(text, &self.files, &self.comparison, &self.player)?;
         self.carry_out(&command)?;
         Ok(Done::saying(words))
     }
@@ -303,7 +303,7 @@ impl Lab {
     fn unfill(&mut self) -> bool {
         match self.view.cursor {
             Some(_) => self.carry_out_all(&[Command::Cursor(CursorTo::Nowhere)]),
-            None if self.view.filled => {
+            None if self.view.fullscreen => {
                 self.carry_out_all(&[Command::Fill(None)]);
                 self.view.leave_filled();
             }

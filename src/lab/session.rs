@@ -148,7 +148,7 @@ impl KeptPlace {
         Self {
             snapshot,
             focus: view.focus.id().to_owned(),
-            filled: view.filled,
+            filled: view.fullscreen,
             exporting: exported_to.map(|path| PrintablePath(path).to_string()),
             measured: comparison.data_to_keep(files),
             map,
@@ -176,7 +176,7 @@ impl KeptPlace {
         view.set_look(look.clone());
         view.focus = Pane::named(&self.focus)
             .ok_or_else(|| Unreadable(format!("there is no pane {}", self.focus)))?;
-        view.filled = self.filled;
+        view.fullscreen = self.filled;
         Ok(())
     }
 

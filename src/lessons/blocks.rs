@@ -1,8 +1,6 @@
 //! The TOML in the blocks of a lesson.
 
-use super::lesson::{
-    AnswerKind, Check, Compare, Keep, LessonBlock, PREDICTION, Predict, Right, Setup, WITH,
-};
+use super::lesson::{AnswerKind, Check, Compare, Keep, PREDICTION, Predict, Right, Setup, WITH};
 use super::names::KeptNames;
 use super::structure::on_line;
 use super::text::LessonText;
@@ -17,10 +15,41 @@ use crate::lab::command::{COMMANDS, Command, LocatedCommand, RERUN, SET};
 use crate::lab::view;
 use toml::{Table, Value};
 
-/// The words behind a fence that mean something in a lesson.
-pub(super) const BLOCK_WORDS: [&str; 7] = [
-    "lesson", "lab", "task", "predict", "compare", "check", "notes",
+/// A block that means something in a lesson.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum BlockKind {
+    Lesson,
+    Lab,
+    Task,
+    Predict,
+    Compare,
+    Check,
+    Notes,
+}
+
+/// Each kind of block, with the word behind its fence.
+const BLOCK_KINDS: [(&str, BlockKind); 7] = [
+    ("lesson", BlockKind::Lesson),
+    ("lab", BlockKind::Lab),
+    ("task", BlockKind::Task),
+    ("predict", BlockKind::Predict),
+    ("compare", BlockKind::Compare),
+    ("check", BlockKind::Check),
+    ("notes", BlockKind::Notes),
 ];
+
+impl BlockKind {
+    /// Returns the kind with this word behind its fence.
+    pub fn find(word: &str) -> Option<Self> {
+        let row = BLOCK_KINDS.iter().find(|(known, _)| *known == word);
+        row.map(|(_, kind)| *kind)
+    }
+
+    /// Returns the words of all kinds.
+    pub fn words() -> [&'static str; BLOCK_KINDS.len()] {
+        BLOCK_KINDS.map(|(word, _)| word)
+    }
+}
 
 /// The keys of `lab` and `task` besides those of `[view]`. They are carried out in the order of the table of commands, the
 /// last at the end.
@@ -346,19 +375,7 @@ fn keep(
     kept
 }
 
-/// A block that stands on a page as often as one likes.
-pub(super) fn block(
-    reader: &BlockReader<'_>,
-    find: impl Fn(&str) -> Result<(), String>,
-) -> BlockResult<LessonBlock> {
-    match reader.word {
-        "predict" => predict(reader, find).map(LessonBlock::Predict),
-        "compare" => compare(reader, find).map(LessonBlock::Compare),
-        _ => check(reader, find).map(LessonBlock::Check),
-    }
-}
-
-fn predict(
+pub(super) fn predict(
     reader: &BlockReader<'_>,
     find: impl Fn(&str) -> Result<(), String>,
 ) -> BlockResult<Predict> {
@@ -417,7 +434,7 @@ fn read_right(
 }
 
 /// A prediction beside what happened.
-fn compare(
+pub(super) fn compare(
     reader: &BlockReader<'_>,
     find: impl Fn(&str) -> Result<(), String>,
 ) -> BlockResult<Compare> {
@@ -438,7 +455,7 @@ fn compare(
 }
 
 /// What holds once the student has done the task.
-fn check(
+pub(super) fn check(
     reader: &BlockReader<'_>,
     find: impl Fn(&str) -> Result<(), String>,
 ) -> BlockResult<Check> {

@@ -9,7 +9,7 @@ pub use super::opening::{
     LONGEST_LESSON_FILE, full_name, is_file_name, open, open_again, read_again, read_file,
 };
 
-use super::blocks::{self, BlockReader};
+use super::blocks::{self, BlockKind, BlockReader};
 use super::lesson::{CodeBlock, Compare, Lesson, LessonBlock, LessonPage, Setup};
 use super::names::KeptNames;
 use super::structure::{Element, LANGUAGES, Lines, PieceKind, on_line, structure};
@@ -42,7 +42,7 @@ pub fn read(origin: &str, text: &str) -> Result<Lesson, Problems> {
 fn elements(text: &str) -> Result<Vec<Element<'_>>, Problem> {
     let lines = Lines::index(text);
     plain(text, &lines)?;
-    let elements = structure(text, &lines, &blocks::BLOCK_WORDS)?;
+    let elements = structure(text, &lines, &BlockKind::words())?;
     if elements.len() > MOST_LESSON_BLOCKS {
         let rule =
             format!("has more than {MOST_LESSON_BLOCKS} pages and blocks, the most of a lesson");
@@ -205,8 +205,8 @@ impl Assembly {
                 text: inside.to_owned(),
             }));
         }
-        if !blocks::BLOCK_WORDS.contains(&word) {
-            let near = nearest(word, blocks::BLOCK_WORDS.into_iter().chain(LANGUAGES));
+        let Some(kind) = BlockKind::find(word) else {
+            let near = nearest(word, BlockKind::words().into_iter().chain(LANGUAGES));
             let also = if near.starts_with("did you mean") {
                 format!(" (shown as they are: {})", listed(LANGUAGES.into_iter()))
             } else {
@@ -214,27 +214,27 @@ impl Assembly {
             };
             let rule = format!("is no block of a lesson: {near}{also}");
             return self.refuse(line, Problem::at(word, rule));
-        }
-        if word == "notes" {
-            if let Some(text) = self.text(inside.trim_end(), line + 1) {
-                self.place(LessonBlock::Notes(text));
-            }
-            return;
-        }
-        if word != "lesson" && self.lesson.pages.is_empty() {
+        };
+        let needs_page = !matches!(kind, BlockKind::Lesson | BlockKind::Notes);
+        if needs_page && self.lesson.pages.is_empty() {
             let rule = "stands before the first page: write its heading, ## ..., above it";
             return self.refuse(line, Problem::at(word, rule));
         }
-        self.add_block(word, inside, line);
+        self.add_block(kind, &self.reader(word, inside, line));
     }
 
-    fn add_block(&mut self, word: &str, inside: &str, line: usize) {
-        let reader = self.reader(word, inside, line);
+    fn add_block(&mut self, kind: BlockKind, reader: &BlockReader<'_>) {
+        let line = reader.line;
         let page = self.lesson.pages.len();
-        let read = match word {
-            "lesson" => return self.add_head(&reader),
-            "lab" | "task" => return self.add_setup(word, line),
-            _ => blocks::block(&reader, |name: &str| self.names.find(name, page)),
+        let find = |name: &str| self.names.find(name, page);
+        let read = match kind {
+            BlockKind::Lesson => return self.add_head(reader),
+            BlockKind::Lab => return self.add_setup(reader, LessonPage::lab, LessonBlock::Lab),
+            BlockKind::Task => return self.add_setup(reader, LessonPage::task, LessonBlock::Task),
+            BlockKind::Notes => return self.add_notes(reader),
+            BlockKind::Predict => blocks::predict(reader, find).map(LessonBlock::Predict),
+            BlockKind::Compare => blocks::compare(reader, find).map(LessonBlock::Compare),
+            BlockKind::Check => blocks::check(reader, find).map(LessonBlock::Check),
         };
         let block = match read {
             Ok(block) => block,
@@ -269,22 +269,26 @@ impl Assembly {
         }
     }
 
-    fn add_setup(&mut self, word: &str, line: usize) {
-        let page = self.lesson.pages.last();
-        let same = page.and_then(|page| match word {
-            "lab" => page.lab(),
-            _ => page.task(),
-        });
-        if same.is_some() {
+    /// Adds a setup that was read before; `same` returns the one of its kind that a page has.
+    fn add_setup(
+        &mut self,
+        reader: &BlockReader<'_>,
+        same: fn(&LessonPage) -> Option<&Setup>,
+        make: fn(Setup) -> LessonBlock,
+    ) {
+        if self.lesson.pages.last().and_then(same).is_some() {
             let rule = "stands twice on this page, which has one: begin another page with ##";
-            return self.refuse(line, Problem::at(word, rule));
+            return self.refuse(reader.line, Problem::at(reader.word, rule));
         }
-        let setup = self.setups.iter().find(|setup| setup.line == line);
-        if let Some(setup) = setup.cloned() {
-            self.place(match word {
-                "lab" => LessonBlock::Lab(setup),
-                _ => LessonBlock::Task(setup),
-            });
+        let mut setups = self.setups.iter();
+        if let Some(setup) = setups.find(|setup| setup.line == reader.line) {
+            self.place(make(setup.clone()));
+        }
+    }
+
+    fn add_notes(&mut self, reader: &BlockReader<'_>) {
+        if let Some(text) = self.text(reader.inside.trim_end(), reader.line + 1) {
+            self.place(LessonBlock::Notes(text));
         }
     }
 

@@ -155,7 +155,7 @@ fn put_back(lab: &Lab) -> Vec<Command> {
     let view = lab.view();
     let shows_exact = lab.player().run().shows_exact();
     let all = [
-        (view.filled, Command::Fill(None)),
+        (view.fullscreen, Command::Fill(None)),
         (view.look.bare, Command::look("bare", false)),
         (view.pointed_at.is_some(), Command::PointAt(None)),
         (

@@ -77,8 +77,8 @@ pub fn write_sheets(scenes: &[PageScene]) -> Result<Vec<u8>, Unwritable> {
 /// When the page has no size, is too large, or holds a place that is no number.
 pub fn rounded(scene: &PageScene) -> Result<PageScene, Unwritable> {
     let (width_pt, height_pt) = (scene.width_pt, scene.height_pt);
-    let is_side = |pt: f64| hundredths(pt) > 0.0 && pt <= LARGEST_PT;
-    if !(is_side(width_pt) && is_side(height_pt)) {
+    let is_side = [width_pt, height_pt].map(|pt| hundredths(pt) > 0.0 && pt <= LARGEST_PT);
+    if is_side != [true, true] {
         return Err(Unwritable::Size {
             width_pt,
             height_pt,
@@ -100,11 +100,12 @@ pub fn rounded(scene: &PageScene) -> Result<PageScene, Unwritable> {
 }
 
 fn rounded_item(item: &SceneItem) -> Option<SceneItem> {
-    let is_length = |length: &f64| (0.0..=LARGEST_PT).contains(length);
     let mut item = item.clone().mapped(hundredths_of);
     item.clip = item.clip.map(|corners| corners.map(hundredths_of));
     if let Paint::Stroke(pen) = &mut item.paint {
-        if !(is_length(&pen.width_pt) && pen.dash_pt.iter().all(is_length)) {
+        let lengths = 0.0..=LARGEST_PT;
+        let are_dashes = pen.dash_pt.iter().all(|length| lengths.contains(length));
+        if !(lengths.contains(&pen.width_pt) && are_dashes) {
             return None;
         }
         pen.width_pt = hundredths(pen.width_pt);
@@ -184,9 +185,9 @@ mod tests {
             for format in [PageFormat::Svg, PageFormat::Pdf, PageFormat::Png] {
                 assert_eq!(write(&scene, format, None), Err(Unwritable::Place(1)));
             }
-            for pen in [pen(bad, &[]), pen(1.0, &[1.0, bad])] {
-                let scene = page(vec![line(1.0, 1.0, pen)]);
-                assert_eq!(rounded(&scene), Err(Unwritable::Place(0)));
+            for broken in [pen(bad, &[]), pen(1.0, &[1.0, bad])] {
+                let of_pen = page(vec![line(1.0, 1.0, broken)]);
+                assert_eq!(rounded(&of_pen), Err(Unwritable::Place(0)));
             }
         }
         for (width_pt, height_pt) in [

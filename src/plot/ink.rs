@@ -79,15 +79,29 @@ pub fn circle(middle: Point, radius_pt: f64) -> VectorPath {
     /// Distance of the control points of a quarter of a circle, in radii.
     const BEND: f64 = 0.552_285;
     let (r, b) = (radius_pt, BEND * radius_pt);
-    let to = |x: f64, y: f64| at(middle.x + x, middle.y + y);
-    VectorPath(vec![
-        Segment::Move(to(r, 0.0)),
-        Segment::Cubic(to(r, b), to(b, r), to(0.0, r)),
-        Segment::Cubic(to(-b, r), to(-r, b), to(-r, 0.0)),
-        Segment::Cubic(to(-r, -b), to(-b, -r), to(0.0, -r)),
-        Segment::Cubic(to(b, -r), to(r, -b), to(r, 0.0)),
-        Segment::Close,
-    ])
+    let quarters = [
+        [(r, b), (b, r), (0.0, r)],
+        [(-b, r), (-r, b), (-r, 0.0)],
+        [(-r, -b), (-b, -r), (0.0, -r)],
+        [(b, -r), (r, -b), (r, 0.0)],
+    ];
+    let mut path = vec![Segment::Move(off(middle, (r, 0.0)))];
+    path.extend(quarters.map(|quarter| {
+        let [first, second, end] = quarter.map(|by| off(middle, by));
+        Segment::Cubic(first, second, end)
+    }));
+    path.push(Segment::Close);
+    VectorPath(path)
+}
+
+/// Returns the polygon whose `corners` are given from `middle`, pt.
+fn polygon(middle: Point, corners: &[(f64, f64)]) -> VectorPath {
+    VectorPath::polygon(corners.iter().map(|corner| off(middle, *corner)))
+}
+
+/// Returns the point that is `x` to the right of `from` and `y` below it, pt.
+fn off(from: Point, (x, y): (f64, f64)) -> Point {
+    at(from.x + x, from.y + y)
 }
 
 pub fn pen(width_pt: f64, color: Color) -> StrokeStyle {
@@ -185,36 +199,32 @@ impl PageScene {
 
     pub fn mark(&mut self, mark: PointMark, middle: Point, color: Color) {
         let r = MARK_PT;
-        let place = |(x, y): (f64, f64)| at(middle.x + x, middle.y + y);
-        let mut lines = |ends: [[(f64, f64); 2]; 2]| {
-            for line in ends {
-                self.line(line.map(place), 0.5, color);
-            }
-        };
-        let polygon =
-            |corners: &[(f64, f64)]| VectorPath::polygon(corners.iter().copied().map(place));
         let (x, y) = (1.2 * r, 0.9 * r);
         let (path, is_filled) = match mark {
             PointMark::Cross => {
                 let d = 1.1 * r;
-                return lines([[(-d, d), (d, -d)], [(-d, -d), (d, d)]]);
+                let lines = [[(-d, d), (d, -d)], [(-d, -d), (d, d)]];
+                return self.thin_lines(middle, lines, color);
             }
             PointMark::Plus => {
                 let d = 1.4 * r;
-                return lines([[(-d, 0.0), (d, 0.0)], [(0.0, -d), (0.0, d)]]);
+                let lines = [[(-d, 0.0), (d, 0.0)], [(0.0, -d), (0.0, d)]];
+                return self.thin_lines(middle, lines, color);
             }
             PointMark::Speck => (circle(middle, 0.5 * r), true),
             PointMark::Dot => (circle(middle, r), true),
             PointMark::Ring => (circle(middle, r), false),
             PointMark::Square => {
                 let r = 0.92 * r;
-                (polygon(&[(-r, -r), (r, -r), (r, r), (-r, r)]), true)
+                let corners = [(-r, -r), (r, -r), (r, r), (-r, r)];
+                (polygon(middle, &corners), true)
             }
-            PointMark::Triangle => (polygon(&[(0.0, -1.3 * r), (x, y), (-x, y)]), true),
-            PointMark::Tip => (polygon(&[(0.0, 1.3 * r), (x, -y), (-x, -y)]), false),
+            PointMark::Triangle => (polygon(middle, &[(0.0, -1.3 * r), (x, y), (-x, y)]), true),
+            PointMark::Tip => (polygon(middle, &[(0.0, 1.3 * r), (x, -y), (-x, -y)]), false),
             PointMark::Diamond => {
                 let r = 1.35 * r;
-                (polygon(&[(0.0, -r), (r, 0.0), (0.0, r), (-r, 0.0)]), false)
+                let corners = [(0.0, -r), (r, 0.0), (0.0, r), (-r, 0.0)];
+                (polygon(middle, &corners), false)
             }
         };
         if is_filled {
@@ -222,6 +232,13 @@ impl PageScene {
         }
         self.fill(path.clone(), WHITE);
         self.stroke(path, pen(0.6, color), None);
+    }
+
+    /// Draws the two lines of a mark about `middle`.
+    fn thin_lines(&mut self, middle: Point, lines: [[(f64, f64); 2]; 2], color: Color) {
+        for line in lines {
+            self.line(line.map(|end| off(middle, end)), 0.5, color);
+        }
     }
 
     fn put(

@@ -63,16 +63,22 @@ pub fn escape(text: &str) -> String {
 /// Markup for a text as it is, cut with "…" at its end where it would be wider than `width_pt`.
 pub fn shortened(text: &str, size_pt: f64, width_pt: f64) -> String {
     let letters: Vec<char> = text.chars().take(LONGEST_LABEL + 1).collect();
-    let beginning = |length: usize| {
-        let dots = if length < letters.len() { "…" } else { "" };
-        escape(&letters[..length].iter().collect::<String>()) + dots
-    };
-    let fits = |length: usize| label(&beginning(length), size_pt).width_pt <= width_pt;
-    if letters.len() <= LONGEST_LABEL && fits(letters.len()) {
-        return beginning(letters.len());
+    let whole = beginning(&letters, letters.len());
+    if letters.len() <= LONGEST_LABEL && label(&whole, size_pt).width_pt <= width_pt {
+        return whole;
     }
     let lengths: Vec<usize> = (1..letters.len()).collect();
-    beginning(lengths.partition_point(|length| fits(*length)))
+    let longest = lengths.partition_point(|length| {
+        let shorter = beginning(&letters, *length);
+        label(&shorter, size_pt).width_pt <= width_pt
+    });
+    beginning(&letters, longest)
+}
+
+/// Returns the first `length` of `letters` as markup, with dots where some are missing.
+fn beginning(letters: &[char], length: usize) -> String {
+    let dots = if length < letters.len() { "…" } else { "" };
+    escape(&letters[..length].iter().collect::<String>()) + dots
 }
 
 #[cfg(test)]

@@ -72,12 +72,11 @@ fn inside(from: Point, to: Point, frame: &PageRectangle) -> Option<[Point; 2]> {
     if begin.partial_cmp(&end).is_none_or(Ordering::is_gt) {
         return None;
     }
-    let point = |share: f64| match share {
+    Some([begin, end].map(|share| match share {
         0.0 => from,
         1.0 => to,
         share => at(from.x + share * dx, from.y + share * dy),
-    };
-    Some([point(begin), point(end)])
+    }))
 }
 
 /// Some of the points, the first and the last among them: none of the others lies farther than `within_pt` from the line
@@ -154,8 +153,8 @@ mod tests {
         assert!(parts(&[(-5.0, -5.0), (-1.0, 20.0)]).is_empty());
         let through = [[(0.0, 5.0), (10.0, 5.0)]];
         assert_eq!(parts(&[(-5.0, 5.0), (15.0, 5.0)]), through);
-        let line = parts(&[(1.0, 1.0), (2.0, 1.0), (f64::NAN, 1.0), (4.0, 1.0)]);
-        assert_eq!(line, [vec![(1.0, 1.0), (2.0, 1.0)], vec![(4.0, 1.0)]]);
+        let broken = parts(&[(1.0, 1.0), (2.0, 1.0), (f64::NAN, 1.0), (4.0, 1.0)]);
+        assert_eq!(broken, [vec![(1.0, 1.0), (2.0, 1.0)], vec![(4.0, 1.0)]]);
         let far = parts(&[(5.0, 5.0), (5.0, 1e300), (1e300, 1e308)]);
         assert_eq!(far, [[(5.0, 5.0), (5.0, 10.0)]]);
     }

@@ -30,7 +30,6 @@ fn refs(page: i32) -> (Ref, Ref) {
 /// the file's.
 pub fn written(scenes: &[PageScene], version: &str) -> Vec<u8> {
     let fonts = Fonts::from_scenes(scenes);
-    let packed = |bytes: &[u8]| miniz_oxide::deflate::compress_to_vec_zlib(bytes, PDF_COMPRESSION);
     let mut pdf = Pdf::new();
     // The version which every pdflatex includes without a warning.
     pdf.set_version(1, 4);
@@ -155,6 +154,12 @@ fn put_cubic(content: &mut Content, points: [Point; 3]) -> &mut Content {
 
 /// The control point of a cubic curve that is the parabola with this one, in hundredths.
 fn two_thirds(end: Point, control: Point) -> Point {
-    let between = |from: f64, to: f64| hundredths(from + (to - from) * 2.0 / 3.0);
-    at(between(end.x, control.x), between(end.y, control.y))
+    at(
+        hundredths(end.x + (control.x - end.x) * 2.0 / 3.0),
+        hundredths(end.y + (control.y - end.y) * 2.0 / 3.0),
+    )
+}
+
+fn packed(bytes: &[u8]) -> Vec<u8> {
+    miniz_oxide::deflate::compress_to_vec_zlib(bytes, PDF_COMPRESSION)
 }

@@ -22,20 +22,19 @@ const DOTS_OF_BAND: u32 = 8_000_000;
 /// # Errors
 /// Where the picture is too large.
 pub fn written(scene: &PageScene, dots_per_inch: f64) -> Result<Vec<u8>, Unwritable> {
-    let dots = |pt: f64| {
+    let [width, height] = [scene.width_pt, scene.height_pt].map(|pt| {
         libm::ceil(pt * dots_per_inch / 72.0 - 1e-6).clamp(1.0, f64::from(u32::MAX)) as u32
+    });
+    let written = if f64::from(width) * f64::from(height) > MOST_DOTS {
+        Err("it is too large".to_owned())
+    } else {
+        in_bands(scene, (width, height), dots_per_inch).map_err(|error| error.to_string())
     };
-    let (width, height) = (dots(scene.width_pt), dots(scene.height_pt));
-    let failed = |reason: String| Unwritable::Picture {
+    written.map_err(|reason| Unwritable::Picture {
         width,
         height,
         reason,
-    };
-    if f64::from(width) * f64::from(height) > MOST_DOTS {
-        return Err(failed("it is too large".to_owned()));
-    }
-    let written = in_bands(scene, (width, height), dots_per_inch);
-    written.map_err(|error| failed(error.to_string()))
+    })
 }
 
 /// The file: in grey where all is grey.

@@ -64,6 +64,14 @@ pub struct PlacedLetter {
     pub size_pt: f64,
 }
 
+impl PlacedLetter {
+    /// Returns its place along its line of text and across it, pt, in the directions in which the letters run and descend.
+    pub fn along_and_across(&self, is_upward: bool) -> (f64, f64) {
+        let Point { x, y } = self.origin;
+        if is_upward { (-y, x) } else { (x, y) }
+    }
+}
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Segment {
     Move(Point),

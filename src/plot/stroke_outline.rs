@@ -64,9 +64,9 @@ impl Grid {
         let mut count = 0;
         let cells = self.is_inked.iter().enumerate();
         for (here, _) in cells.filter(|(_, inked)| **inked) {
-            let side = |back: usize| here.checked_sub(back).map_or(0, |before| sides[before]);
-            let (left, above) = (side(1), side(self.columns));
-            let side = 1 + left.min(above).min(side(self.columns + 1));
+            let before = [1, self.columns, self.columns + 1]
+                .map(|back| here.checked_sub(back).map_or(0, |place| sides[place]));
+            let side = 1 + before[0].min(before[1]).min(before[2]);
             sides[here] = side;
             count += usize::from(usize::from(side) > inside);
         }
@@ -74,12 +74,12 @@ impl Grid {
     }
 
     fn around(lines: &[Vec<Point>], width_pt: f64, cell_pt: f64) -> Option<Self> {
-        let points = || lines.iter().flatten();
-        let (left, right) = range(points().map(|p| p.x))?;
-        let (top, bottom) = range(points().map(|p| p.y))?;
+        let points = lines.iter().flatten();
+        let (left, right) = range(points.clone().map(|p| p.x))?;
+        let (top, bottom) = range(points.map(|p| p.y))?;
         let margin = 0.5 * width_pt + 2.0 * cell_pt;
-        let count = |from: f64, to: f64| libm::ceil((to - from + 2.0 * margin) / cell_pt);
-        let (columns, rows) = (count(left, right), count(top, bottom));
+        let [columns, rows] = [right - left, bottom - top]
+            .map(|length| libm::ceil((length + 2.0 * margin) / cell_pt));
         let fits = columns * rows <= MOST_GRID_CELLS;
         fits.then(|| Self {
             origin: at(left - margin, top - margin),
@@ -91,9 +91,12 @@ impl Grid {
 
     /// Inks the cells that a straight line passes through, a run of them in each row.
     fn trace(&mut self, from: Point, to: Point) {
-        let cells = |length: f64| length / self.cell_pt;
-        let place = |p: Point| (cells(p.x - self.origin.x), cells(p.y - self.origin.y));
-        let (mut upper, mut lower) = (place(from), place(to));
+        let [mut upper, mut lower] = [from, to].map(|p| {
+            (
+                (p.x - self.origin.x) / self.cell_pt,
+                (p.y - self.origin.y) / self.cell_pt,
+            )
+        });
         if upper.1 > lower.1 {
             std::mem::swap(&mut upper, &mut lower);
         }
@@ -166,10 +169,12 @@ impl Grid {
                 continue;
             }
             let corners = simplified(&outline, OUTLINE_TOLERANCE);
-            let cells = |count: f64| count * self.cell_pt;
-            let places = corners[..corners.len() - 1]
-                .iter()
-                .map(|p| at(self.origin.x + cells(p.x), self.origin.y + cells(p.y)));
+            let places = corners[..corners.len() - 1].iter().map(|p| {
+                at(
+                    self.origin.x + p.x * self.cell_pt,
+                    self.origin.y + p.y * self.cell_pt,
+                )
+            });
             path.0.extend(VectorPath::polyline(places).0);
             path.0.push(Segment::Close);
         }
@@ -192,15 +197,17 @@ impl Grid {
             });
             at = (x + step.0, y + step.1);
             let right = (-step.1, step.0);
-            let ahead = |side: (isize, isize)| {
-                // The cell ahead on one side of the corner: the corner's cell is to its right and below.
-                let to = |a: isize, b: isize| if a + b < 0 { -1 } else { 0 };
-                self.at(at.0 + to(step.0, side.0), at.1 + to(step.1, side.1))
-            };
-            step = match (ahead(right), ahead((-right.0, -right.1))) {
-                (false, _) => right,
-                (true, true) => (-right.0, -right.1),
-                (true, false) => step,
+            let left = (-right.0, -right.1);
+            // The cell ahead on each side of the corner: the corner's cell is to its right and below.
+            let ahead = [right, left].map(|side| {
+                let column = at.0 - isize::from(step.0 + side.0 < 0);
+                let row = at.1 - isize::from(step.1 + side.1 < 0);
+                self.at(column, row)
+            });
+            step = match ahead {
+                [false, _] => right,
+                [true, true] => left,
+                [true, false] => step,
             };
             if at == start && step == (1, 0) {
                 middles.extend(middles.first().copied());

@@ -2,7 +2,7 @@
 
 use std::fmt::Write; // which cannot fail on a `String`
 
-use super::scene::{PlacedLetter, TextItem};
+use super::scene::TextItem;
 use super::{Color, PageScene, Paint, Point, SceneItem, Segment, StrokeStyle, VectorPath};
 use crate::engine::text::printable::xml;
 use crate::plot::PT_PER_MM;
@@ -99,19 +99,12 @@ fn put_text(out: &mut String, words: &TextItem) {
         out,
         "<text xml:space=\"preserve\" font-family=\"{SVG_TEXT_FONTS}\"{turned}>"
     );
-    let place = |letter: &PlacedLetter| {
-        let Point { x, y } = letter.origin;
-        if words.is_upward { (-y, x) } else { (x, y) }
-    };
-    let look = |letter: &PlacedLetter| {
-        (
-            letter.is_italic,
-            letter.size_pt,
-            hundredths(place(letter).1),
-        )
-    };
-    for part in words.letters.chunk_by(|a, b| look(a) == look(b)) {
-        let ((x, y), size) = (place(&part[0]), number(part[0].size_pt));
+    for part in words.letters.chunk_by(|a, b| {
+        let [a_line, b_line] = [a, b].map(|it| hundredths(it.along_and_across(words.is_upward).1));
+        (a.is_italic, a.size_pt, a_line) == (b.is_italic, b.size_pt, b_line)
+    }) {
+        let (x, y) = part[0].along_and_across(words.is_upward);
+        let size = number(part[0].size_pt);
         let style = if part[0].is_italic {
             " font-style=\"italic\""
         } else {

@@ -74,23 +74,24 @@ pub struct TableSource {
 impl TableSource {
     /// The table in the file `path`; `None` where that is a run or no CSV.
     pub fn read(path: &Path) -> Result<Option<Self>, Problems> {
-        let refused = |problem| Problems::one(path.display().to_string(), problem);
+        let origin = path.display().to_string();
         let ending = path.extension().and_then(|ending| ending.to_str());
         let is_part = ending == Some("part");
         if !(ending == Some("csv") || is_part) || !path.is_file() {
             return Ok(None);
         }
-        let head = File::open(path).and_then(|file| Head::read(&mut BufReader::new(file)));
-        let head = head.map_err(|error| refused(Problem::at("", unread(&error))))?;
+        let head = File::open(path)
+            .and_then(|file| Head::read(&mut BufReader::new(file)))
+            .map_err(|error| Problems::one(origin.clone(), Problem::at("", unread(&error))))?;
         if subject(&head).is_none() {
             return Ok(None);
         }
         if is_part {
             let rule = "holds the rows of a sweep that is not whole yet: the command that began it goes on with it, and the file gets its name";
-            return Err(refused(Problem::at("", rule)));
+            return Err(Problems::one(origin, Problem::at("", rule)));
         }
-        let text = csv::text(path).map_err(refused)?;
-        Self::from_csv(&path.display().to_string(), text)
+        let text = csv::text(path).map_err(|problem| Problems::one(origin.clone(), problem))?;
+        Self::from_csv(&origin, text)
     }
 
     /// The table in `text`, the content of the file `origin`; `None` where it is none.
@@ -139,44 +140,43 @@ impl TableSource {
 
 /// What the table with this head is, and its title; `None` where it is none.
 fn subject(head: &Head) -> Option<(TableSubject, String)> {
-    let names = String::from_utf8_lossy(head.names()).into_owned();
-    let names: Vec<&str> = names
+    let first_line = String::from_utf8_lossy(head.names());
+    let names: Vec<&str> = first_line
         .split(',')
         .map(|name| name.trim_matches('"'))
         .collect();
-    let (header, names) = (head.header().unwrap_or_default(), names.as_slice());
+    let header = head.header().unwrap_or_default();
     let parsed: Option<toml::Table> = header.parse().ok();
-    let title = |table: &toml::Table| {
-        table
-            .get("title")
-            .and_then(toml::Value::as_str)
-            .unwrap_or_default()
-            .to_owned()
-    };
-    let has = |name: &str| names.contains(&name);
-    if has("scheme") && has("time_step_s") && has("error_m") {
-        let title = parsed.as_ref().map(title).unwrap_or_default();
+    let of_comparison = ["scheme", "time_step_s", "error_m"];
+    if of_comparison.iter().all(|name| names.contains(name)) {
+        let title = parsed.as_ref().map(title_in).unwrap_or_default();
         return Some((TableSubject::Comparison, title));
     }
     let table = parsed?;
-    if let Some(settings) = settings_of_fit(names) {
+    if let Some(settings) = settings_of_fit(&names) {
         let fit = FitTable {
             settings,
             found: found(&header),
             run_file: header,
         };
-        return Some((TableSubject::Fit(fit), title(&table)));
+        return Some((TableSubject::Fit(fit), title_in(&table)));
     }
     let vary = table.get("vary")?.as_array()?;
     let keys = vary.iter().filter_map(|vary| vary.get("key")?.as_str());
     let varied: Vec<String> = keys.map(str::to_owned).collect();
     let of_scenario = table.get("scenario").and_then(toml::Value::as_table);
-    let title = match title(&table) {
-        own if own.is_empty() => of_scenario.map(title).unwrap_or_default(),
+    let title = match title_in(&table) {
+        own if own.is_empty() => of_scenario.map(title_in).unwrap_or_default(),
         own => own,
     };
     let scenario = of_scenario.cloned().unwrap_or_default();
     Some((TableSubject::Sweep(SweepTable { varied, scenario }), title))
+}
+
+/// Returns the title that `table` has, or an empty one.
+fn title_in(table: &toml::Table) -> String {
+    let title = table.get("title").and_then(toml::Value::as_str);
+    title.unwrap_or_default().to_owned()
 }
 
 /// What was found by the fit in whose CSV this is the `header`; nothing where that does not tell.

@@ -52,7 +52,7 @@ pub fn run(
         }
         #[cfg(debug_assertions)]
         panic_if_asked(begin.elapsed());
-        let (has_arrived, is_over) = advance(lab, lessons, role, begin);
+        let (has_arrived, is_over) = advance_all(lab, lessons, role, begin);
         if lab.has_changed() {
             screen::refit(lab, screen.size()?);
         }
@@ -70,7 +70,7 @@ pub fn run(
 }
 
 /// Advances run, class and lessons. Returns whether the run has arrived where it was to go, and whether the lab is to end.
-fn advance(
+fn advance_all(
     lab: &mut Lab,
     lessons: &mut Lessons,
     role: &mut dyn ClassRole,

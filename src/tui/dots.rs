@@ -201,8 +201,8 @@ impl Dots {
             Ink::Under(role) => (2, role),
             Ink::Ghost => (3, Role::Previous),
         };
-        let place = on_sheet((x, y), (self.width(), self.height()));
-        if let Some((cell, bit)) = place.and_then(|(x, y)| self.cell(x, y)) {
+        let dot = on_sheet((x, y), (self.width(), self.height()));
+        if let Some((cell, bit)) = dot.and_then(|(column, row)| self.cell(column, row)) {
             cell.bits[layer] |= bit;
             cell.roles[layer] = role;
         }

@@ -13,11 +13,11 @@ const MOST_AHEAD: usize = 256;
 const CHUNK: usize = 4096;
 
 /// Writing to this socket wakes [`Keyboard::wait`].
-static BELL: OnceLock<UnixStream> = OnceLock::new();
+static WAKE_SOCKET: OnceLock<UnixStream> = OnceLock::new();
 
 /// Ends the [`wait`](Keyboard::wait) in progress, or the next one. Any thread may call it.
 pub fn wake() {
-    if let Some(mut bell) = BELL.get() {
+    if let Some(mut bell) = WAKE_SOCKET.get() {
         let _ = bell.write(&[0]); // a full pipe wakes as well
     }
 }
@@ -35,7 +35,7 @@ impl Keyboard {
         let (ours, others) = UnixStream::pair()?;
         ours.set_nonblocking(true)?;
         others.set_nonblocking(true)?;
-        let _ = BELL.set(others); // the first one stays
+        let _ = WAKE_SOCKET.set(others); // the first one stays
         Ok(Self {
             decoder: Decoder::default(),
             bell: ours,

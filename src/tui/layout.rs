@@ -116,7 +116,7 @@ impl ScreenLayout {
     /// Returns the panes that are side by side while none fills the screen.
     pub fn side_by_side(area: Rect, view: &View) -> Vec<Pane> {
         let unfilled = View {
-            filled: false,
+            fullscreen: false,
             ..view.clone()
         };
         let layout = Self::new(area, &unfilled, 1, true);
@@ -127,7 +127,7 @@ impl ScreenLayout {
 fn overview_rows(height: u16, view: &View) -> u16 {
     let full = OVERVIEW_ROWS.iter().find(|(from, _)| height >= *from);
     match full {
-        Some((_, rows)) if view.window.has_overview && !view.filled => *rows,
+        Some((_, rows)) if view.window.has_overview && !view.fullscreen => *rows,
         _ => u16::from(height >= SCRUB_FROM),
     }
 }
@@ -173,7 +173,7 @@ fn percent(width: u16, share: u32, (least, most): (u16, u16)) -> u16 {
 fn place_panes(area: Rect, height: u16, view: &View) -> Vec<(Pane, Rect)> {
     if area.is_empty() {
         Vec::new()
-    } else if view.filled {
+    } else if view.fullscreen {
         vec![(view.focus, area)]
     } else if view.may_show(Pane::Lesson) {
         with_page(area, height, view)

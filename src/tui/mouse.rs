@@ -198,7 +198,7 @@ fn pane_at(layout: &ScreenLayout, at: Position) -> Option<(Pane, Rect)> {
 
 /// Sets the cursor on the traces to the time at `at`, where there is one.
 fn read_off(place: Rect, at: Position, lab: &mut Lab) {
-    if let Some(time_s) = Traces(PlotInputs::of(lab)).time_s(place, at) {
+    if let Some(time_s) = Traces(PlotInputs::from_lab(lab)).time_s(place, at) {
         let to = CursorTo::Place(SeekTarget::Time(time_s));
         lab.carry_out_now(&Command::Cursor(to));
     }
@@ -219,7 +219,7 @@ fn wheel(layout: &ScreenLayout, at: Position, up: bool, lab: &mut Lab) -> Option
     }
     let (pane, place) = pane_at(layout, at)?;
     if pane == Pane::Traces {
-        let about_s = Traces(PlotInputs::of(lab)).time_s(place, at)?;
+        let about_s = Traces(PlotInputs::from_lab(lab)).time_s(place, at)?;
         lab.turn_to(pane);
         lab.press(|lab, _| lab.view().zoomed_window(about_s, up, lab.player()));
         return None;

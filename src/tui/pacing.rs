@@ -76,8 +76,8 @@ mod tests {
         for bytes in [300, 700, 1500] {
             let sent = rate(10, bytes, SMALL_SCREEN_CELLS);
             assert!((2600.0..=3000.0).contains(&sent), "{bytes}: {sent}");
-            let sent = rate(10, bytes * 3, 200 * 50);
-            assert!((9000.0..=10_000.0).contains(&sent), "{bytes}: {sent}");
+            let large = rate(10, bytes * 3, 200 * 50);
+            assert!((9000.0..=10_000.0).contains(&large), "{bytes}: {large}");
         }
         assert!((3900.0..=4500.0).contains(&rate(15, 700, SMALL_SCREEN_CELLS)));
     }

@@ -42,7 +42,7 @@ const MOUSE_ON: &[u8] = b"\x1b[?1000h\x1b[?1002h\x1b[?1006h";
 /// The same in the other order, and off.
 const MOUSE_OFF: &[u8] = b"\x1b[?1006l\x1b[?1002l\x1b[?1000l";
 /// Locked by the thread that writes to the terminal.
-static PEN: Mutex<()> = Mutex::new(());
+static WRITING: Mutex<()> = Mutex::new(());
 /// A signal is ending the process.
 static ENDING: AtomicBool = AtomicBool::new(false);
 /// Which of SIGTSTP and SIGCONT came last and has not been handled: [`NEITHER`], [`SUSPEND`] or [`RESUMED`]. The signal
@@ -185,9 +185,9 @@ impl Screen {
             signal_hook::low_level::emulate_default_handler(SIGTSTP)?;
         }
         // If the handler of SIGCONT ran only after this, the terminal would be taken over twice.
-        let begin = Instant::now();
+        let stopped = Instant::now();
         while LAST_JOB_SIGNAL.swap(NEITHER, Ordering::SeqCst) != RESUMED
-            && begin.elapsed() < HEARD_WITHIN
+            && stopped.elapsed() < HEARD_WITHIN
         {
             thread::sleep(Duration::from_millis(1));
         }
@@ -248,7 +248,7 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 
 /// Waits for the pen; for ever where a signal is ending the process: nothing may be drawn after the terminal is given back.
 fn pen() -> MutexGuard<'static, ()> {
-    let pen = locked(&PEN);
+    let pen = locked(&WRITING);
     while ENDING.load(Ordering::SeqCst) {
         thread::park();
     }
@@ -388,7 +388,7 @@ fn handle(signal: i32) {
 fn take_pen() -> Option<MutexGuard<'static, ()>> {
     let begin = Instant::now();
     while begin.elapsed() < TERMINAL_EXIT_LIMIT {
-        match PEN.try_lock() {
+        match WRITING.try_lock() {
             Ok(pen) => return Some(pen),
             Err(TryLockError::Poisoned(pen)) => return Some(pen.into_inner()),
             Err(TryLockError::WouldBlock) => thread::sleep(Duration::from_millis(2)),

@@ -337,9 +337,9 @@ fn what_is_right_leads_to_advice() {
         let lesson = reading::read("t.md", &format!("{text}{asked}")).unwrap();
         let predict = lesson.predict("a").unwrap();
         let (_dir, folder) = class();
-        for (index, choice) in choices.into_iter().enumerate() {
+        for (index, chosen) in choices.into_iter().enumerate() {
             let seat = new_seat(&folder, &format!("seat{index}"));
-            keep(&seat, &lesson, "a", &[(1, choice, false)]);
+            keep(&seat, &lesson, "a", &[(1, chosen, false)]);
         }
         let tally = Tally::count(&seat_statuses(&folder).unwrap(), LESSON, predict, 1);
         assert_eq!(tally.advice.as_deref(), Some(advice));

@@ -184,12 +184,10 @@ fn a_short_run_says_no_more_than_it_has_seen() {
         let set = ["motion.scheme=exact", "motion.time_step_s=0.001", &steps];
         let sleeping = preset("sleeping", &set);
         let found = measured(&sleeping);
-        for (found, truth) in found.iter().zip([1.70342095, 2.36591637]) {
-            assert_eq!(found.is_some(), known, "{steps}: {found:?}");
-            let off = found.map_or(0.0, |found| {
-                (found.value - truth).abs() - 2.0 * found.uncertainty
-            });
-            assert!(off < 1e-8, "{found:?}");
+        for (one, truth) in found.iter().zip([1.70342095, 2.36591637]) {
+            assert_eq!(one.is_some(), known, "{steps}: {one:?}");
+            let beyond = one.map_or(0.0, |one| (one.value - truth).abs() - 2.0 * one.uncertainty);
+            assert!(beyond < 1e-8, "{one:?}");
         }
     }
 }

@@ -139,8 +139,8 @@ fn chosen_columns_are_those_of_the_whole_csv() {
     };
     let bytes = csv(&scenario, comma);
     assert!(bytes.starts_with("\u{feff}# # excel = true\n".as_bytes()));
-    for (comma, point) in rows(&bytes).iter().zip(&whole_rows) {
-        assert_eq!(comma.replace(',', ".").replace(';', ","), *point);
+    for (with_comma, point) in rows(&bytes).iter().zip(&whole_rows) {
+        assert_eq!(with_comma.replace(',', ".").replace(';', ","), *point);
     }
 }
 
@@ -153,9 +153,10 @@ fn every_point_has_a_row() {
     assert_eq!(points.len(), 1 + 4 * count);
     assert!(points[1].starts_with("0,0.0,rim.0,0.5,"), "{}", points[1]);
     let top = points.iter().filter(|row| row.contains(",top,"));
-    for (top, row) in top.zip(&whole_rows[1..]) {
-        let (top, row): (Vec<_>, Vec<_>) = (top.split(',').collect(), row.split(',').collect());
-        assert_eq!(top[4..7], row[2..5]);
+    for (of_point, of_step) in top.zip(&whole_rows[1..]) {
+        let point: Vec<_> = of_point.split(',').collect();
+        let row: Vec<_> = of_step.split(',').collect();
+        assert_eq!(point[4..7], row[2..5]);
         // Its velocity is w x r.
         let number = |text: &str| text.parse::<f64>().unwrap();
         let [r, w] = [2, 8].map(|at| [0, 1, 2].map(|k| number(row[at + k])));
@@ -164,7 +165,7 @@ fn every_point_has_a_row() {
             w[2] * r[0] - w[0] * r[2],
             w[0] * r[1] - w[1] * r[0],
         ];
-        assert_eq!([7, 8, 9].map(|at| number(top[at])), velocity);
+        assert_eq!([7, 8, 9].map(|at| number(point[at])), velocity);
     }
 }
 
@@ -327,7 +328,7 @@ fn lines_that_are_not_the_runs_are_found() {
     let lines: Vec<&str> = text.lines().collect();
     let names = lines.iter().position(|line| line.starts_with("step,"));
     let at = names.unwrap() + 30; // the row of step 29
-    let joined = |lines: &[&str]| (lines.join("\n") + "\n").into_bytes();
+    let joined = |some: &[&str]| (some.join("\n") + "\n").into_bytes();
     let mut twice = lines.clone();
     twice.insert(at, lines[at]);
     let found = difference(&joined(&twice));
@@ -339,7 +340,7 @@ fn lines_that_are_not_the_runs_are_found() {
     assert_eq!(difference(&joined(&lost)).line, at as u64 + 1);
     let mut longer = lines.clone();
     longer.push("121,1,2");
-    let told = |bytes: &[u8], words: &str| has(difference(bytes).to_string(), words);
+    let told = |bytes: &[u8], reason: &str| has(difference(bytes).to_string(), reason);
     told(&joined(&longer), "\"121,1,2\", where the computed rows");
     told(&joined(&lines[..at]), "it is cut off");
     let uneven = text.replace(lines[at], &format!("{},7", lines[at]));
@@ -347,17 +348,6 @@ fn lines_that_are_not_the_runs_are_found() {
     let unended = difference(text.trim_end().as_bytes());
     assert!(unended.to_string().contains("is cut off before its end"));
     assert_eq!(unended.line, lines.len() as u64);
-}
-
-#[test]
-fn what_other_programs_do_to_a_file_is_told() {
-    let text = String::from_utf8(GOOD.clone()).unwrap();
-    let dos = difference(text.replace('\n', "\r\n").as_bytes());
-    assert!(dos.to_string().contains("CR LF from line 1 on"), "{dos}");
-    let marked = format!("\u{feff}{text}");
-    assert_eq!(verified(marked.as_bytes()).unwrap().difference, None);
-    let late = text.replace("\n40,", "\n\u{feff}40,");
-    difference(late.as_bytes());
 }
 
 #[test]

@@ -161,7 +161,7 @@ fn places(data: &str) -> Vec<(f64, f64)> {
                 'v' => vec![(0.0, step[0])],
                 _ => step.chunks(2).map(|pair| (pair[0], pair[1])).collect(),
             };
-            places.extend(steps.iter().map(|step| (from.0 + step.0, from.1 + step.1)));
+            places.extend(steps.iter().map(|by| (from.0 + by.0, from.1 + by.1)));
             at = *places.last().unwrap();
         }
         match command {
@@ -200,9 +200,9 @@ fn the_places_in_svg_are_those_of_the_page() {
     let (data, _) = data.split_once('"').unwrap();
     let found = places(data);
     assert_eq!(found.len(), expected.len(), "{data}");
-    for (found, expected) in found.iter().zip(&expected) {
-        assert!((found.0 - expected.0).abs() < 1e-6, "{data}");
-        assert!((found.1 - expected.1).abs() < 1e-6, "{data}");
+    for (place, wanted) in found.iter().zip(&expected) {
+        assert!((place.0 - wanted.0).abs() < 1e-6, "{data}");
+        assert!((place.1 - wanted.1).abs() < 1e-6, "{data}");
     }
 }
 

@@ -9,7 +9,7 @@ use gyrolab::plot::chart::{Chart, ChartAxis, ChartSeries, Panel, SeriesStyle};
 use gyrolab::plot::ink::WHITE;
 use gyrolab::plot::{PageFormat, PageScene, Paint, Point, SceneItem, write};
 use gyrolab::report::figure::course::{RunSampler, SampleRequest, SampledRun};
-use gyrolab::report::figure::kind::FigureKind;
+use gyrolab::report::figure::kind::{FIGURE_KIND_NAMES, FigureKind, RESIDUALS};
 use gyrolab::report::figure::labels::FigureLabels;
 use gyrolab::report::figure::of_runs::{self, DrawnFigure, FigureRun, KnownNumbers};
 use gyrolab::report::figure::{FigureSource, FigureSpec, of_table};
@@ -110,8 +110,8 @@ pub(crate) fn words(scene: &PageScene) -> Vec<&str> {
 #[track_caller]
 pub(crate) fn says(scene: &PageScene, wanted: &[&str]) {
     let words = words(scene);
-    for wanted in wanted {
-        assert!(words.contains(wanted), "{wanted} is not among {words:?}");
+    for one in wanted {
+        assert!(words.contains(one), "{one} is not among {words:?}");
     }
 }
 
@@ -195,13 +195,11 @@ fn every_preset_has_a_tidy_figure_of_every_kind() {
     for name in PRESETS.iter().map(|preset| preset.name) {
         let steps = scenario(name, &[]).steps.min(STEPS);
         let runs = [run(name, &[&format!("motion.steps={steps}")])];
-        for kind in [
-            "traces",
-            "above",
-            "3d",
-            "tilt_deg",
-            "energy_J,Lx_Js,azimuth_deg,step,segment",
-        ] {
+        // Residuals are of measured data.
+        let kinds = FIGURE_KIND_NAMES
+            .into_iter()
+            .filter(|kind| *kind != RESIDUALS);
+        for kind in kinds.chain(["tilt_deg", "energy_J,Lx_Js,azimuth_deg,step,segment"]) {
             for (width_mm, exact) in [(178.0, true), (40.0, false)] {
                 let asked = FigureSpec {
                     exact,
@@ -380,8 +378,8 @@ fn a_run_of_the_exact_motion_is_not_drawn_twice() {
     };
     has(only, "exact motion itself");
     // Beside another scheme it is the exact motion of both, and has its own curve.
-    let figure = drawn(&[run("cusps", &[]), exact], &asked);
-    assert_eq!(wide(&figure.scene).len(), 1);
+    let both = drawn(&[run("cusps", &[]), exact], &asked);
+    assert_eq!(wide(&both.scene).len(), 1);
 }
 
 #[test]
@@ -489,8 +487,8 @@ fn a_black_figure_proposes_a_stretch_that_is_not() {
     ] {
         let runs = [run(name, &[])];
         let figure = drawn(&runs, &spec(kind));
-        let told = |figure: &DrawnFigure| -> Vec<String> {
-            let mut told = told(figure);
+        let told = |drawing: &DrawnFigure| -> Vec<String> {
+            let mut told = told(drawing);
             told.retain(|told| !told.contains("drawn as points"));
             told
         };
@@ -607,13 +605,13 @@ fn words_and_axes_are_those_that_were_asked_for() {
         y_range: Some((-1.0, 1.0)),
         ..log.clone()
     };
-    for (kind, labels, words) in [
+    for (kind, given, words) in [
         ("z_m", &many, "--y-label is given 2 times"),
         ("above", &log, "not for a path from above"),
         ("3d", &log, "not for a path in space"),
         ("z_m", &below, "begins above 0"),
     ] {
-        has(refusal(&runs, &asked(kind, labels)), words);
+        has(refusal(&runs, &asked(kind, given)), words);
     }
 }
 
@@ -640,7 +638,7 @@ fn lines_between_too_few_steps_of_a_nutation_are_told() {
     let begin = "fast-top has 4.16 time steps in a nutation of 0.0831 s: ";
     let few = |time_step: &str, kind: &str| {
         let mut all = told(time_step, kind).into_iter();
-        all.find(|told| told.starts_with(begin))
+        all.find(|warning| warning.starts_with(begin))
     };
     let only = few("motion.time_step_s=0.02", "tilt_deg,step").unwrap();
     has(only, "; a time step of 0.002 s would show the nutation");
@@ -857,8 +855,8 @@ fn a_comparison_shows_its_slope() {
         .replace("4e-15", "0")
         .replace("40,n/a", "40,0");
     for (text, name) in [(COMPARISON, "exact"), (&none, "")] {
-        let chart = of_table::chart(&table(text), &[], COLUMN_PT).unwrap();
-        assert_eq!(chart.panels[0].series[1].name, name);
+        let of_text = of_table::chart(&table(text), &[], COLUMN_PT).unwrap();
+        assert_eq!(of_text.panels[0].series[1].name, name);
     }
     let wrong = of_table::chart(&table(COMPARISON), &["eror_m"], COLUMN_PT).unwrap_err();
     assert!(wrong.contains("error_m"), "{wrong}");

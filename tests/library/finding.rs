@@ -139,8 +139,8 @@ fn numbers_that_are_read_off_are_found_too() {
     stage.shows_no("nutation");
     stage.press(ESC).press("/energy").shows("energy ");
     stage.shows_no("precession");
-    let mut stage = open(LARGE);
-    stage.press("e").press("f").press("/turns").shows("/step");
+    let mut large = open(LARGE);
+    large.press("e").press("f").press("/turns").shows("/step");
 }
 
 #[test]
@@ -172,15 +172,15 @@ fn a_value_shows_all_the_digits_it_has() {
     let mut stage = open(SMALL);
     stage.press("/rim height").shows("body.rim.height_m");
     stage.shows(&format!("={HEIGHT}"));
-    let mut stage = open(Rect::new(0, 0, 160, 40));
-    stage.press("ef").shows("0.5656854").shows("m  ");
+    let mut wide = open(Rect::new(0, 0, 160, 40));
+    wide.press("ef").shows("0.5656854").shows("m  ");
     // Beside the other panes too, a value is not rounded where there is room.
     let set = [
         "start.tilt_deg=0.000123456",
         "motion.gravity_m_per_s2=9.80665",
     ];
-    let stage = &mut Stage::open("method-2", &set, LARGE);
-    stage.shows("0.000123456 deg").shows("9.80665");
+    let in_pane = &mut Stage::open("method-2", &set, LARGE);
+    in_pane.shows("0.000123456 deg").shows("9.80665");
 }
 
 #[test]
@@ -213,8 +213,8 @@ fn the_words_that_begin_with_what_is_searched_for_come_first() {
     stage.press("/L");
     let selected = stage.lab.values().list.selected().unwrap();
     assert_eq!(selected.label, "Lx body");
-    let mut stage = open(SMALL);
-    stage.press("/Lz").shows("read only:").shows("Lz body");
+    let mut found = open(SMALL);
+    found.press("/Lz").shows("read only:").shows("Lz body");
 }
 
 #[test]

@@ -57,8 +57,8 @@ fn thrown(
         panic!("no series")
     };
     let values = at_times(series, &Arc::new(scenario), &|| true);
-    for (curve, values) in series.curves.iter_mut().zip(values.unwrap().unwrap()) {
-        for (point, value) in curve.points.iter_mut().zip(values) {
+    for (curve, row) in series.curves.iter_mut().zip(values.unwrap().unwrap()) {
+        for (point, value) in curve.points.iter_mut().zip(row) {
             point.value = value + noise * normal();
         }
     }
@@ -162,18 +162,18 @@ fn throws_of_bodies_from_flat_to_cubic_end_with_numbers_that_cover() {
         let (truth, omega, measured) = any_throw(seed);
         let (_, fit) = fitted(measured, &[A, B, RATES]);
         let pairs = fit.keys.iter().zip(truth_of_keys(truth, omega));
-        let off = pairs.map(|(key, truth)| {
+        let in_sigmas = pairs.map(|(key, true_value)| {
             let sides = key
                 .sides
                 .unwrap_or_else(|| panic!("seed {seed}: {}", key.free.key));
-            let off = truth - key.value;
+            let off = true_value - key.value;
             off.abs() / if off > 0.0 { sides.above } else { sides.below }
         });
-        off.collect()
+        in_sigmas.collect()
     };
     let seeds = (1..=THROWS).into_par_iter();
     let all: Vec<f64> = seeds.map(off).collect::<Vec<Vec<f64>>>().concat();
-    let within = |sigmas: f64| all.iter().filter(|off| **off <= sigmas).count();
+    let within = |sigmas: f64| all.iter().filter(|distance| **distance <= sigmas).count();
     println!("{} and {} of {}", within(1.0), within(2.0), all.len());
     // Of 300 values 205 and 286 are expected, and a few more of flat bodies; four deviations less are 173 and 272.
     assert!((173..=250).contains(&within(1.0)), "{}", within(1.0));

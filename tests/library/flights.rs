@@ -67,8 +67,8 @@ fn recording(throws: &[[f64; 3]], seed: u64) -> (String, Vec<(f64, f64)>) {
     let mut dice = Dice(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
     let mut noise = || NOISE * ((0..12).map(|_| dice.unit()).sum::<f64>() - 6.0);
     let mut text = "t_s,w1_rad_per_s,w2_rad_per_s,w3_rad_per_s\n".to_owned();
-    for (row, rates) in rates.iter().enumerate() {
-        let [a, b, c] = rates.map(|rate| rate + noise());
+    for (row, row_rates) in rates.iter().enumerate() {
+        let [a, b, c] = row_rates.map(|rate| rate + noise());
         writeln!(text, "{},{a},{b},{c}", row as f64 / RATE).unwrap();
     }
     (text, flights)

@@ -106,7 +106,12 @@ fn it_does_not_warn_of_the_runs_that_hold() {
             continue;
         }
         let health = health(scenario.clone());
-        assert_eq!(health.is_believed(), Some(true), "{}", preset.name);
+        assert_eq!(
+            health.is_believed(),
+            Some(true),
+            "{}: a preset that shows the fault of a time step stands in `doubtful`",
+            preset.name
+        );
         begins(&health.sentence(None), "The numbers hold");
         assert_eq!(advise(&scenario), Advice::Holds, "{}", preset.name);
     }
@@ -162,15 +167,15 @@ fn advice_is_right(name: &str, scenario: &Scenario) -> Advice {
     let advice = advise(scenario);
     let (step, scheme) = (scenario.motion.time_step_s, scenario.motion.scheme);
     let case = format!("{name}, {} at {step} s: {advice:?}", scheme.name);
-    let is_held = |step, scheme| {
-        let other = resampled(scenario, step, scheme);
+    let is_held = |dt, stepper| {
+        let other = resampled(scenario, dt, stepper);
         let most = strays(other.clone());
         assert!(most <= BELIEVED_WITHIN, "{case}: {most}");
         let verdict = health(other).sentence(None);
         assert!(verdict.starts_with("The numbers hold"), "{case}: {verdict}");
     };
-    let is_wrong = |step, scheme| {
-        let verdict = health(resampled(scenario, step, scheme));
+    let is_wrong = |dt, stepper| {
+        let verdict = health(resampled(scenario, dt, stepper));
         verdict.is_believed() == Some(false)
     };
     match advice {
@@ -334,8 +339,8 @@ fn turning(height: f64, psi: f64, aside: f64, steps: u64) -> Scenario {
     // I3 = 3.2 kg m^2, and dt = 1 s.
     let momentum = [3.2 * psi * aside, 3.2 * psi];
     let motion = "gravity_m_per_s2 = 0\ntime_step_s = 1";
-    let [aside, along] = momentum;
-    let start = format!("[start]\nmomentum_Js = [0, {aside}, {along}]\n");
+    let [across, along_axle] = momentum;
+    let start = format!("[start]\nmomentum_Js = [0, {across}, {along_axle}]\n");
     let rest = format!("{start}[motion]\n{motion}\nsteps = {steps}\n");
     wheel(height, 0.0, &rest)
 }
@@ -459,8 +464,11 @@ fn the_lag_of_method_2_is_188_times_the_true_one() {
     assert!((measured / scheme_lag_deg - 1.0).abs() < 0.02, "{measured}");
     let short = preset("method-2", &["motion.steps=10"]);
     let exact = resampled(&short, 0.0007, find_scheme("exact"));
-    let measured = largest_lag(&exact) / 2.0;
-    assert!((measured / true_lag_deg - 1.0).abs() < 0.001, "{measured}");
+    let exact_lag_deg = largest_lag(&exact) / 2.0;
+    assert!(
+        (exact_lag_deg / true_lag_deg - 1.0).abs() < 0.001,
+        "{exact_lag_deg}"
+    );
 }
 
 /// The body of kappa = 0.38 for ten seconds under the report's scheme at 1e-3 s.
@@ -481,8 +489,8 @@ fn drifts_and_deviation_are_those_of_known_cases() {
     assert!(deviation.lz.abs() < 1e-11);
     let top = reference_top("[0, -20, 30]");
     let row = compared(&top, top.motion.time_step_s, top.motion.scheme);
-    let off = (row.spin_drift.unwrap() * 1300_f64.sqrt() / 30.0 - 0.125).abs();
-    assert!(off < 5e-4, "{row:?}");
+    let spin_off = (row.spin_drift.unwrap() * 1300_f64.sqrt() / 30.0 - 0.125).abs();
+    assert!(spin_off < 5e-4, "{row:?}");
     assert!(row.lz_drift.unwrap() < 1e-12 && row.steps == 10_000);
     assert_eq!(row.error_at_end_m, Some(deviation.distance_m));
     assert_eq!(row.error_m, looping.most_distance_m);
@@ -592,13 +600,13 @@ fn the_sentence_names_the_right_cause() {
     // The traced point holds, the nutation does not.
     let report = "motion.scheme=report";
     let fine = ["motion.time_step_s=0.001", "motion.steps=20000", report];
-    let sentence = told("fast-top", &fine);
+    let of_fast = told("fast-top", &fine);
     begins(
-        &sentence,
+        &of_fast,
         "The traced point holds, and the nutation does not: from 7.17 to 8.96 s the tilt",
     );
     has_all(
-        &sentence,
+        &of_fast,
         [
             " degrees, not from 30.000 to 30.074: damped by ",
             "% a step; --scheme srkn11b --time-step",
@@ -662,10 +670,10 @@ fn a_search_for_advice_that_nobody_waits_for_any_more_ends() {
     };
     let (advice, whole) = wanted_for(u32::MAX);
     assert_eq!(advice, Some(advise(&scenario)));
-    let (advice, asked) = wanted_for(2);
-    assert_eq!(advice, None);
+    let (cut_short, looks) = wanted_for(2);
+    assert_eq!(cut_short, None);
     // Each trial that is left is given up at its first look.
-    assert!(asked < 40 && asked < whole / 4, "{asked} of {whole}");
+    assert!(looks < 40 && looks < whole / 4, "{looks} of {whole}");
 }
 
 /// At a tenth of its time step the traced point of wobble-push holds; its nutation swings by 0.029 degrees, and should by 0.019.

@@ -78,6 +78,22 @@ fn keys_of_lessons_are_where_a_lesson_is() {
     }
 }
 
+/// The letters that are no key of the lab in any pane, for whoever adds a key.
+const FREE_LETTERS: &str = "lABCDEFGHIJKOQRTVY";
+
+#[test]
+fn the_free_letters_are_these() {
+    let keys = keys();
+    let letters = ('a'..='z').chain('A'..='Z');
+    let free: String = letters
+        .filter(|letter| !keys.contains(&letter.to_string()))
+        .collect();
+    assert_eq!(
+        free, FREE_LETTERS,
+        "a key was added or removed: change FREE_LETTERS in tests/library/keys.rs"
+    );
+}
+
 /// A letter and its capital are two sides of one thing, or one of them is no key.
 #[test]
 fn no_capital_does_something_else_than_its_letter() {
@@ -86,24 +102,12 @@ fn no_capital_does_something_else_than_its_letter() {
     for letter in 'a'..='z' {
         let both = [letter, letter.to_ascii_uppercase()];
         let are_keys = both.iter().all(|key| keys.contains(&key.to_string()));
-        assert_eq!(are_keys, PAIRS.contains(&letter), "{letter}");
+        assert_eq!(
+            are_keys,
+            PAIRS.contains(&letter),
+            "{letter}: if its capital is its counterpart, add it to PAIRS in tests/library/keys.rs"
+        );
     }
-}
-
-/// The letters that mean nothing, free for extensions. A capital may only do the counterpart of its letter.
-const FREE_LETTERS: &str = "lABCDEFGHIJKOQRTVY";
-
-#[test]
-fn letters_free_for_extensions_are_listed() {
-    let keys = keys();
-    let letters = ('a'..='z').chain('A'..='Z');
-    let free: String = letters
-        .filter(|letter| !keys.contains(&letter.to_string()))
-        .collect();
-    assert_eq!(
-        free, FREE_LETTERS,
-        "change the list in tests/library/keys.rs"
-    );
 }
 
 #[test]
@@ -256,7 +260,7 @@ fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
     let (folders, files): (Vec<_>, Vec<_>) = entries.partition(|path| path.is_dir());
     let below = folders
         .iter()
-        .flat_map(|folder| self::files(folder, extension));
+        .flat_map(|inner| self::files(inner, extension));
     files
         .into_iter()
         .filter(|path| path.extension().is_some_and(|end| end == extension))

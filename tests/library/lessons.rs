@@ -2,7 +2,7 @@
 
 use crate::support::desk::Desk;
 use crate::support::scenarios::{preset, view};
-use crate::support::words::{has, has_all};
+use crate::support::words::{has, has_all, without_lists};
 use gyrolab::engine::run::Simulation;
 use gyrolab::engine::scenario::{Document, Problem, Problems};
 use gyrolab::engine::text::printable::is_steering;
@@ -17,6 +17,7 @@ use gyrolab::lessons::{
 };
 use gyrolab::tui::screen;
 use proptest::prelude::*;
+use std::collections::BTreeSet;
 use std::fs;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -259,7 +260,7 @@ fn what_is_broken_is_told_with_its_line_and_the_nearest_right_name() {
     let told = mistakes.map(|(from, to)| {
         let told = unreadable(&with(from, to));
         assert!(!told.replace('\n', "").chars().any(is_steering), "{told}");
-        format!("{from:?} as {to:?}\n{told}\n\n")
+        format!("{from:?} as {to:?}\n{}\n\n", without_lists(&told))
     });
     insta::assert_snapshot!("mistakes", told.collect::<String>());
 }
@@ -306,10 +307,14 @@ fn line_ends_a_byte_order_mark_and_comments_change_nothing() {
         "Stop the push.",
         "<!-- a {comment}\n\n## no page -->\n\nStop the push.",
     );
-    let pages = |lesson: &Lesson| -> Vec<usize> {
-        lesson.pages.iter().map(|page| page.blocks.len()).collect()
+    let blocks = |read_lesson: &Lesson| -> Vec<usize> {
+        read_lesson
+            .pages
+            .iter()
+            .map(|page| page.blocks.len())
+            .collect()
     };
-    assert_eq!(pages(&read(&commented)), pages(&lesson));
+    assert_eq!(blocks(&read(&commented)), blocks(&lesson));
 }
 
 #[test]
@@ -332,8 +337,8 @@ fn a_file_that_is_too_long_is_refused_with_its_length() {
     }
     let told = reading::read_file(folder.path()).unwrap_err();
     has(told.to_string(), "is a folder");
-    let told = reading::open("no-such-lesson").unwrap_err();
-    has(told.to_string(), "no lesson of that name");
+    let unknown = reading::open("no-such-lesson").unwrap_err();
+    has(unknown.to_string(), "no lesson of that name");
 }
 
 proptest! {
@@ -496,18 +501,16 @@ fn lessons() -> Vec<Lesson> {
 #[test]
 fn every_lesson_of_the_folder_is_in_the_table() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("presets/lessons");
-    let mut files: Vec<_> = fs::read_dir(folder)
-        .into_iter()
-        .flatten()
+    let files: BTreeSet<_> = fs::read_dir(folder)
+        .unwrap()
         .map(|file| file.unwrap().file_name().into_string().unwrap())
         .collect();
-    let mut table: Vec<_> = shipped::LESSONS
-        .iter()
-        .map(|lesson| format!("{}.md", lesson.name))
-        .collect();
-    files.sort();
-    table.sort();
-    assert_eq!(files, table);
+    let table = shipped::LESSONS.iter();
+    assert_eq!(
+        files,
+        table.map(|lesson| format!("{}.md", lesson.name)).collect(),
+        "the folder and LESSONS in src/lessons/shipped.rs differ"
+    );
 }
 
 #[test]

@@ -206,10 +206,10 @@ fn a_task_is_done_by_hand_or_shown() {
         .press("N")
         .arrive()
         .shows("[x] done after the hint: be at 4 s");
-    let (mut stage, _folder, _) = taken(3);
-    stage.press("hh").arrive().shows("[x] shown by the lab");
-    stage.press("nn").shows("this is the last page");
-    stage.press("NNNN").arrive().shows("this is the first page");
+    let (mut again, _other_folder, _) = taken(3);
+    again.press("hh").arrive().shows("[x] shown by the lab");
+    again.press("nn").shows("this is the last page");
+    again.press("NNNN").arrive().shows("this is the first page");
 }
 
 #[test]
@@ -299,31 +299,31 @@ fn each_page_opens_with_what_matters_and_is_the_same_after_wandering() {
         let pages = reading::open(lesson.name).unwrap().pages.len();
         for page in 1..=pages {
             let place = format!("{}, page {page}", lesson.name);
-            for (stage, wanders) in [(&mut stage, false), (&mut wanderer, true)] {
+            for (screen, wanders) in [(&mut stage, false), (&mut wanderer, true)] {
                 if wanders {
-                    stage.commands("open = 'cusps'\npush = {}\nstep = 1000");
+                    screen.commands("open = 'cusps'\npush = {}\nstep = 1000");
                 }
                 if page == 1 {
-                    stage.lesson(lesson.name, 1);
+                    screen.lesson(lesson.name, 1);
                 }
-                while page > 1 && stage.class.open_lesson().unwrap().place.page < page {
-                    stage.press("n");
+                while page > 1 && screen.class.open_lesson().unwrap().place.page < page {
+                    screen.press("n");
                 }
-                if stage.class.open_lesson().unwrap().plays() {
-                    let sheet = stage.lab.view().sheet.clone().unwrap();
+                if screen.class.open_lesson().unwrap().plays() {
+                    let sheet = screen.lab.view().sheet.clone().unwrap();
                     assert!(
                         !sheet.paragraphs.iter().any(|one| is_needed(&one.kind)),
                         "{place}"
                     );
-                    stage.press("n");
+                    screen.press("n");
                 }
-                stage.arrive();
+                screen.arrive();
                 assert!(
-                    !stage.class.open_lesson().unwrap().is_under_way(),
+                    !screen.class.open_lesson().unwrap().is_under_way(),
                     "{place}"
                 );
             }
-            let of = |stage: &Stage| stage.lab.view().sheet.clone().unwrap();
+            let of = |screen: &Stage| screen.lab.view().sheet.clone().unwrap();
             assert_eq!(of(&stage), of(&wanderer), "{place}");
             for width in [80, 59] {
                 stage.size.width = width;
@@ -454,7 +454,7 @@ fn what_a_page_has_stated_stays_while_the_run_goes_on() {
     stage.press("10.").arrive().shows("The time is 2.0 s");
     stage.press("g5 s\n").arrive().shows("The time is 2.0 s");
     stage.press("b").arrive().shows("The time is 2.0 s");
-    let (mut open, _folder, _) = taken(2);
+    let (mut open, _other_folder, _) = taken(2);
     open.shows("= It is 5.0.").press("g4 s\n").arrive();
     open.shows("= It is 5.0.").shows_no("tilt 30 to 36.69");
     assert_eq!(stage.lab.player().reading.readouts.sample.time_s, 2.0);

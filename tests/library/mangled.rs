@@ -4,7 +4,7 @@
 use gyrolab::engine::analysis::cost;
 use gyrolab::engine::export::COLUMNS;
 use gyrolab::engine::run::{Sample, Simulation};
-use gyrolab::engine::scenario::presets::PRESETS;
+use gyrolab::engine::scenario::presets::{PRESETS, find};
 use gyrolab::engine::scenario::{Document, Problems, Scenario};
 use gyrolab::engine::text::printable::is_steering;
 use gyrolab::physics::scheme;
@@ -154,7 +154,7 @@ fn happen(text: &mut String, accident: &Accident) {
             }
         }
         Accident::Scheme(name) => {
-            let key = |name: &str| format!("scheme = \"{name}\"");
+            let key = |scheme_name: &str| format!("scheme = \"{scheme_name}\"");
             for known in scheme::names() {
                 *text = text.replace(&key(known), &key(name));
             }
@@ -292,7 +292,7 @@ proptest! {
         ], 1..4),
         value in prop_oneof![number(), any::<String>(), prop::collection::vec(number(), 0..4).prop_map(|list| format!("[{}]", list.join(",")))],
     ) {
-        let mut document = Document::parse("mangled.toml", &(PRESETS[4].text.to_owned() + MORE)).unwrap();
+        let mut document = Document::parse("mangled.toml", &(find("wobble-push").unwrap().text.to_owned() + MORE)).unwrap();
         let set = keys.iter().try_for_each(|key| document.set(&format!("{key}={value}")));
         match set.and_then(|()| document.scenario()) {
             Err(problems) => check_refusal(&problems)?,

@@ -161,9 +161,9 @@ fn a_key_without_data_says_how_to_get_them() {
 #[test]
 fn a_table_of_runs_and_what_is_outside_of_the_folder_are_refused() {
     let mut desk = Desk::open("method-2");
-    let refused = |desk: &mut Desk, name: &str| {
+    let refused = |at: &mut Desk, name: &str| {
         let command = crate::support::desk::commands(&format!("measured = '{name}'"));
-        desk.carry_out(&command[0]).unwrap_err().to_string()
+        at.carry_out(&command[0]).unwrap_err().to_string()
     };
     let why = refused(&mut desk, "heidelberg-nutation");
     has_all(&why, ["table of runs", "gyrolab fit"]);
@@ -173,8 +173,8 @@ fn a_table_of_runs_and_what_is_outside_of_the_folder_are_refused() {
     desk.lab
         .files_mut()
         .confine(Confined::within(&inside).unwrap());
-    let why = refused(&mut desk, path.to_str().unwrap());
-    assert!(why.contains("stays in its folder"), "{why}");
+    let outside = refused(&mut desk, path.to_str().unwrap());
+    assert!(outside.contains("stays in its folder"), "{outside}");
     assert!(desk.lab.comparison().data().is_none());
     desk.commands("measured = 'heidelberg-spin-decay'");
 }
@@ -247,9 +247,9 @@ fn what_the_run_is_known_to_say_is_not_computed_again() {
     let said = data::at_times(measured.series().unwrap(), &run, &|| true)
         .unwrap()
         .unwrap();
-    let knowing = |said: &[Vec<f64>]| KnownNumbers {
+    let knowing = |numbers: &[Vec<f64>]| KnownNumbers {
         recorded: None,
-        said: Some(said.to_vec()),
+        said: Some(numbers.to_vec()),
     };
     // By a full turn more, the directions are drawn elsewhere: the numbers are those that were given.
     let mut turned = said.clone();
@@ -258,7 +258,7 @@ fn what_the_run_is_known_to_say_is_not_computed_again() {
     moved[0][0] += 0.1;
     for (kind, other) in [(None, &turned), (Some("residuals"), &moved)] {
         let alone = figure(kind, text);
-        let with = |said: &[Vec<f64>]| figure_with(kind, text, &knowing(said)).scene;
+        let with = |numbers: &[Vec<f64>]| figure_with(kind, text, &knowing(numbers)).scene;
         assert_eq!(with(&said), alone.scene, "{kind:?}");
         assert_ne!(with(other), alone.scene, "{kind:?}");
     }
@@ -362,8 +362,8 @@ fn the_legend_counts_the_points_that_the_figure_has() {
     // Two places and three tilts; what is drawn of the legend is as wide as its words.
     let data = "t_s,x_m,tilt_deg\n1,0.5,45\n2,0.4,45\n3,,45\n";
     let fewer = "t_s,x_m\n1,0.5\n2,0.4\n";
-    let paths = |kind: &str, data: &str| -> Vec<String> {
-        let items = figure(Some(kind), data).scene.items;
+    let paths = |kind: &str, text: &str| -> Vec<String> {
+        let items = figure(Some(kind), text).scene.items;
         items.iter().map(|item| format!("{item:?}")).collect()
     };
     assert_eq!(paths("x_m", data), paths("x_m", fewer), "2 points");
@@ -378,8 +378,8 @@ fn data_after_the_end_of_the_run_are_told_with_what_plays_it_to_there() {
     stage.commands("go_to = 'end'").wait(1.0);
     stage.shows("(1 of 7 points: g, 720 s)");
     let longer = ["motion.time_step_s=1", "motion.steps=750"];
-    let mut stage = Stage::open("heidelberg", &longer, SMALL);
-    stage.commands("measured = 'heidelberg-spin-decay'");
-    stage.commands("go_to = 'end'").wait(1.0);
-    stage.shows_no("g, 720 s");
+    let mut played = Stage::open("heidelberg", &longer, SMALL);
+    played.commands("measured = 'heidelberg-spin-decay'");
+    played.commands("go_to = 'end'").wait(1.0);
+    played.shows_no("g, 720 s");
 }

@@ -147,7 +147,7 @@ fn the_wheel_zooms_and_a_drag_turns_the_view_in_space() {
     desk.does(Did::Press, from);
     desk.does(Did::Drag, (from.0 + 4, from.1 + 1));
     let turned = desk.stage.lab.view().camera;
-    let direction = |camera: Camera| (camera.yaw_deg, camera.pitch_deg);
+    let direction = |seen_from: Camera| (seen_from.yaw_deg, seen_from.pitch_deg);
     assert_ne!(direction(turned), direction(camera));
     desk.does(Did::Drag, from);
     let back = desk.stage.lab.view().camera;
@@ -208,22 +208,22 @@ fn a_mouse_outside_or_one_that_is_the_terminals_does_nothing() {
     assert_eq!(desk.stage.picture(), before);
     desk.stage.press("c↑→").shows("selects the terminal's text");
     desk.stage.press("\u{1b}");
-    let before = desk.stage.picture();
+    let selecting = desk.stage.picture();
     for did in all {
         desk.does(did, (10, 10));
     }
-    assert_eq!(desk.stage.picture(), before);
+    assert_eq!(desk.stage.picture(), selecting);
     // Whatever lies on top, and however small the screen: nothing breaks.
     for size in [(1, 1), (9, 3), (40, 12), (80, 24), (200, 50)] {
-        let mut desk = Desk::open("wobble-push", Rect::new(0, 0, size.0, size.1));
+        let mut small = Desk::open("wobble-push", Rect::new(0, 0, size.0, size.1));
         for keys in ["", "?", "\u{1b}o", "\u{1b}\u{1b}x", "\u{1b}e", "c"] {
-            desk.stage.press(keys);
+            small.stage.press(keys);
             for did in all {
                 for x in (0..size.0).step_by(7) {
-                    desk.does(did, (x, size.1 / 2)).does(did, (x, size.1 - 1));
+                    small.does(did, (x, size.1 / 2)).does(did, (x, size.1 - 1));
                 }
             }
-            desk.stage.picture();
+            small.stage.picture();
         }
     }
 }

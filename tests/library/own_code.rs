@@ -36,10 +36,11 @@ fn files(name: &str) -> Vec<(String, String)> {
 
 fn read(text: &str, map: &str, every: Option<u64>, dt: f64) -> Result<ProgramRows, String> {
     let pairs = map.split(',').filter_map(|pair| pair.split_once('='));
-    let map: Vec<_> = pairs
+    let columns: Vec<_> = pairs
         .map(|(own, ours)| (own.to_owned(), ours.to_owned()))
         .collect();
-    rows::read(text, &map, every, dt).map_err(|problems| problems.in_file("mine.csv").to_string())
+    rows::read(text, &columns, every, dt)
+        .map_err(|problems| problems.in_file("mine.csv").to_string())
 }
 
 fn judged(text: &str, against: &str, sets: &[&str]) -> Verdict {
@@ -323,14 +324,7 @@ fn beside_a_run_the_step_that_differs_has_the_slips_own_numbers() {
     fs::write(&bare, without_times).unwrap();
     let mut desk = Desk::open("every-slip");
     desk.commands(&format!("measured = '{}'", bare.path().display()));
-    let is_found = |desk: &Desk| {
-        desk.lab
-            .comparison()
-            .own_code()
-            .unwrap()
-            .verdict()
-            .is_some()
-    };
+    let is_found = |at: &Desk| at.lab.comparison().own_code().unwrap().verdict().is_some();
     while !is_found(&desk) {
         desk.wait(1);
         std::thread::yield_now();
@@ -344,8 +338,8 @@ fn beside_a_run_the_step_that_differs_has_the_slips_own_numbers() {
     let shown = screen::text(&desk.lab, false, (80, 50));
     has_all(&shown, ["torque-before-turn", "yours", "differs at"]);
     // The numbers are those of the row.
-    let own = desk.lab.comparison().own_code().unwrap();
-    let numbers = own.trial().unwrap().numbers(first).unwrap();
+    let found = desk.lab.comparison().own_code().unwrap();
+    let numbers = found.trial().unwrap().numbers(first).unwrap();
     let momentum = numbers.iter().find(|(_, it)| it.symbol == "new L").unwrap();
     let WorkedValue::Vector(momentum) = momentum.1.value else {
         panic!("{momentum:?}")
@@ -392,12 +386,13 @@ fn a_program_that_does_not_move_does_not_agree() {
 fn the_same_rows_agree_however_they_are_printed() {
     let text = fs::read_to_string(folder("right/every-slip-10g.csv")).unwrap();
     let (names, rows) = text.split_once('\n').unwrap();
-    let parted =
-        |text: &str, separator: &str, point: &str| text.replace(',', separator).replace('.', point);
+    let parted = |cells: &str, separator: &str, point: &str| {
+        cells.replace(',', separator).replace('.', point)
+    };
     let by_number = "1=step,2=t_s,3=x_m,4=y_m,5=z_m,6=Lx_Js,7=Ly_Js,8=Lz_Js";
     let foreign = "n, time, X, Y, Z, LX, LY, LZ";
     let by_name = "n=step,time=t_s,X=x_m,Y=y_m,Z=z_m,LX=Lx_Js,LY=Ly_Js,LZ=Lz_Js";
-    for (text, map, offset) in [
+    for (printed, map, offset) in [
         (text.clone(), "", 0),
         (parted(&text, ";", ","), "", 0),
         (parted(&text, "\t", ","), "", 0),
@@ -418,14 +413,14 @@ fn the_same_rows_agree_however_they_are_printed() {
         ),
     ] {
         let scenario = Arc::new(preset("every-slip", &[]));
-        let rows = read(&text, map, Some(40), scenario.motion.time_step_s).unwrap();
-        let verdict = own_code::compare(&rows, "every-slip", &scenario, &|| true).unwrap();
+        let own = read(&printed, map, Some(40), scenario.motion.time_step_s).unwrap();
+        let verdict = own_code::compare(&own, "every-slip", &scenario, &|| true).unwrap();
         assert!(
             verdict.agrees && verdict.rows >= 50,
             "{map}: {:?}",
             verdict.lines
         );
-        assert_eq!(verdict.offset, offset, "{text:.200}");
+        assert_eq!(verdict.offset, offset, "{printed:.200}");
     }
 }
 

@@ -144,8 +144,8 @@ proptest! {
         let mechanics = &scenario.body.mechanics;
         let inertia = mechanics.inertia();
         let uneven = [inertia[(0, 0)] - inertia[(1, 1)], inertia[(0, 1)], inertia[(0, 2)], inertia[(1, 2)]];
-        for uneven in uneven {
-            prop_assert!(uneven.abs() <= 1e-12 * inertia.amax(), "{inertia}");
+        for one in uneven {
+            prop_assert!(one.abs() <= 1e-12 * inertia.amax(), "{inertia}");
         }
         prop_assert!(SymmetricTop::from_body(mechanics).is_some());
         let loads = Simulation::new(Arc::new(scenario.clone())).loads().clone();
@@ -298,7 +298,7 @@ fn moments_about_the_pivot_are_kept_as_the_pivot_is_kept() {
     assert!(
         !listed(&three())
             .iter()
-            .any(|row| row.key.contains("part.0.about"))
+            .any(|one| one.key.contains("part.0.about"))
     );
     // A flat body, and one whose mass is all at the pivot but for rounding.
     let flat = about_pivot([0.0, 0.0, 30.0], [0.0, 0.0, 1.0], [1800.1, 1800.1, 0.2]);
@@ -492,6 +492,6 @@ fn a_part_is_edited_in_the_pane_of_values() {
     // What is refused says why and changes nothing.
     stage.press("\n").press("0.001\n");
     stage.shows("must not be greater than outer_radius_m");
-    let nut = &stage.lab.player().run().scenario().file.body.part[0];
-    assert_eq!(nut.outer_radius_m, Some(0.009));
+    let unchanged = &stage.lab.player().run().scenario().file.body.part[0];
+    assert_eq!(unchanged.outer_radius_m, Some(0.009));
 }

@@ -232,8 +232,8 @@ fn the_nearer_mass_is_drawn_over_the_farther_one() {
     let run = run("method-2", &set, "", 0);
     let mut view = view(&run, Marker::Braille);
     (view.camera.yaw_deg, view.camera.pitch_deg) = (0.0, 0.0);
-    let scene = |view: &View| {
-        let picture = drawn(ThreeD(seen_alone(&run, view)), (60, 24));
+    let scene = |seen: &View| {
+        let picture = drawn(ThreeD(seen_alone(&run, seen)), (60, 24));
         // The legend has these signs too.
         let above_legend = picture.split("L angular momentum").next();
         above_legend.unwrap_or_default().to_owned()
@@ -278,9 +278,9 @@ const VALUES: [(&str, &str, bool); 22] = [
 fn list(key: &str) -> ValueList {
     let scenario = preset("wobble-push", &[]);
     let parameters = parameters(&table_of(&scenario.file), &scenario);
-    let listed = |&(key, text, is_default): &(&str, &str, bool)| {
+    let listed = |&(name, text, is_default): &(&str, &str, bool)| {
         let mut own = parameters.iter();
-        let mut parameter = own.find(|own| own.key == key).unwrap().clone();
+        let mut parameter = own.find(|own| own.key == name).unwrap().clone();
         (parameter.value, parameter.is_default) = (text.into(), is_default);
         parameter.frame = None;
         ListedValue::from(parameter)
@@ -297,7 +297,7 @@ fn drawn_parameters(list: &ValueList, (focus, filled): (bool, bool), size: (u16,
     let mut now = run("wobble-push", &[], "", 500);
     let reading = &Reading::new(&mut now, &Pace::new(1.0, false));
     let mut view = view(&now, Marker::Braille);
-    view.filled = filled;
+    view.fullscreen = filled;
     view.focus = [Pane::Traces, Pane::Parameters][usize::from(focus)];
     let mut buf = Buffer::empty(Rect::new(0, 0, size.0, size.1));
     Parameters {
@@ -316,7 +316,7 @@ fn drawn_parameters(list: &ValueList, (focus, filled): (bool, bool), size: (u16,
 fn the_parameters_are_an_editor_when_in_focus() {
     let size = (26, 19);
     let dt = list("motion.time_step_s");
-    let shown = |list, how, size| text(&drawn_parameters(list, how, size));
+    let shown = |list, how, area| text(&drawn_parameters(list, how, area));
     insta::assert_snapshot!("editor_small", shown(&dt, (true, false), size));
     insta::assert_snapshot!("editor_tall", shown(&dt, (true, false), (26, 45)));
     insta::assert_snapshot!("editor_fills_80", shown(&dt, (true, true), (80, 19)));
@@ -391,8 +391,8 @@ fn a_long_text_scrolls_in_its_field() {
     "0123456789速い独楽abcdef"
         .chars()
         .for_each(|c| form.edit_field(FieldEdit::Type(c)));
-    let field = |form: &InputForm| {
-        let picture = asked(form, (20, 4));
+    let field = |shown: &InputForm| {
+        let picture = asked(shown, (20, 4));
         let line = picture.lines().nth(1).unwrap().to_owned();
         line.trim_matches('│').to_owned()
     };
@@ -452,7 +452,7 @@ proptest! {
         let mut now = run("wobble-push", &[], "", 3);
         let reading = &Reading::new(&mut now, &Pace::new(1.0, false));
         let mut view = view(&now, Marker::Ascii);
-        (view.filled, view.focus) = (filled, Pane::Parameters);
+        (view.fullscreen, view.focus) = (filled, Pane::Parameters);
         let pane = Parameters {
             scenario: now.scenario(),
             motion: now.simulation().motion(),

@@ -244,8 +244,8 @@ fn a_push_ends_the_balance_and_the_run_is_judged_again() {
 #[test]
 fn the_readouts_say_until_when_a_run_is_reliable() {
     let scenario = resampled(&parse(PUSHED), 0.43, find_scheme("exact"));
-    let read = |scenario: &Scenario, name| {
-        let values = at_end(scenario.clone(), &[find(name).unwrap()], &|| true);
+    let read = |run: &Scenario, name| {
+        let values = at_end(run.clone(), &[find(name).unwrap()], &|| true);
         values.unwrap().unwrap().remove(0)
     };
     let until_s = read(&scenario, "predictable_until_s").number().unwrap();

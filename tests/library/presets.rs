@@ -24,7 +24,11 @@ fn the_table_of_presets_is_the_folder() {
         .filter_map(|name| name.strip_suffix(".toml").map(str::to_owned))
         .collect();
     let table = PRESETS.iter().map(|preset| preset.name.to_owned());
-    assert_eq!(files, table.collect());
+    assert_eq!(
+        files,
+        table.collect(),
+        "the folder and PRESETS in src/engine/scenario/presets.rs differ"
+    );
 }
 
 #[test]
@@ -34,9 +38,9 @@ fn every_preset_says_what_it_is_and_what_to_look_at() {
         let look_at = file.viewed_text("look_at");
         let lengths = [file.about.as_deref(), file.source.as_deref(), look_at]
             .map(|text| text.unwrap().len());
-        let [about, source, look_at] = lengths;
+        let [about, source, hint] = lengths;
         assert!(about > 80 && source > 10, "{}", preset.name);
-        assert!((21..=160).contains(&look_at), "{}", preset.name);
+        assert!((21..=160).contains(&hint), "{}", preset.name);
         // Something to be held to; a user's files have nothing of it.
         assert!(expected_of(preset).len() >= 2, "{}", preset.name);
         assert!(file.expected.is_empty());
@@ -95,8 +99,11 @@ fn figure(name: &str, wanted: &str, number: f64) {
     let (before, rest) = wanted.split_once("{:.").unwrap();
     let (decimals, after) = rest.split_once('}').unwrap();
     let decimals: usize = decimals.parse().unwrap();
-    let (text, wanted) = (words(name), format!("{before}{number:.decimals$}{after}"));
-    assert!(says(&text, &wanted), "{name}: no {wanted:?} in {text}");
+    let (text, words_here) = (words(name), format!("{before}{number:.decimals$}{after}"));
+    assert!(
+        says(&text, &words_here),
+        "{name}: no {words_here:?} in {text}"
+    );
 }
 
 /// Whether `wanted` stands in `text`, however its lines are broken.
@@ -225,10 +232,14 @@ fn every_figure_in_the_texts_is_that_of_the_run() {
         "{:.0} % higher",
         percent(push("measured_highest_z_m")),
     );
-    let truth = readouts_of(preset_named("wobble-push", &["motion.scheme=exact"]));
-    let truth = |name: &str| truth.number(name).unwrap();
-    let swing = truth("measured_highest_z_m") - truth("measured_lowest_z_m");
-    figure("wobble-push", "true one is {:.2} %", 100.0 * swing / 0.8);
+    let exact = readouts_of(preset_named("wobble-push", &["motion.scheme=exact"]));
+    let [highest, lowest] = ["measured_highest_z_m", "measured_lowest_z_m"]
+        .map(|measure| exact.number(measure).unwrap());
+    figure(
+        "wobble-push",
+        "true one is {:.2} %",
+        100.0 * (highest - lowest) / 0.8,
+    );
 }
 
 /// When the tilt of the preset `name` first comes back to a turning point of the kind it began at, and when it first
@@ -258,8 +269,8 @@ fn the_figures_of_the_free_bodies_are_those_of_their_runs() {
     figure("wing-nut", "all at once: every {:.3} s", nut[0]);
     let brick = turning_points_s("poinsot", &[]);
     figure("poinsot", "from L, once in {:.3} s", brick[1]);
-    let brick = readouts("poinsot");
-    let least = brick.number("measured_lowest_tilt_deg").unwrap();
+    let of_brick = readouts("poinsot");
+    let least = of_brick.number("measured_lowest_tilt_deg").unwrap();
     figure("poinsot", "between 40 and {:.2} degrees", least);
     let caught = readouts_of(preset_named("phone", &["motion.steps=500"]));
     let edge = caught.number("tilt_deg").unwrap();
@@ -294,7 +305,7 @@ fn the_figures_of_the_free_bodies_are_those_of_their_runs() {
 fn the_figures_in_the_texts_are_those_of_the_runs() {
     let swing = |name: &str| {
         let readouts = readouts(name);
-        let number = |name: &str| readouts.number(name).unwrap();
+        let number = |measure: &str| readouts.number(measure).unwrap();
         number("measured_highest_z_m") - number("measured_lowest_z_m")
     };
     let slow = format!("z swings by {:.1e} m", swing("method-2-slow"));

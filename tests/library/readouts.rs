@@ -61,7 +61,11 @@ fn the_table_is_whole_and_its_names_say_their_units() {
             "1/s" => "_per_second",
             unit => &format!("_{unit}"),
         };
-        assert!(readout.name.ends_with(ending), "{}", readout.name);
+        assert!(
+            readout.name.ends_with(ending),
+            "{} does not end with {ending}: a unit of another ending has its arm in tests/library/readouts.rs",
+            readout.name
+        );
         assert!(readout.meaning.len() > 3, "{}", readout.name);
     }
     assert_eq!(nearest("tilt"), "did you mean tilt_deg?");
@@ -202,15 +206,22 @@ fn theory_names_its_axis() {
         for name in ABOUT_THE_AXIS {
             assert!(object[*name].is_null(), "{axis}: {name}: {object}");
         }
-        let text = summary(readouts.clone()).in_full(true).to_string();
-        assert!(text.contains(words), "{text}");
-        assert!(text.contains("in this run about +z"), "{text}");
-        assert!(!text.contains("to 0.0000 degrees\n"), "{text}");
+        let in_full = summary(readouts.clone()).in_full(true).to_string();
+        assert!(in_full.contains(words), "{in_full}");
+        assert!(in_full.contains("in this run about +z"), "{in_full}");
+        assert!(!in_full.contains("to 0.0000 degrees\n"), "{in_full}");
     }
     // Without gravity, but with L along +z, it is +z that the axle goes round.
-    let free = readouts(&preset("torque-free", &[]));
-    assert_eq!(free.theory.unwrap().axis, TheoryAxis::Z);
-    assert!((free.number("predicted_precession_rad_per_s").unwrap() - 60.0 / 6.6).abs() < 1e-9);
+    let torque_free = readouts(&preset("torque-free", &[]));
+    assert_eq!(torque_free.theory.unwrap().axis, TheoryAxis::Z);
+    assert!(
+        (torque_free
+            .number("predicted_precession_rad_per_s")
+            .unwrap()
+            - 60.0 / 6.6)
+            .abs()
+            < 1e-9
+    );
 }
 
 const FREE: &str = "motion.gravity_m_per_s2=0";
@@ -314,10 +325,10 @@ fn theory_of_a_top_that_is_pulled_up_is_about_z_as_what_is_measured() {
         .collect();
     let set = ["motion.gravity_m_per_s2=-9.8", "motion.scheme=exact"];
     let hanging = preset("loops", &set);
-    for (scenario, names) in [(preset("earth", &[]), &names[..1]), (hanging, &names)] {
+    for (scenario, some) in [(preset("earth", &[]), &names[..1]), (hanging, &names)] {
         let readouts = readouts(&scenario);
         assert_eq!(readouts.theory.unwrap().axis, TheoryAxis::Z);
-        for name in names {
+        for name in some {
             let [predicted, measured] = ["predicted", "measured"].map(|by| {
                 let number = readouts.number(&format!("{by}_{name}"));
                 number.unwrap_or_else(|| panic!("{by}_{name}"))
@@ -446,8 +457,8 @@ fn no_table_shows_what_is_no_number() {
         assert_eq!(blemish(&text), None, "{case}\n{text}");
         let mut csv = csv::Writer::from_writer(Vec::new());
         rows.iter().for_each(|row| csv.serialize(row).unwrap());
-        let text = String::from_utf8(csv.into_inner().unwrap()).unwrap();
-        let is_finite = !text.contains("NaN") && !text.contains("inf");
-        assert!(is_finite, "{case}\n{text}");
+        let written = String::from_utf8(csv.into_inner().unwrap()).unwrap();
+        let is_finite = !written.contains("NaN") && !written.contains("inf");
+        assert!(is_finite, "{case}\n{written}");
     }
 }

@@ -642,13 +642,13 @@ fn every_mistake_is_told_at_once() {
         ((27, ""), "push.0: does not say for how long"),
         ((15, "spin_rpm = 3"), "start.spin_rpm"),
     ] {
-        let told = mistakes(&[(24, "point = \"topp\""), other]);
-        has_all(&told, ["push.0.point", words]);
-        assert_eq!(told.lines().count(), 2, "{told}");
+        let both = mistakes(&[(24, "point = \"topp\""), other]);
+        has_all(&both, ["push.0.point", words]);
+        assert_eq!(both.lines().count(), 2, "{both}");
     }
     // Where the body is wrong, nobody knows its points.
-    let told = mistakes(&[(24, "point = \"topp\""), (6, "points = 0")]);
-    assert!(!told.contains("topp"), "{told}");
+    let of_body = mistakes(&[(24, "point = \"topp\""), (6, "points = 0")]);
+    assert!(!of_body.contains("topp"), "{of_body}");
 }
 
 /// Of many wrong names the first hundred are told, and the nearest is sought for no other.

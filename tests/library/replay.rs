@@ -8,6 +8,7 @@ use gyrolab::engine::run::Simulation;
 use gyrolab::engine::scenario::Scenario;
 use gyrolab::lab::playback::live::LiveRun;
 use gyrolab::lab::{Player, SeekPurpose};
+use gyrolab::physics::scheme;
 use proptest::prelude::*;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -72,7 +73,7 @@ proptest! {
     #[test]
     fn any_actions_are_replayed_from_their_run_file(
         preset in prop::sample::select(vec!["method-2", "wobble-push", "wobble-push-accumulating", "cusps", "falling"]),
-        scheme in prop::sample::select(vec!["report", "rk4", "strang", "srkn11b", "exact"]),
+        scheme in prop::sample::select(scheme::names().to_vec()),
         deeds in prop::collection::vec(0..DEEDS.len(), 1..40),
     ) {
         let folder = tempfile::tempdir().unwrap();
@@ -97,7 +98,7 @@ proptest! {
     #[test]
     fn back_and_forward_again_lead_through_the_same_numbers(
         preset in prop::sample::select(vec!["method-2", "wobble-push", "wobble-push-accumulating", "loops"]),
-        scheme in prop::sample::select(vec!["report", "rk4", "strang", "srkn11b", "exact"]),
+        scheme in prop::sample::select(scheme::names().to_vec()),
         way in prop::collection::vec(0u64..3000, 2..30),
         edits in prop::collection::vec((0u64..2000, 0usize..3), 0..4),
     ) {

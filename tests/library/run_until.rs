@@ -70,9 +70,9 @@ fn numbers_of_theory_of_the_exact_motion_and_of_measuring() {
             let expression =
                 gyrolab::engine::journal::expression::Expression::parse(condition).unwrap();
             let motion = now.lab.player().motion();
-            expression.value(|name| match name {
+            expression.value(|word| match word {
                 "motion.time_step_s" => Some(motion.time_step_s),
-                _ => readouts.number(name),
+                _ => readouts.number(word),
             }) == Some(1.0)
         };
         assert!(desk.step() > 0 && holds(&desk), "{condition}");

@@ -103,8 +103,8 @@ fn after_a_scheme_broke_down_the_last_whole_body_is_shown() {
         *stage.lab.player().run().simulation().state()
     );
     // In a narrow pane the title is shorter, and whole.
-    let mut stage = Stage::open("method-2", &set, SMALL);
-    stage.wait(2.0).shows(" from above, step 29 ");
+    let mut small = Stage::open("method-2", &set, SMALL);
+    small.wait(2.0).shows(" from above, step 29 ");
 }
 
 #[test]

@@ -51,9 +51,9 @@ fn the_numbers_printed_are_the_records() {
         let sample = stage.lab.player().run().simulation().sample();
         let shown = printed(&stage, "new L");
         assert_eq!(shown.len(), 3);
-        for (shown, exact) in shown.iter().zip(sample.momentum.iter()) {
-            let decimals = shown.split_once('.').map_or(0, |(_, digits)| digits.len());
-            assert_eq!(*shown, format!("{exact:.decimals$}"));
+        for (digits, exact) in shown.iter().zip(sample.momentum.iter()) {
+            let decimals = digits.split_once('.').map_or(0, |(_, behind)| behind.len());
+            assert_eq!(*digits, format!("{exact:.decimals$}"));
             assert!(decimals >= 3, "six digits of 707");
         }
         stage.commands("phase = 'new positions'\nsum_to = 12");
@@ -63,9 +63,9 @@ fn the_numbers_printed_are_the_records() {
             let cell = line.split("││").nth(1).unwrap();
             cell.split_whitespace()
         });
-        let shown: Vec<f64> = words.filter_map(|word| word.parse().ok()).collect();
-        for (shown, exact) in shown[3..6].iter().zip(sample.position.iter()) {
-            assert!((shown - exact).abs() < 1e-4, "{shown} for {exact}");
+        let positions: Vec<f64> = words.filter_map(|word| word.parse().ok()).collect();
+        for (printed, exact) in positions[3..6].iter().zip(sample.position.iter()) {
+            assert!((printed - exact).abs() < 1e-4, "{printed} for {exact}");
         }
     }
 }
@@ -80,11 +80,11 @@ fn all_rows_add_up_to_the_schemes_own_sums() {
     let s = numbers(&phases[0], "S");
     // xx, yy, zz, xy, xz, yz
     assert_eq!(sums[4..], [s[0], s[4], s[8], s[1], s[2], s[5]]);
-    let Some(WorkedValue::Table(points)) = phases[5].value("m X") else {
+    let Some(WorkedValue::Table(moments)) = phases[5].value("m X") else {
         panic!("a table")
     };
-    let sums = ColumnSums::from_table(points).first(points, 14);
-    assert_eq!(sums, numbers(&phases[5], "Σ m X"));
+    let moment_sums = ColumnSums::from_table(moments).first(moments, 14);
+    assert_eq!(moment_sums, numbers(&phases[5], "Σ m X"));
 }
 
 /// Step and number of the phase that the pane is at, with how many there are.
@@ -191,12 +191,12 @@ fn commands_and_files_say_it_too() {
         "set = { 'motion.scheme' = 'rk4' }\nstep = 1\nphase = 'slope 1: at the beginning'",
     );
     stage.shows("step 4: 1 of 6");
-    let set = ["view.fill='step'", "motion.scheme='rk4'"];
-    let mut stage = Stage::open("method-2", &set, SMALL);
-    stage.commands("pause = true\nstep = 2");
-    stage.shows("step 2: 1 of 6");
+    let rk4 = ["view.fill='step'", "motion.scheme='rk4'"];
+    let mut filled = Stage::open("method-2", &rk4, SMALL);
+    filled.commands("pause = true\nstep = 2");
+    filled.shows("step 2: 1 of 6");
     let command = crate::support::desk::commands("phase = 'torque'");
-    let refused = stage.lab.carry_out(&command[0]).unwrap_err().to_string();
+    let refused = filled.lab.carry_out(&command[0]).unwrap_err().to_string();
     has(&refused, "rk4 has no phase torque: it has slope 1");
 }
 
@@ -418,12 +418,12 @@ fn pictures_of_the_step() {
             stage.commands(commands);
             insta::assert_snapshot!(format!("{page}_{name}"), stage.picture());
         }
-        let mut stage = Stage::open("cusps", &["motion.scheme='srkn11b'"], size);
-        stage.commands("pause = true\nstep = 900\nshow = ['3d', 'step']\nphase = 'why'");
-        insta::assert_snapshot!(format!("why_{name}"), stage.picture());
+        let mut cusps = Stage::open("cusps", &["motion.scheme='srkn11b'"], size);
+        cusps.commands("pause = true\nstep = 900\nshow = ['3d', 'step']\nphase = 'why'");
+        insta::assert_snapshot!(format!("why_{name}"), cusps.picture());
         if size == SMALL {
-            stage.commands("phase = 2");
-            insta::assert_snapshot!("splitting_small", stage.picture());
+            cusps.commands("phase = 2");
+            insta::assert_snapshot!("splitting_small", cusps.picture());
         }
     }
 }

@@ -40,7 +40,11 @@ fn the_table_of_sweeps_is_the_folder() {
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
         .collect();
     let names = SWEEPS.iter().map(|sweep| format!("{}.toml", sweep.name));
-    assert_eq!(files, names.collect());
+    assert_eq!(
+        files,
+        names.collect(),
+        "the folder and SWEEPS in src/studies/sweep/mod.rs differ"
+    );
     for sweep in SWEEPS {
         let about = shipped(sweep.name).about().unwrap_or_default().to_owned();
         assert!(
@@ -142,8 +146,8 @@ fn a_line_counts_as_a_row_only_if_every_field_is_a_value_of_its_readout() {
         (5, &["cusp", "cusps ", "\"cusps\"", "1"]),
         (6, &["repor", "x", "report,x", "\"report"]),
     ];
-    for (place, cells) in wrong {
-        for cell in cells {
+    for (place, bad) in wrong {
+        for cell in bad {
             assert!(!is_row(&with(place, cell)), "{cell:?} at {place}");
         }
     }

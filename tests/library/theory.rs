@@ -160,8 +160,8 @@ fn steady_roots_are_those_of_the_present_tilt() {
     let roots = (slow.slow_precession, slow.fast_precession);
     assert_eq!(roots, (None, None), "too slow to precess steadily");
     let level = theory(&preset("cusps", &["start.tilt_deg=90"]), 0.0).unwrap();
-    let slow = level.slow_precession.unwrap();
-    close("level: slow", slow, 49.0 / 60.0, 1e-12);
+    let level_slow = level.slow_precession.unwrap();
+    close("level: slow", level_slow, 49.0 / 60.0, 1e-12);
     assert_eq!(level.fast_precession, None);
 }
 
@@ -202,8 +202,8 @@ fn words_for_paths_are_what_the_azimuth_does() {
 fn the_axle_stands_still_at_the_cusp_tilt() {
     let mut truth = Truth::new(preset("loops", &[]));
     let theory = theory(&preset("loops", &[]), 0.0).unwrap();
-    let look = |truth: &mut Truth, time: f64| {
-        let axle = truth.state_at(time).axle();
+    let look = |motion: &mut Truth, time: f64| {
+        let axle = motion.state_at(time).axle();
         (axle.y.atan2(axle.x), axle.z.acos().to_degrees())
     };
     let mut turned = 0;
@@ -310,29 +310,29 @@ fn where_the_theory_does_not_hold_it_says_nothing_or_lopsided() {
     assert!(theory(&off_axle, 0.5).is_some() && theory(&off_axle, 2.5).is_some());
     // While the push is off the axle.
     assert_eq!(theory(&off_axle, 1.5), None);
-    let text = summary(&off_axle).to_string();
-    has(&text, "precession    none by theory, ");
-    has_no(&text, "lopsided");
+    let pushed = summary(&off_axle).to_string();
+    has(&pushed, "precession    none by theory, ");
+    has_no(&pushed, "lopsided");
 
     // A nutation that is there and cannot be stated is not said to be none.
-    let lopsided = |text: &str, steps: u64| {
-        let mut document = Document::parse("lopsided.toml", text).unwrap();
+    let told = |file: &str, steps: u64| {
+        let mut document = Document::parse("lopsided.toml", file).unwrap();
         document.set(&format!("motion.steps={steps}")).unwrap();
         summary(&Arc::new(document.scenario().unwrap())).to_string()
     };
-    let beats = lopsided(include_str!("../reference/lopsided/beats.toml"), 1000);
+    let beats = told(include_str!("../reference/lopsided/beats.toml"), 1000);
     has(&beats, "not stated in this run: too few were seen");
-    let uneven = lopsided(include_str!("../reference/lopsided/uneven.toml"), 3999);
+    let uneven = told(include_str!("../reference/lopsided/uneven.toml"), 3999);
     has(&uneven, "not stated in this run: its swings are too uneven");
 
-    let text = summary(&preset("torque-free", &[])).to_string();
-    has(&text, "nutation      none by theory, none in this run");
-    let text = summary(&preset("cusps", &[])).to_string();
+    let free = summary(&preset("torque-free", &[])).to_string();
+    has(&free, "nutation      none by theory, none in this run");
+    let cusps = summary(&preset("cusps", &[])).to_string();
     has(
-        &text,
+        &cusps,
         "precession    0.886033 rad/s by theory, 0.886033 +- ",
     );
-    has(&text, "nutation      0.822521 s by theory, 0.822521 +- ");
+    has(&cusps, "nutation      0.822521 s by theory, 0.822521 +- ");
 }
 
 /// Difference from theory, and what is allowed for it.

@@ -37,8 +37,8 @@ fn flight() -> &'static MeasuredData {
         let values = at_times(series, &Arc::new(scenario), &|| true)
             .unwrap()
             .unwrap();
-        for (curve, values) in series.curves.iter_mut().zip(values) {
-            let points = curve.points.iter_mut().zip(values);
+        for (curve, row) in series.curves.iter_mut().zip(values) {
+            let points = curve.points.iter_mut().zip(row);
             points.for_each(|(point, value)| *point = MeasuredPoint { value, ..*point });
         }
         measured

@@ -103,7 +103,7 @@ impl Told {
         for edit in &self.edits {
             let set = match edit.change {
                 Change::Gravity(g) => format!("'motion.gravity_m_per_s2' = {g:?}"),
-                Change::TimeStep(dt) => format!("'motion.time_step_s' = {dt:?}"),
+                Change::TimeStep(step_s) => format!("'motion.time_step_s' = {step_s:?}"),
                 Change::Scheme(name) => format!("'motion.scheme' = '{name}'"),
                 Change::Force(push, force) => format!("'push.{push}.force_N' = {}", array(&force)),
             };
@@ -272,15 +272,15 @@ fn integrated(told: &Told) -> (Vec<Known>, f64) {
         // Turned a little, and L with it or not.
         for push in [1.0, 0.0] {
             let near = follow(told, first, neighbour(begin, push));
-            for (near, known) in near.iter().zip(&path[first..]) {
-                let gap = (0..9).map(|k| (near[k] - known[k]).abs());
+            for (one, known) in near.iter().zip(&path[first..]) {
+                let gap = (0..9).map(|k| (one[k] - known[k]).abs());
                 growth = growth.max(gap.fold(0.0, f64::max) / NEAR);
             }
         }
     }
     let states = path.iter().map(|y| {
-        let q = Matrix3::from_column_slice(&y[..9]);
-        (q, Vector3::new(y[9], y[10], y[11]))
+        let turned = Matrix3::from_column_slice(&y[..9]);
+        (turned, Vector3::new(y[9], y[10], y[11]))
     });
     (states.collect(), growth)
 }
@@ -438,9 +438,9 @@ fn random(dice: &mut Dice) -> Told {
         x if x < 0.4 => told.start().0.column(2) * spin,
         _ => dice.vector() * spin,
     };
-    let (points, steps) = (told.points.len(), told.steps());
+    let (count, steps) = (told.points.len(), told.steps());
     told.pushes = (0..dice.whole(1, 3))
-        .map(|_| random_push(dice, points, weight, steps))
+        .map(|_| random_push(dice, count, weight, steps))
         .collect();
     told.edits = random_edits(dice, &told);
     told

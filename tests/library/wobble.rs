@@ -84,7 +84,7 @@ fn what_is_predicted_comes_out_and_what_cannot_be_is_null() {
 fn it_speaks_of_the_reports_scheme_and_of_a_nutation_that_lasts() {
     let null = |name: &str, set: &[&str]| {
         let readouts = played(&preset(name, set));
-        let of = |name| readouts.number(name);
+        let of = |readout| readouts.number(readout);
         (
             of("predicted_lag_deg").is_none(),
             of("predicted_tilt_swing_deg").is_none(),

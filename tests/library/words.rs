@@ -29,9 +29,9 @@ fn what_was_changed_is_told_of_a_preset_as_of_a_file() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.press("p.");
     stage.shows("differs from the preset method-2: one more push");
-    let mut stage = Stage::open("cusps", &[], SMALL);
-    stage.commands("set = { 'friction.swing_viscous_Nms' = 0.1 }");
-    stage.shows("differs from the preset cusps: friction.swing_viscous_Nms 0.1");
+    let mut cusps = Stage::open("cusps", &[], SMALL);
+    cusps.commands("set = { 'friction.swing_viscous_Nms' = 0.1 }");
+    cusps.shows("differs from the preset cusps: friction.swing_viscous_Nms 0.1");
 }
 
 /// The words of a preset hold for its own motion, and not for that of a run which was made from it.
@@ -55,11 +55,11 @@ fn words_about_another_motion_are_marked_in_what_is_saved() {
     has(&changed, "; changed since");
     has_no(&changed, "5.6 degrees");
     let path = folder.path().join("changed.toml");
-    let mut stage = Stage::open(path.to_str().unwrap(), &[], SMALL);
-    stage.shows("start.momentum_Js [0, 0, 1000], not [0, 0,");
+    let mut reopened = Stage::open(path.to_str().unwrap(), &[], SMALL);
+    reopened.shows("start.momentum_Js [0, 0, 1000], not [0, 0,");
     // Changed and saved again, it is marked once.
-    stage.lab.files_mut().work_in(folder.path());
-    stage.commands(
+    reopened.lab.files_mut().work_in(folder.path());
+    reopened.commands(
         "set = { 'motion.gravity_m_per_s2' = 5 }\nsave = { path = 'again.toml', to_step = 9 }",
     );
     let again = read("again.toml");
@@ -106,11 +106,11 @@ fn what_to_try_next_is_not_on_the_screen_already() {
     stage.commands("pause = true\ngo_to = 2290\nrun = true");
     stage.wait(2.0);
     stage.shows("Next: t draws the exact motion");
-    let mut stage = Stage::open("method-2", &[], LARGE);
-    stage.commands("pause = true\nexact = true\ngo_to = 2290\nrun = true");
-    stage.wait(2.0);
-    stage.shows("Next: the exact motion is drawn in dashes");
-    stage.shows_no("t draws");
+    let mut drawn = Stage::open("method-2", &[], LARGE);
+    drawn.commands("pause = true\nexact = true\ngo_to = 2290\nrun = true");
+    drawn.wait(2.0);
+    drawn.shows("Next: the exact motion is drawn in dashes");
+    drawn.shows_no("t draws");
 }
 
 #[test]
@@ -204,8 +204,8 @@ fn the_browser_goes_into_folders_and_comes_back() {
     let may_be_read = |path: &Path| path.starts_with(root.path());
     let mut browser = Browser::default();
     browser.begin(root.path(), "", may_be_read);
-    let shown = |browser: &Browser| -> Vec<String> {
-        let all = browser.shown().into_iter();
+    let shown = |list: &Browser| -> Vec<String> {
+        let all = list.shown().into_iter();
         let listed = all.filter(|entry| entry.is_file || entry.is_folder);
         listed
             .map(|entry| entry.name.replace(root.path().to_str().unwrap(), ""))
@@ -214,9 +214,9 @@ fn the_browser_goes_into_folders_and_comes_back() {
     // No way out of it.
     assert_eq!(shown(&browser), ["/runs/", "/first.toml"]);
     assert!(!browser.enter(may_be_read), "a preset is no folder");
-    let enter = |browser: &mut gyrolab::lab::browser::Browser, name: &str| {
-        browser.filter_by(|line| line.push_str(name));
-        browser.enter(may_be_read)
+    let enter = |list: &mut gyrolab::lab::browser::Browser, name: &str| {
+        list.filter_by(|line| line.push_str(name));
+        list.enter(may_be_read)
     };
     assert!(enter(&mut browser, "runs/"));
     assert_eq!(shown(&browser), ["../", "/runs/june/"]);

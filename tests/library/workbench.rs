@@ -46,9 +46,9 @@ fn a_strip_that_stands_still_at_high_speed_says_so() {
         let mut stage = Stage::open("wobble-push", &["view.speed=1"], size);
         stage.wait(4.0).shows_no("held");
         let fast = ["view.speed=1000", "motion.steps=1000000"];
-        let mut stage = Stage::open("wobble-push", &fast, size);
-        stage.wait(4.0).shows("held");
-        stage.commands("pause = true").shows_no("held");
+        let mut quick = Stage::open("wobble-push", &fast, size);
+        quick.wait(4.0).shows("held");
+        quick.commands("pause = true").shows_no("held");
     }
 }
 
@@ -91,12 +91,12 @@ fn a_legend_names_every_mark_of_the_exact_motion() {
     stage.shows("L angular momentum").shows("dL = τ dt");
     stage.shows("F push").shows("+ pivot").shows("* axle top");
     stage.shows("dots: exact");
-    let mut stage = Stage::open("wobble-push", &[], LARGE);
-    stage.commands("pause = true\ngo_to = '10 s'");
-    stage.wait(0.3);
-    stage.shows("L angular momentum").shows("dL = τ dt");
-    stage.shows("Ω angular velocity").shows("g weight");
-    stage.shows("τ torque").shows("F push");
+    let mut large = Stage::open("wobble-push", &[], LARGE);
+    large.commands("pause = true\ngo_to = '10 s'");
+    large.wait(0.3);
+    large.shows("L angular momentum").shows("dL = τ dt");
+    large.shows("Ω angular velocity").shows("g weight");
+    large.shows("τ torque").shows("F push");
 }
 
 #[test]
@@ -243,8 +243,8 @@ fn the_strips_have_room_for_the_exact_motion_too() {
     let set = ["motion.scheme=\"report\"", "motion.time_step_s=0.02"];
     let mut stage = Stage::open("cusps", &set, SMALL);
     stage.wait(3.0).commands("pause = true");
-    let highest = |stage: &Stage| {
-        let picture = stage.picture();
+    let highest = |screen: &Stage| {
+        let picture = screen.picture();
         let label = picture.lines().find(|line| line.contains("│tilt "));
         let words = label.unwrap().split(' ');
         let numbers: Vec<f64> = words.filter_map(|word| word.parse().ok()).collect();

@@ -92,8 +92,8 @@ fn a_recording_has_its_size_its_chapters_and_the_picture() {
     let [rows, columns] = [25, 90].map(|n| NonZero::new(n).unwrap());
     let mut screen = vt100::Parser::new(rows, columns, 0);
     let mut seen = vec![];
-    for (_, kind, data) in &events {
-        if kind == "o" {
+    for (_, event, data) in &events {
+        if event == "o" {
             screen.process(data.as_bytes());
             seen.push(screen.screen().contents());
         }

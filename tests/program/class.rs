@@ -61,14 +61,14 @@ fn a_class_follows_votes_and_loses_nothing() {
     ben.wait_for("class on 2");
     ben.ask("k", "following · 2 of 10");
     // Back by the seat's word, with page and prediction.
-    let mut anna = ground.open("--folder . --seat");
-    anna.ask(&format!("{word}\r"), "following · 2 of 10");
-    anna.wait_for("[x] 2 is about fifty times smaller");
+    let mut back = ground.open("--folder . --seat");
+    back.ask(&format!("{word}\r"), "following · 2 of 10");
+    back.wait_for("[x] 2 is about fifty times smaller");
     // The seat is opened elsewhere: the lab before ends by itself.
     let mut again = ground.open("--folder . --seat");
     again.ask(&format!("{word}\r"), "following · 2 of 10");
-    anna.wait_for_end();
-    assert!(anna.sent_text().contains("opened in another lab"));
+    back.wait_for_end();
+    assert!(back.sent_text().contains("opened in another lab"));
     // A second round, and a teacher's lab that is killed.
     teacher.ask("k", "1 show 2 again");
     teacher.press("2");
@@ -76,15 +76,15 @@ fn a_class_follows_votes_and_loses_nothing() {
     teacher.wait_for("round 2 · 1 of 2");
     teacher.kill();
     ben.wait_for("the teacher's lab is gone: n and N turn pages");
-    let mut teacher = teach(&ground, "--resume");
-    teacher.wait_for("2 of 10");
-    teacher.wait_for("round 2 · 1 of 2");
+    let mut resumed = teach(&ground, "--resume");
+    resumed.wait_for("2 of 10");
+    resumed.wait_for("round 2 · 1 of 2");
     ben.wait_for("following · 2 of 10");
-    teacher.press("n");
+    resumed.press("n");
     again.wait_for("following · 3 of 10");
     let board = ground.stdout("class --board --folder .");
     has_all(&board, &["2 here", &word, "3 of 10"]);
-    teacher.quit();
+    resumed.quit();
     ben.wait_for("the class is over");
     ground.stdout("class --answers --folder . -o answers");
     let answers = ground.read(&format!("answers/{word}.md"));
@@ -116,8 +116,8 @@ fn a_seat_reaches_nothing_of_another() {
     teacher.press("\r");
     anna.wait_for_end();
     assert!(anna.sent_text().contains("closed this seat"));
-    let mut anna = ground.open("--folder . --seat");
-    anna.ask(&format!("{word}\r"), "this seat is closed");
+    let mut again = ground.open("--folder . --seat");
+    again.ask(&format!("{word}\r"), "this seat is closed");
 }
 
 #[test]

@@ -8,7 +8,7 @@ use std::fs;
 use std::io::Write;
 use std::os::unix::fs::{PermissionsExt, symlink};
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 
 /// The first columns of every CSV, which programs elsewhere rely on.
 const COLUMNS: &str = "step,t_s,x_m,y_m,z_m,Lx_Js,Ly_Js,Lz_Js,wx_rad_per_s,wy_rad_per_s,wz_rad_per_s,tilt_deg,azimuth_deg,energy_J,segment";
@@ -60,13 +60,10 @@ fn exit_codes() {
         ("check no-such-file.toml", 1),
         ("run", 2),
         ("run method-1 --nonsense", 2),
-        ("run method-1 --steps 0", 2),
         ("run method-1 --steps -1", 2),
-        ("run method-1 --steps 1e3", 2),
         ("run method-1 --every 0", 2),
         ("run method-1 --duration 0", 2),
         ("run method-1 --duration nan", 2),
-        ("run method-1 --duration inf", 2),
         ("run method-1 --steps 3 --duration 1", 2),
         ("run method-1 --scheme nonsense", 2),
         ("run method-1 -o ''", 2),
@@ -122,13 +119,13 @@ fn with_a_file_the_summary_goes_to_stderr_and_the_json_to_stdout() {
     let output = done(lab.run(&format!("{RUN} -o a.csv")));
     assert!(output.stdout.is_empty());
     has_all(stderr(&output), ["Method 1", "wall time"]);
-    let output = done(lab.run(&format!("{RUN} -o b.csv --json")));
-    let json: serde_json::Value = serde_json::from_str(stdout(&output)).unwrap();
+    let with_json = done(lab.run(&format!("{RUN} -o b.csv --json")));
+    let json: serde_json::Value = serde_json::from_str(stdout(&with_json)).unwrap();
     assert_eq!(json["steps"], 3);
-    has(stderr(&output), "Method 1");
-    let output = done(lab.run(&format!("{RUN} -o -")));
-    assert_eq!(stdout(&output), lab.read("a.csv"));
-    has(stderr(&output), "Method 1");
+    has(stderr(&with_json), "Method 1");
+    let to_stdout = done(lab.run(&format!("{RUN} -o -")));
+    assert_eq!(stdout(&to_stdout), lab.read("a.csv"));
+    has(stderr(&to_stdout), "Method 1");
     assert_eq!(lab.read("a.csv"), lab.read("b.csv"));
 }
 
@@ -236,11 +233,11 @@ fn every_nth_row_and_always_the_last() {
         assert_eq!(steps(&run(count, every)), expected, "{count} {every}");
     }
     // Longer than a block of steps between two looks at the signals.
-    let (all, some) = (run(10000, 1), run(10000, 999));
-    let mut expected = parts(&all).2;
+    let (every_row, few_rows) = (run(10000, 1), run(10000, 999));
+    let mut expected = parts(&every_row).2;
     expected.retain(|row| row[0] % 999.0 == 0.0 || row[0] == 10000.0);
     // --every changes which rows there are, and nothing in them.
-    assert_eq!(parts(&some).2, expected);
+    assert_eq!(parts(&few_rows).2, expected);
 }
 
 #[test]
@@ -694,19 +691,11 @@ fn check_looks_at_every_file() {
 }
 
 #[test]
-fn completions_and_the_manual_know_the_commands() {
+fn each_shell_has_its_completions() {
     let lab = Ground::new();
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
         has(lab.stdout(&format!("completions {shell}")), "gyrolab");
     }
-    lab.write("completion.bash", &lab.stdout("completions bash"));
-    if Command::new("bash").arg("--version").output().is_ok() {
-        done(lab.shell("bash -n completion.bash"));
-    }
-    let manual = lab.stdout("man");
-    has_all(&manual, ["GYROLAB RUN", "--duration", "--force"]);
-    done(lab.run("man --all -o man1"));
-    has(lab.read("man1/gyrolab.1"), ".TH gyrolab");
 }
 
 #[test]
@@ -745,28 +734,13 @@ fn talk_that_cannot_be_written_ends_nothing() {
 }
 
 #[test]
-fn the_measured_extremes_are_those_of_the_csv_and_theory_has_its_own_names() {
+fn the_summary_shows_the_extremes_and_every_key_of_the_json_is_listed() {
     let lab = Ground::new();
-    let output = done(lab.run("run wobble-push -o a.csv --json"));
-    let json: serde_json::Value = serde_json::from_str(stdout(&output)).unwrap();
-    let csv = lab.read("a.csv");
-    let (_, columns, rows) = parts(&csv);
-    for name in ["tilt_deg", "z_m"] {
-        let index = columns.split(',').position(|column| column == name);
-        let column = || rows.iter().map(|row| row[index.unwrap()]);
-        let least = column().fold(f64::INFINITY, f64::min);
-        let most = column().fold(f64::NEG_INFINITY, f64::max);
-        assert_eq!(json[format!("measured_lowest_{name}")], least, "{name}");
-        assert_eq!(json[format!("measured_highest_{name}")], most, "{name}");
-    }
-    assert!(json["measured_highest_tilt_deg"].as_f64() > Some(56.0));
+    let json = lab.json("run wobble-push --json");
     // Theory is of the time after the push, and says nothing of the tilts of the whole run.
     assert!(json["predicted_highest_tilt_deg"].is_null());
-    let unpushed = lab.json("run method-2 --json");
-    assert!(unpushed["predicted_highest_tilt_deg"].as_f64() < Some(45.1));
-    assert!(json.get("lowest_tilt_deg").is_none() && json.get("highest_tilt_deg").is_none());
     has_all(
-        stderr(&output),
+        lab.stdout("run wobble-push"),
         [
             "degrees; 36.099381 to 56.945407 in the run",
             "z             0.617092542 to 0.914143407 m in the run",

@@ -45,12 +45,12 @@ fn what_is_refused_is_told_and_the_picture_up_to_there_shown() {
     has(stdout(&output), "step 5 ");
     has_no(stdout(&output), "nothing to do again"); // it is said once
     ground.write("demo.toml", "[[do]]\nstp = 5\n");
-    let output = ground.run("show --do demo.toml");
-    let words = "demo.toml:2: do.0.stp: unknown command: did you mean step?";
-    failed(&output, &[words]);
-    assert_eq!(stdout(&output), "");
-    let words = "none.toml: there is no such file";
-    ground.refused("show --do none.toml", 1, &[words]);
+    let misspelled = ground.run("show --do demo.toml");
+    let advice = "demo.toml:2: do.0.stp: unknown command: did you mean step?";
+    failed(&misspelled, &[advice]);
+    assert_eq!(stdout(&misspelled), "");
+    let missing = "none.toml: there is no such file";
+    ground.refused("show --do none.toml", 1, &[missing]);
     ground.refused("show", 2, &[]);
 }
 
@@ -77,8 +77,8 @@ fn a_signal_ends_show_with_130_and_leaves_nothing() {
     assert_eq!(ground.shell(script).status.code(), Some(130));
     let far = "far.toml:1: go_to: is more than 10,000,000 steps away: a longer time step";
     ground.refused("show --do far.toml", 1, &[far]);
-    let script = "timeout --preserve-status -s TERM 2 $G show --do never.toml";
-    assert_eq!(ground.shell(script).status.code(), Some(130));
+    let ended = "timeout --preserve-status -s TERM 2 $G show --do never.toml";
+    assert_eq!(ground.shell(ended).status.code(), Some(130));
     assert_eq!(ground.files(), ["far.toml", "never.toml"]);
 }
 
@@ -91,12 +91,4 @@ fn check_takes_files_of_commands() {
     assert_eq!(good, "demo.toml: good: 5 commands\n");
     let words = "bad.toml:2: do.0.open (\"method-3\") is no preset: did you mean";
     ground.refused("check bad.toml", 1, &[words]);
-}
-
-#[test]
-fn the_manual_lists_every_command() {
-    let manual = Ground::new().stdout("man");
-    for row in gyrolab::lab::command::COMMANDS.iter() {
-        has(&manual, format!("{} = ", row.name));
-    }
 }

@@ -104,8 +104,8 @@ fn no_argument_steers_the_terminal() {
     }
     let checked = ground.run("check title.toml about.toml view.toml");
     let told = String::from_utf8_lossy(&checked.stderr);
-    for key in ["title", "about", "view.look_at"] {
-        assert!(told.contains(&format!(" {key} (\"x\\u")), "{told}");
+    for named in ["title", "about", "view.look_at"] {
+        assert!(told.contains(&format!(" {named} (\"x\\u")), "{told}");
     }
     assert!(told.contains("(here U+001B)"), "{told}");
 }

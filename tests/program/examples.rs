@@ -1,6 +1,6 @@
 //! The examples of the helps and of the manual, carried out as they are printed.
 
-use crate::support::ground::{GYROLAB, Ground, done, stderr, stdout};
+use crate::support::ground::{GYROLAB, Ground, stderr};
 use std::os::unix::fs::symlink;
 
 /// What is not carried out, and why: words that the line holds.
@@ -96,22 +96,10 @@ fn carry_out(of: &str, commands: &[String]) -> usize {
 #[test]
 fn the_examples_of_every_help_work_as_they_are_printed() {
     let ground = Ground::new();
-    let help = done(ground.run("--help"));
-    let commands = stdout(&help)
-        .split("Commands:\n")
-        .nth(1)
-        .unwrap()
-        .split("\n\n")
-        .next()
-        .unwrap()
-        .lines()
-        .filter_map(|line| line.strip_prefix("  "))
-        .filter(|line| !line.starts_with(' '))
-        .filter_map(|line| line.split(' ').next());
-    let mut count = carry_out("gyrolab", &examples(stdout(&help)));
-    for command in commands.filter(|name| *name != "help") {
-        let help = done(ground.run(&format!("{command} --help")));
-        count += carry_out(command, &examples(stdout(&help)));
+    let mut count = carry_out("gyrolab", &examples(&ground.stdout("--help")));
+    for command in ground.subcommands() {
+        let help = ground.stdout(&format!("{command} --help"));
+        count += carry_out(&command, &examples(&help));
     }
     assert!(count > 45, "{count}");
 }
@@ -121,8 +109,8 @@ fn the_commands_of_the_topics_work_as_they_are_printed() {
     let ground = Ground::new();
     let mut count = 0;
     for topic in ["fit", "schemes", "sweep"] {
-        let text = done(ground.run(&format!("man {topic}")));
-        count += carry_out(topic, &commands_of_topic(stdout(&text)));
+        let text = ground.stdout(&format!("man {topic}"));
+        count += carry_out(topic, &commands_of_topic(&text));
     }
     assert!(count >= 4, "{count}");
 }

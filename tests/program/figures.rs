@@ -34,21 +34,6 @@ fn a_figure_is_written_in_each_form() {
 }
 
 #[test]
-fn the_same_command_gives_the_same_bytes() {
-    let ground = Ground::new();
-    let twice = ["one.svg", "two.svg"].map(|file| {
-        draws(
-            &ground,
-            &[
-                "cusps", "--steps", "500", "--kind", "3d", "--exact", "-o", file,
-            ],
-        );
-        ground.read(file)
-    });
-    assert!(twice[0] == twice[1]);
-}
-
-#[test]
 fn an_existing_file_stays_unless_it_may_be_replaced() {
     let ground = Ground::new();
     ground.write("a.svg", "mine");

@@ -68,7 +68,7 @@ fn the_csv_is_drawn_and_runs_again() {
     let csv = ground.read("fit.csv");
     let same = "fit.csv: the same: all 10 rows, computed again\n";
     assert_eq!(ground.stdout("verify fit.csv"), same);
-    for (old, new, words) in [
+    for (old, new, reason) in [
         (
             "residual_sigmas\n1,",
             "residual_sigmas\n2,",
@@ -79,10 +79,10 @@ fn the_csv_is_drawn_and_runs_again() {
         ground.write("other.csv", &csv.replacen(old, new, 1));
         let verified = ground.run("verify other.csv");
         assert_eq!(code(&verified), 1);
-        has(stdout(&verified), words);
+        has(stdout(&verified), reason);
     }
     // Where its data stand in another place, that is said.
-    for (old, new, words) in [
+    for (old, new, reason) in [
         (
             "fit heidelberg-nutation ",
             "fit lost.csv ",
@@ -91,7 +91,7 @@ fn the_csv_is_drawn_and_runs_again() {
         ("gyrolab fit ", "gyrolab run ", "no command line of a fit"),
     ] {
         ground.write("other.csv", &csv.replacen(old, new, 1));
-        ground.refused("verify other.csv", 1, &[words]);
+        ground.refused("verify other.csv", 1, &[reason]);
     }
     let mut lines = csv.lines();
     let command: toml::Value = lines

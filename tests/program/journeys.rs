@@ -313,9 +313,9 @@ fn a_line_that_is_lost_in_an_export_leaves_no_part_and_is_told_of() {
         begin_export(&mut lab);
         ended(&mut lab, end);
         assert_eq!(ground.files(), ["state"], "{end}");
-        let lab = ground.open("--resume");
-        lab.wait_for("run.csv was cut off, x begins another");
-        lab.wait_for_step(LONG);
+        let resumed_lab = ground.open("--resume");
+        resumed_lab.wait_for("run.csv was cut off, x begins another");
+        resumed_lab.wait_for_step(LONG);
     });
 }
 
@@ -379,31 +379,31 @@ fn all_of_it_at_every_size_and_back_with_resume() {
     let step = lab.step().unwrap();
     lab.quit();
 
-    let mut lab = resumed(&ground);
-    assert_eq!(lab.step(), Some(step));
-    assert_eq!(saved(&mut lab, "after.toml"), before);
-    lab.ask("u", "undone: motion.time_step_s = 0.05, at step 60");
-    lab.wait_for_value("dt", "0.1");
-    lab.ask("u", "undone: the push on top, at step 40");
-    lab.wait_for_step(40);
-    lab.ask("u", "nothing to undo");
-    lab.press("U");
-    lab.press("U");
-    lab.wait_for_value("dt", "0.05");
-    lab.press("q");
-    lab.wait_for_end();
+    let mut second = resumed(&ground);
+    assert_eq!(second.step(), Some(step));
+    assert_eq!(saved(&mut second, "after.toml"), before);
+    second.ask("u", "undone: motion.time_step_s = 0.05, at step 60");
+    second.wait_for_value("dt", "0.1");
+    second.ask("u", "undone: the push on top, at step 40");
+    second.wait_for_step(40);
+    second.ask("u", "nothing to undo");
+    second.press("U");
+    second.press("U");
+    second.wait_for_value("dt", "0.05");
+    second.press("q");
+    second.wait_for_end();
 
     // What was taken back stays so, and the other run is still there.
-    let mut lab = resumed(&ground);
-    lab.press("u");
-    lab.wait_for_value("dt", "0.1");
-    lab.quit();
-    let mut lab = resumed(&ground);
-    lab.press("U");
-    lab.wait_for_value("dt", "0.05");
-    go_to(&mut lab, step);
-    assert_eq!(saved(&mut lab, "again.toml"), before);
-    lab.quit();
+    let mut third = resumed(&ground);
+    third.press("u");
+    third.wait_for_value("dt", "0.1");
+    third.quit();
+    let mut fourth = resumed(&ground);
+    fourth.press("U");
+    fourth.wait_for_value("dt", "0.05");
+    go_to(&mut fourth, step);
+    assert_eq!(saved(&mut fourth, "again.toml"), before);
+    fourth.quit();
 }
 
 #[test]
@@ -439,8 +439,8 @@ fn what_is_pressed_just_before_the_end_is_kept() {
         let mut lab = paused_at(&ground, 30);
         lab.press(&format!("p{end}"));
         drop(lab.wait_for_end());
-        let mut lab = resumed(&ground);
-        let run = saved(&mut lab, "run.toml");
+        let mut after = resumed(&ground);
+        let run = saved(&mut after, "run.toml");
         assert!(run.contains("[[push]]"), "{end:?}: {run}");
     });
 }
@@ -464,9 +464,9 @@ fn after_every_end_there_is_all_that_was_done() {
             let farewell = format!("{LEAVES_ALTERNATE_SCREEN}{SHOWS_CURSOR}");
             assert!(lab.sent_text().ends_with(&farewell), "{end}");
         }
-        let mut lab = resumed(&ground);
-        assert_eq!(lab.step(), Some(35), "{end}");
-        let run = saved(&mut lab, "run.toml");
+        let mut after = resumed(&ground);
+        assert_eq!(after.step(), Some(35), "{end}");
+        let run = saved(&mut after, "run.toml");
         assert!(run.contains("[[push]]"), "{end}: {run}");
     });
 }
@@ -491,9 +491,9 @@ fn after_a_panic_there_is_all_that_was_done() {
             .is_some_and(|farewell| farewell.contains("a panic was asked for"))
             && after.next().is_none()
     });
-    let mut lab = resumed(&ground);
-    assert_eq!(lab.step(), Some(35));
-    assert!(saved(&mut lab, "run.toml").contains("[[push]]"));
+    let mut after = resumed(&ground);
+    assert_eq!(after.step(), Some(35));
+    assert!(saved(&mut after, "run.toml").contains("[[push]]"));
 }
 
 #[test]
@@ -519,9 +519,9 @@ fn a_shell_stops_it_and_brings_it_back() {
     lab.has_given_the_terminal_back();
     lab.press("exit\r");
     lab.wait_for_end();
-    let mut lab = resumed(&ground);
-    assert_eq!(lab.step(), Some(35));
-    assert!(saved(&mut lab, "run.toml").contains("[[push]]"));
+    let mut after = resumed(&ground);
+    assert_eq!(after.step(), Some(35));
+    assert!(saved(&mut after, "run.toml").contains("[[push]]"));
 }
 
 #[test]
@@ -575,11 +575,11 @@ fn a_damaged_session_is_named_and_left_alone() {
     let path = ground.state().join("gyrolab").join(name);
     let text = fs::read_to_string(&path).unwrap();
     fs::write(&path, &text[..text.len() / 2]).unwrap();
-    let mut lab = ground.open("--resume");
-    lab.wait_for("is left alone (it has been cut off or changed)");
-    lab.wait_for("Method 2");
-    lab.press(" ");
-    lab.quit();
+    let mut after = ground.open("--resume");
+    after.wait_for("is left alone (it has been cut off or changed)");
+    after.wait_for("Method 2");
+    after.press(" ");
+    after.quit();
     assert_eq!(fs::read_to_string(&path).unwrap(), text[..text.len() / 2]);
     // The lab that was opened instead has a session of its own.
     resumed(&ground);
@@ -630,13 +630,13 @@ fn an_end_on_the_way_back_costs_nothing() {
     wait_until_kept(&lab, &ground);
     lab.quit();
     for _ in 0..2 {
-        let mut lab = ground.open("--resume");
-        lab.wait_for("to go, Esc stops");
-        lab.signal("HUP");
-        lab.wait_for_end();
+        let mut after = ground.open("--resume");
+        after.wait_for("to go, Esc stops");
+        after.signal("HUP");
+        after.wait_for_end();
     }
-    let lab = resumed(&ground);
-    assert_eq!(lab.step(), Some(12_000_000));
+    let last = resumed(&ground);
+    assert_eq!(last.step(), Some(12_000_000));
 }
 
 /// On the way to a step that the user asked for, it resumes at the step that it had reached.
@@ -649,8 +649,8 @@ fn an_end_on_the_way_further_costs_nothing_either() {
     lab.wait_until("a step further on", |lab| lab.step() > Some(1000));
     let step = lab.step();
     ended(&mut lab, "HUP");
-    let lab = resumed(&ground);
-    assert!(lab.step() >= step, "{:?} {step:?}", lab.step());
+    let after = resumed(&ground);
+    assert!(after.step() >= step, "{:?} {step:?}", after.step());
 }
 
 /// What a session must contain after a kill.
@@ -717,11 +717,10 @@ fn is_used_until_killed(lab: &mut Terminal, dice: &mut Dice, kill: usize) -> Kep
     let until = Instant::now() + Duration::from_millis(dice.whole(1000, 1900));
     while Instant::now() < until {
         let given = adds_something(lab, dice);
-        let pushes = seen.last().map_or(0, |seen| seen.pushes) + given;
         seen.push(Observed {
             at: Instant::now(),
             step: lab.step().unwrap(),
-            pushes,
+            pushes: seen.last().map_or(0, |seen| seen.pushes) + given,
         });
         thread::sleep(Duration::from_millis(dice.whole(0, 150)));
     }

@@ -125,8 +125,12 @@ fn a_handout_obeys_the_rules_for_files() {
     assert_eq!(ground.read("paper.md"), "mine");
     done(ground.run("lesson my.md --handout -o paper.md --force"));
     assert_eq!(ground.read("paper.md"), paper);
-    let words = "there is no folder nowhere";
-    ground.refused("lesson my.md --handout -o nowhere/paper.md", 1, &[words]);
+    let no_folder = "there is no folder nowhere";
+    ground.refused(
+        "lesson my.md --handout -o nowhere/paper.md",
+        1,
+        &[no_folder],
+    );
     // A lesson that cannot be played leaves nothing behind.
     ground.write(
         "wrong.md",

@@ -2,7 +2,7 @@
 
 use crate::support::ground::{Ground, done, failed, refused, stderr};
 use crate::support::pty::Terminal;
-use crate::support::words::{has, has_all, has_no};
+use crate::support::words::{has, has_no};
 
 const PUSHED: &str = "[[push]]\npoint = \"top\"\nforce_N = [0, 0, 1]\n";
 
@@ -27,6 +27,8 @@ fn wrong_arguments_are_told_in_words() {
         ("run cusps --steps 0", whole),
         ("cusps --fps 100", "must be a whole number from 1 to 60"),
         ("run cusps --folder x", "--folder is for the lab"),
+        ("show cusps --size 0x9", "80x24"),
+        ("show cusps --size 1000x501", "1000x500"),
         ("run cusps --dt 0.1", "--time-step 0.05 holds the seconds"),
         (
             "figure cusps -o x.svg --kind measured_tilt_swing_deg",
@@ -138,8 +140,8 @@ fn a_file_is_what_its_name_says() {
     let words = ["t.csv.part", "a sweep that is not whole yet"];
     ground.refused("figure t.csv.part -o x.svg", 1, &words);
     // Every number there is, of which a page holds a few.
-    let words = "do not fit on a page: choose some with --kind";
-    ground.refused("figure s.csv -o x.svg", 1, &[words]);
+    let too_many = "do not fit on a page: choose some with --kind";
+    ground.refused("figure s.csv -o x.svg", 1, &[too_many]);
     done(ground.run("figure s.csv -o x.svg --kind z_m,tilt_deg"));
 }
 
@@ -216,20 +218,6 @@ fn a_written_file_is_named_with_its_rows() {
 fn a_precession_that_there_is_not_is_told_why() {
     let words = "none in this run: the axle passes through the vertical";
     has(Ground::new().stdout("run method-1"), words);
-}
-
-#[test]
-fn the_manual_has_the_keys_of_the_lab_and_the_values_of_options() {
-    let ground = Ground::new();
-    let manual = ground.stdout("man");
-    let keys = manual.find("KEYS IN THE LAB").unwrap();
-    has_all(&manual[keys..], ["\n  space ", "\n  d ", "\n  f "]);
-    has_all(
-        &manual,
-        ["--at <STEP>", "--resume [<NAME>]", "-o, --output <FILE>"],
-    );
-    let words = "scenario or run file may hold; the keys to press are in gyrolab man";
-    has(ground.stdout("keys --help"), words);
 }
 
 const NO_COLOR: [(&str, &str); 3] = [("TERM", "xterm"), ("LANG", "C.UTF-8"), ("NO_COLOR", "1")];

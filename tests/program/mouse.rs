@@ -3,7 +3,7 @@
 use crate::support::pty::{MOUSE_OFF, MOUSE_ON, Terminal};
 
 /// The report of a press at the cell `x`, `y`, counted from 1.
-fn press(x: u16, y: u16) -> String {
+fn press((x, y): (u16, u16)) -> String {
     format!("\u{1b}[<0;{x};{y}M\u{1b}[<0;{x};{y}m")
 }
 
@@ -25,31 +25,31 @@ fn what_is_pressed_is_done() {
     lab.wait_for("L lessons");
     lab.wait_until("the mouse", |lab| lab.sent_text().contains(MOUSE_ON));
     // The traces: the cursor.
-    lab.ask(&press(6, 18), "┌ step ");
+    lab.ask(&press((6, 18)), "┌ step ");
     // A pane, by its frame.
-    let (x, y) = cell(&lab, "parameters");
-    lab.ask(&press(x, y), "parameters 1 of");
+    let pane = cell(&lab, "parameters");
+    lab.ask(&press(pane), "parameters 1 of");
     // The timeline: its first column is the start.
-    let (_, y) = cell(&lab, " 230 s");
-    lab.press(&press(2, y));
+    let (_, timeline) = cell(&lab, " 230 s");
+    lab.press(&press((2, timeline)));
     lab.wait_for_step(0);
     // The footer: a step, and the list of presets.
-    let (x, y) = cell(&lab, ". step");
-    lab.press(&press(x + 3, y));
+    let (dot, footer) = cell(&lab, ". step");
+    lab.press(&press((dot + 3, footer)));
     lab.wait_for_step(1);
-    let (x, y) = cell(&lab, "o ?");
-    lab.ask(&press(x, y), "/ filters by name");
-    let (x, y) = cell(&lab, "loops");
-    lab.ask(&press(x, y), "> loops");
-    lab.press(&press(x, y));
+    let open = cell(&lab, "o ?");
+    lab.ask(&press(open), "/ filters by name");
+    let loops = cell(&lab, "loops");
+    lab.ask(&press(loops), "> loops");
+    lab.press(&press(loops));
     lab.wait_until("Loops", |lab| {
         lab.screen().starts_with(" Loops") && !lab.words().contains("/ filters by name")
     });
     // The wheel over the traces shows less time.
     lab.press(" ");
     lab.ask("\u{1b}[<64;6;6M", "the traces show 5 s");
-    let (x, y) = cell(&lab, "L lessons");
-    lab.press(&press(x, y));
+    let end = cell(&lab, "L lessons");
+    lab.press(&press(end));
     assert_eq!(lab.wait_for_end().exit_code(), 0);
     lab.has_given_the_terminal_back();
 }

@@ -79,8 +79,8 @@ fn the_scenario_is_good_and_its_mistakes_are_told_as_shown() {
 /// What the command in the first line of the only block with `command` prints, and what the block shows of it.
 fn printed_and_shown(command: &str) -> [String; 2] {
     let block = block("text", command);
-    let (command, shown) = block.split_once('\n').unwrap();
-    let args: Vec<_> = command.split_whitespace().skip(2).collect();
+    let (line, shown) = block.split_once('\n').unwrap();
+    let args: Vec<_> = line.split_whitespace().skip(2).collect();
     let output = Ground::new().run(&args);
     assert!(output.status.success(), "{}", said(&output.stderr));
     [said(&output.stdout), shown.to_owned()]

@@ -58,17 +58,17 @@ fn on_a_full_disk_the_end_names_the_step_that_the_disk_has() {
     let mut lab = ground.open("--paused --at 30");
     lab.wait_for("L lessons");
     lab.quit();
-    let mut lab = ground.open_shell();
-    lab.wait_for("shell>");
+    let mut shell = ground.open_shell();
+    shell.wait_for("shell>");
     let program = env!("CARGO_BIN_EXE_gyrolab");
-    lab.press(&format!("ulimit -f 0; {program} --resume\r"));
-    lab.wait_for(AS_LEFT);
-    lab.press(".");
-    lab.wait_for_step(31);
-    lab.wait_for("the session cannot be kept");
-    lab.press("q");
-    lab.wait_for("what was done last is lost: the session cannot be kept");
-    lab.wait_for("--resume comes back to step 30 of Method 2");
+    shell.press(&format!("ulimit -f 0; {program} --resume\r"));
+    shell.wait_for(AS_LEFT);
+    shell.press(".");
+    shell.wait_for_step(31);
+    shell.wait_for("the session cannot be kept");
+    shell.press("q");
+    shell.wait_for("what was done last is lost: the session cannot be kept");
+    shell.wait_for("--resume comes back to step 30 of Method 2");
 }
 
 #[test]
@@ -199,11 +199,11 @@ fn a_confined_lab_reads_in_its_folder_alone() {
 
     let folder = ground.file("inside");
     let folder = folder.to_str().unwrap();
-    let outside = "../secret.toml out.toml up/secret.toml /dev/null.toml";
-    for scenario in outside.split(' ') {
-        let mut lab = ground.open(&format!("--folder {folder} {scenario}"));
-        assert_eq!(lab.wait_for_end().exit_code(), 1, "{scenario}");
-        lab.wait_for("stays in its folder");
+    let scenarios = "../secret.toml out.toml up/secret.toml /dev/null.toml";
+    for scenario in scenarios.split(' ') {
+        let mut outside = ground.open(&format!("--folder {folder} {scenario}"));
+        assert_eq!(outside.wait_for_end().exit_code(), 1, "{scenario}");
+        outside.wait_for("stays in its folder");
     }
     let secret = ground.file("secret.toml");
     let piped = ground.run(&["--folder", folder, secret.to_str().unwrap()]);
@@ -211,8 +211,8 @@ fn a_confined_lab_reads_in_its_folder_alone() {
 
     let listed = ground.stdout(&format!("sessions --folder {folder}"));
     has(listed, "(own.toml)");
-    let mut lab = ground.open(&format!("--folder {folder} --resume"));
-    lab.wait_for(AS_LEFT);
-    lab.quit();
-    lab.wait_for("gyrolab --folder");
+    let mut resumed = ground.open(&format!("--folder {folder} --resume"));
+    resumed.wait_for(AS_LEFT);
+    resumed.quit();
+    resumed.wait_for("gyrolab --folder");
 }

@@ -50,18 +50,22 @@ fn what_was_chosen_is_there_at_the_next_start() {
     );
     assert_eq!(ground.mode("state/gyrolab/settings.toml"), 0o600);
     for args in [&[][..], &["--resume"]] {
-        let mut lab = match args {
+        let mut again = match args {
             [] => open(&ground, &[]),
             args => ground.open(args),
         };
-        lab.wait_for("L lessons");
-        assert!(is_ascii(&lab) && !has_colors(&lab), "{}", lab.screen());
-        lab.quit();
+        again.wait_for("L lessons");
+        assert!(
+            is_ascii(&again) && !has_colors(&again),
+            "{}",
+            again.screen()
+        );
+        again.quit();
     }
     // An option wins.
-    let mut lab = open(&ground, &["--markers", "braille", "--color", "always"]);
-    assert!(!is_ascii(&lab) && has_colors(&lab));
-    lab.quit();
+    let mut with_options = open(&ground, &["--markers", "braille", "--color", "always"]);
+    assert!(!is_ascii(&with_options) && has_colors(&with_options));
+    with_options.quit();
     // A picture does not depend on what was chosen.
     let shown = ground.run("show method-2");
     assert!(stdout(&shown).contains('─'));
@@ -82,9 +86,9 @@ fn the_users_own_file_wins_and_is_never_written() {
             .unwrap()
             .contains("braille")
     );
-    let mut lab = open(&ground, &[]);
-    assert!(is_ascii(&lab), "{}", lab.screen());
-    lab.quit();
+    let mut again = open(&ground, &[]);
+    assert!(is_ascii(&again), "{}", again.screen());
+    again.quit();
     let file = ground.config().join("gyrolab/config.toml");
     assert_eq!(fs::read_to_string(file).unwrap(), text);
     let shown = ground.run("show method-2");

@@ -205,7 +205,7 @@ fn a_part_of_the_file_is_gone_on_with_and_no_row_is_computed_again() {
     for cut in [0, 1, 50, end - 300, end - 7, end - 1, end] {
         let kept = whole[..cut]
             .rfind('\n')
-            .map_or(0, |end| rows(&whole[..end]).len());
+            .map_or(0, |last| rows(&whole[..last]).len());
         goes_on(&whole.as_bytes()[..cut], kept.saturating_sub(1));
     }
     // What is no row, and all behind it, is computed anew: a cell too few, another point, other bytes.
@@ -222,8 +222,8 @@ fn a_part_of_the_file_is_gone_on_with_and_no_row_is_computed_again() {
     ] {
         goes_on(whole.replace(row, &wrong).as_bytes(), 29);
     }
-    let end = whole.find(row).unwrap();
-    let damaged = [&whole.as_bytes()[..end], &[0, 159, 10, 200, 10]].concat();
+    let before = whole.find(row).unwrap();
+    let damaged = [&whole.as_bytes()[..before], &[0, 159, 10, 200, 10]].concat();
     goes_on(&damaged, 29);
 }
 
@@ -238,8 +238,8 @@ fn what_is_not_this_sweep_is_refused_and_left_alone() {
     refuse(&ground, &other, "grid.csv", &["grid.csv", words, "--force"]);
     assert_eq!(ground.read("grid.csv"), whole);
     ground.write("part.csv.part", &whole[..whole.len() - 5]);
-    let words = ["part.csv.part", "count = 20", "--force"];
-    refuse(&ground, &other, "part.csv", &words);
+    let unfinished = ["part.csv.part", "count = 20", "--force"];
+    refuse(&ground, &other, "part.csv", &unfinished);
     assert_eq!(ground.read("part.csv.part"), whole[..whole.len() - 5]);
     let longer = format!("{whole}{}\n", rows(&whole)[60]);
     let shorter = &whole[..whole.len() - rows(&whole)[60].len() - 1];
@@ -474,12 +474,12 @@ fn rows_without_readouts_are_told_by_every_command_that_finds_them() {
             .skip(1 + kept)
             .map(|row| row.len() + 1);
         ground.write("cut.csv.part", &whole[..whole.len() - lost.sum::<usize>()]);
-        let told = make(&ground, args, "cut.csv");
+        let continued = make(&ground, args, "cut.csv");
         has(
-            &told,
+            &continued,
             format!("behind {kept} of 4 rows in cut.csv.part, {empty} of them without readouts\n"),
         );
-        is_told(&told);
+        is_told(&continued);
         assert_eq!(ground.read("cut.csv"), whole);
         remove(&ground, "cut.csv");
     }
@@ -508,9 +508,9 @@ fn a_time_step_that_varies_holds_the_seconds() {
     let lowest = json["measured_lowest_z_m"].as_f64().unwrap();
     assert!(rows[2].ends_with(&format!(",{lowest}")), "{csv} {lowest}");
     // A push that accumulates is another at another time step.
-    let args = "wobble-push-accumulating --vary motion.time_step_s=0.1,0.05 --measure t_s";
-    let told = make(&ground, args, "acc.csv");
-    has_all(told, ["rows without readouts: 1 of 2", "accumulates"]);
+    let accumulating = "wobble-push-accumulating --vary motion.time_step_s=0.1,0.05 --measure t_s";
+    let of_one = make(&ground, accumulating, "acc.csv");
+    has_all(of_one, ["rows without readouts: 1 of 2", "accumulates"]);
 }
 
 #[test]
@@ -549,7 +549,7 @@ fn a_disk_that_is_full_and_a_folder_that_takes_no_file() {
     symlink("/dev/full", ground.file("link.csv.part")).unwrap();
     let args = "cusps --vary motion.steps=1,2 --measure=z_m";
     let advice = "name a file in a folder that exists";
-    for (output, words) in [
+    for (output, reasons) in [
         ("none/out.csv", &["none/out.csv", "there is no folder"][..]),
         ("folder", &["folder", "is a folder"]),
         ("folder/", &["folder", "is a folder"]),
@@ -559,7 +559,7 @@ fn a_disk_that_is_full_and_a_folder_that_takes_no_file() {
         ("/proc/out.csv", &["/proc/out.csv", "cannot write", advice]),
         ("-", &["-", "not written to stdout"]),
     ] {
-        refuse(&ground, args, output, words);
+        refuse(&ground, args, output, reasons);
     }
     let files = ["folder", "link.csv.part", "out.csv", "whole.csv"];
     assert_eq!(ground.files(), files);
@@ -633,10 +633,6 @@ fn the_shipped_sweeps_are_listed_and_printed() {
         ground.write("mine.toml", &ground.stdout(&format!("presets {name}")));
         ground.stdout("check mine.toml");
     }
-    has_all(
-        ground.stdout("man sweep"),
-        ["SLURM_ARRAY_TASK_ID", "parallel"],
-    );
 }
 
 /// On a terminal there is something to see before the first row, and no rate or time left is made up.
@@ -678,7 +674,7 @@ fn another_sweep_is_told_by_the_first_key_that_differs() {
     refuse(&ground, "--join 1.csv 2.csv", "joined.csv", &words);
     let vary = "cusps --set=motion.steps=2 --vary start.momentum_Js.2";
     make(&ground, &format!("{vary}=10,20,30"), "all.csv");
-    for (more, words) in [
+    for (more, reason) in [
         ("=10,20,30 --measure=steps,z_m", "measure"),
         (
             "=10,21,30",
@@ -686,7 +682,7 @@ fn another_sweep_is_told_by_the_first_key_that_differs() {
         ),
     ] {
         let output = ground.run(&sweep(&format!("{vary}{more}"), "all.csv"));
-        refused(more, &output, 1, &[words]);
+        refused(more, &output, 1, &[reason]);
         assert!(output.stderr.len() < 300, "{output:?}");
     }
 }
@@ -722,10 +718,10 @@ fn more_shards_than_files_may_be_open_are_joined() {
     let of_first = &first[..first.find("start.momentum_Js.2,z_m").unwrap()];
     assert_ne!(of_first, header);
     for number in 1..=OF {
-        let header = of_first.replace(&format!("\"1/{OF}\""), &format!("\"{number}/{OF}\""));
+        let of_number = of_first.replace(&format!("\"1/{OF}\""), &format!("\"{number}/{OF}\""));
         let [begin, end] = [number - 1, number].map(|number| 1 + 200 * number / OF);
         let rows = all[begin..end].concat();
-        ground.write(&format!("{number}.csv"), &(header + all[0] + &rows));
+        ground.write(&format!("{number}.csv"), &(of_number + all[0] + &rows));
     }
     assert_eq!(ground.read("1.csv"), first);
     let parts: Vec<String> = (1..=OF).map(|number| format!("{number}.csv")).collect();

@@ -132,21 +132,20 @@ fn keys_in_bulk_are_all_taken_at_once() {
 
 #[test]
 fn a_sequence_that_never_ends_does_not_swallow_what_follows() {
-    let begun = ["[200~", "[<", "[1;", "]0;", "P", "O"];
-    let cut_off = |begun: &str| {
+    let cut_off = |sequence: &str| {
         let mut terminal = opened("--paused");
         // Ctrl-C ends the lab, however soon it follows.
-        terminal.press(&format!("{begun}abc\u{3}"));
-        assert_eq!(terminal.wait_for_end().exit_code(), 0, "{begun:?}");
-        let mut terminal = opened("--paused");
+        terminal.press(&format!("{sequence}abc\u{3}"));
+        assert_eq!(terminal.wait_for_end().exit_code(), 0, "{sequence:?}");
+        let mut another = opened("--paused");
         // And after a while any key means what it says.
-        terminal.press(begun);
+        another.press(sequence);
         thread::sleep(Duration::from_millis(3500));
-        terminal.ask("?", "help: type");
-        terminal.kill();
+        another.ask("?", "help: type");
+        another.kill();
     };
     thread::scope(|scope| {
-        for begun in begun {
+        for begun in ["[200~", "[<", "[1;", "]0;", "P", "O"] {
             scope.spawn(move || cut_off(&format!("\u{1b}{begun}")));
         }
     });

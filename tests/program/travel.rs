@@ -261,8 +261,8 @@ fn a_write_up_is_verified_as_a_whole() {
     has(told, "w/heidelberg-spin-decay.csv: measured data");
     // A file of the student's own is named, and is no fault.
     ground.write("w/notes.txt", "mine");
-    let told = done(ground.run("verify w"));
-    has(stdout(&told), "w: 1 file not of the write-up: notes.txt");
+    let again = done(ground.run("verify w"));
+    has(stdout(&again), "w: 1 file not of the write-up: notes.txt");
     let page = ground.read("w/README.md");
     ground.write(
         "w/README.md",

@@ -108,7 +108,7 @@ fn measured_data_stand_beside_the_run() {
     done(lab.shell("cd w && \"$G\" writeup run.toml --measured bench.csv -o ../again"));
     assert_eq!(contents(&lab.file("w")), contents(&lab.file("again")));
     // What has no place beside a run is refused before there is a folder.
-    let refused = |data: &str| lab.run(&format!("writeup method-2 --measured {data} -o no"));
+    let refused = |file: &str| lab.run(&format!("writeup method-2 --measured {file} -o no"));
     failed(&refused("heidelberg-precession"), &["is a table of runs"]);
     failed(&refused("nothing.csv"), &["there is no such file"]);
     assert!(!lab.files().contains(&"no".to_owned()));
@@ -172,9 +172,9 @@ fn what_a_user_wrote_is_not_said_to_be_a_presets() {
     // A new look_at line alone: the preset's other words are of another motion all the same.
     let set = "--set 'view.look_at=My line.' --set start.tilt_deg=50";
     done(lab.run(&format!("writeup cusps --steps 50 -o line {set}")));
-    let page = lab.read("line/README.md");
-    assert!(page.contains("\n\nMy line.\n\n"), "{page}");
-    has(&page, "\n\nOf the preset cusps as it was: ");
+    let own_line = lab.read("line/README.md");
+    assert!(own_line.contains("\n\nMy line.\n\n"), "{own_line}");
+    has(&own_line, "\n\nOf the preset cusps as it was: ");
 }
 
 /// Least and greatest values are of the whole run, theory is of the motion since the push has ended: page and readouts say so.

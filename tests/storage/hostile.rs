@@ -70,8 +70,8 @@ fn no_link_is_followed() {
     let file = only(&folder, ".session");
     fs::rename(&file, outer.path().join("elsewhere")).unwrap();
     symlink(outer.path().join("elsewhere"), &file).unwrap();
-    let found = resume(&folder, None, |content| Ok(texts(content))).unwrap();
-    assert!(found.resumed.is_none());
+    let of_session = resume(&folder, None, |content| Ok(texts(content))).unwrap();
+    assert!(of_session.resumed.is_none());
     assert!(outer.path().join("elsewhere").exists());
 }
 

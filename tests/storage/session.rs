@@ -135,12 +135,12 @@ fn the_last_content_is_resumed_and_the_session_continues() {
         session.note(SessionContent { work, place });
     }
     closed(session);
-    let (session, what) = any(&folder).resumed.unwrap();
+    let (resumed, what) = any(&folder).resumed.unwrap();
     assert_eq!(what, pair(text, "step 999"));
-    session.note(content("another run", "step 5"));
-    written(&session);
-    session.note(content("another run", "step 6"));
-    closed(session);
+    resumed.note(content("another run", "step 5"));
+    written(&resumed);
+    resumed.note(content("another run", "step 6"));
+    closed(resumed);
     assert_eq!(newest(&folder), Some(pair("another run", "step 6")));
     assert_eq!(names(&folder, ".session").len(), 1, "it is one session");
 }
@@ -393,9 +393,9 @@ fn sessions_have_short_names_that_stay() {
     let found = resume(&folder, Some("1"), |content| Ok(texts(content))).unwrap();
     let (session, what) = found.resumed.unwrap();
     assert_eq!((what.0.as_str(), session.name()), ("first", "1"));
-    let found = resume(&folder, Some("2"), |_| Ok(())).unwrap();
-    assert!(found.resumed.is_none());
-    assert_eq!(found.in_use_by, [own]);
+    let other = resume(&folder, Some("2"), |_| Ok(())).unwrap();
+    assert!(other.resumed.is_none());
+    assert_eq!(other.in_use_by, [own]);
     for name in ["4", "", "lock", "../1", "1.session"] {
         assert!(resume(&folder, Some(name), |_| Ok(())).is_err(), "{name}");
     }

@@ -134,6 +134,18 @@ impl Ground {
         serde_json::from_str(&self.stdout(args)).unwrap()
     }
 
+    /// The names of the subcommands that the help lists.
+    pub fn subcommands(&self) -> Vec<String> {
+        let help = self.stdout("--help");
+        let (_, below) = help.split_once("Commands:\n").unwrap();
+        let (list, _) = below.split_once("\n\n").unwrap();
+        list.lines()
+            .filter_map(|line| line.strip_prefix("  "))
+            .filter(|line| !line.starts_with(' ') && !line.starts_with("help "))
+            .filter_map(|line| line.split(' ').next().map(str::to_owned))
+            .collect()
+    }
+
     /// Asserts that the program ends with the exit code `with`, without a panic, and that its message contains all `words`.
     #[track_caller]
     pub fn refused(&self, args: &str, with: i32, words: &[&str]) {

@@ -118,9 +118,9 @@ impl Terminal {
         let reader = thread::spawn(move || {
             let mut buffer = [0; 65536];
             while let Ok(length @ 1..) = output.read(&mut buffer) {
-                if let Ok(mut shown) = kept.lock() {
-                    shown.bytes.extend_from_slice(&buffer[..length]);
-                    shown.parser.process(&buffer[..length]);
+                if let Ok(mut screen) = kept.lock() {
+                    screen.bytes.extend_from_slice(&buffer[..length]);
+                    screen.parser.process(&buffer[..length]);
                 }
                 if cut.load(Ordering::Relaxed) {
                     break; // the last handle of the pty's near side: the line is lost

@@ -29,12 +29,11 @@ pub(super) struct Slope {
 
 /// Fits the line by least squares; `None` for too few points.
 pub(super) fn slope(points: &[Point]) -> Option<Slope> {
-    let column = |of: &dyn Fn(&Point) -> f64| -> Vec<f64> { points.iter().map(of).collect() };
-    let mut columns = vec![column(&|_| 1.0)];
+    let mut columns = vec![vec![1.0; points.len()]];
     for harmonic in 1..=HARMONICS {
         let times = f64::from(harmonic);
-        columns.push(column(&|point| libm::cos(times * point.phase)));
-        columns.push(column(&|point| libm::sin(times * point.phase)));
+        columns.push(column(points, |point| libm::cos(times * point.phase)));
+        columns.push(column(points, |point| libm::sin(times * point.phase)));
     }
     let mut basis: Vec<Vec<f64>> = Vec::new();
     for values in columns {
@@ -47,12 +46,16 @@ pub(super) fn slope(points: &[Point]) -> Option<Slope> {
     let freedom = points.len().checked_sub(basis.len() + 1)?;
     // Their size may be far beyond their differences.
     let first = points.first()?;
-    let x = without(&basis, &column(&|point| point.x - first.x));
-    let y = without(&basis, &column(&|point| point.y - first.y));
+    let x = without(&basis, &column(points, |point| point.x - first.x));
+    let y = without(&basis, &column(points, |point| point.y - first.y));
     let value = dot(&x, &y) / dot(&x, &x);
     let rest: Vec<f64> = x.iter().zip(&y).map(|(x, y)| y - value * x).collect();
     let error = (dot(&rest, &rest) / freedom as f64 / dot(&x, &x)).sqrt();
     (value.is_finite() && error.is_finite()).then_some(Slope { value, error })
+}
+
+fn column(points: &[Point], of: impl Fn(&Point) -> f64) -> Vec<f64> {
+    points.iter().map(of).collect()
 }
 
 /// `column` without its parts along the vectors of `basis`, which are of unit length and perpendicular to each other.

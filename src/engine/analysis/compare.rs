@@ -167,13 +167,14 @@ impl ComparisonTrial {
     }
 
     fn row(&self, scenario: &Scenario) -> ComparisonRow {
-        let known = |error: f64| (!self.has_broken && error.is_finite()).then_some(error);
+        let [error_m, error_at_end_m] = [self.most_distance_m, self.end_distance_m]
+            .map(|error| (!self.has_broken && error.is_finite()).then_some(error));
         ComparisonRow {
             scheme: scenario.motion.scheme.name,
             time_step_s: scenario.motion.time_step_s,
             steps: self.steps,
-            error_m: known(self.most_distance_m),
-            error_at_end_m: known(self.end_distance_m),
+            error_m,
+            error_at_end_m,
             order: None,
             energy_drift: self.energy_drift,
             spin_drift: Some(self.spin_drift).filter(|drift| drift.is_finite()),
@@ -338,12 +339,15 @@ impl fmt::Display for ComparisonTable<'_> {
         )?;
         for row in self.rows {
             let order = row.order.map_or("-".to_owned(), |order| fixed(order, 2));
-            let number = |number: Option<f64>| {
-                number.map_or(NOT_AVAILABLE.to_owned(), |number| exponent(number, 1))
-            };
-            let (error, at_end) = (number(row.error_m), number(row.error_at_end_m));
-            let (spin, lz) = (number(row.spin_drift), number(row.lz_drift));
-            let (energy, step) = (number(row.energy_drift), shortest(row.time_step_s));
+            let [error, at_end, energy, spin, lz] = [
+                row.error_m,
+                row.error_at_end_m,
+                row.energy_drift,
+                row.spin_drift,
+                row.lz_drift,
+            ]
+            .map(|number| number.map_or(NOT_AVAILABLE.to_owned(), |number| exponent(number, 1)));
+            let step = shortest(row.time_step_s);
             write!(f, "{:<8} {step:>10} {:>10}", row.scheme, row.steps)?;
             write!(f, " {error:>9} {at_end:>9} {order:>6}")?;
             write!(f, " {energy:>9} {spin:>9} {lz:>9}")?;

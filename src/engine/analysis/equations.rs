@@ -63,13 +63,9 @@ impl TopMotion {
         for _ in 0..MOST_SERIES_STEPS {
             let (axle, momentum, radius) = self.series(pull);
             let step = left.clamp(-radius, radius);
-            let sum = |terms: &PowerSeries| {
-                let rest = terms[1..].iter().rev();
-                terms[0] + rest.fold(Vector3::zeros(), |sum, term| (sum + term) * step)
-            };
             self = Self {
-                axle: sum(&axle),
-                momentum: sum(&momentum),
+                axle: sum(&axle, step),
+                momentum: sum(&momentum, step),
             };
             left -= step;
             if left == 0.0 {
@@ -90,10 +86,16 @@ impl TopMotion {
             axle[k + 1] = turning.sum::<Vector3<f64>>() / next;
             momentum[k + 1] = axle[k].cross(pull) / next;
         }
-        let reach = |k: usize| libm::pow(EQUATION_LAST_TERM / axle[k].norm(), 1.0 / k as f64);
-        let radius = reach(EQUATION_ORDER - 1).min(reach(EQUATION_ORDER));
-        (axle, momentum, radius)
+        let [before_last, last] = [EQUATION_ORDER - 1, EQUATION_ORDER]
+            .map(|k| libm::pow(EQUATION_LAST_TERM / axle[k].norm(), 1.0 / k as f64));
+        (axle, momentum, before_last.min(last))
     }
+}
+
+/// Returns the sum of the series `terms` after the time `step`, s.
+fn sum(terms: &PowerSeries, step: f64) -> Vector3<f64> {
+    let rest = terms[1..].iter().rev();
+    terms[0] + rest.fold(Vector3::zeros(), |sum, term| (sum + term) * step)
 }
 
 /// The axle between two rows by its directions and their rates at both: a polynomial of the third degree.

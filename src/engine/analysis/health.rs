@@ -295,18 +295,34 @@ fn turns_if_believed(scenario: &Arc<Scenario>, is_wanted: &dyn Fn() -> bool) -> 
     }
 }
 
+/// Returns what [`turns_if_believed`] does for `scenario` at another time step, s, with another scheme.
+fn trial(
+    scenario: &Scenario,
+    time_step_s: f64,
+    scheme: &'static SchemeInfo,
+    is_wanted: &dyn Fn() -> bool,
+) -> Option<f64> {
+    let other = Arc::new(resampled(scenario, time_step_s, scheme));
+    turns_if_believed(&other, is_wanted)
+}
+
+/// Returns whether a [`trial`] is believed and its steps turn the body by less than half a turn.
+fn holds(
+    scenario: &Scenario,
+    time_step_s: f64,
+    scheme: &'static SchemeInfo,
+    is_wanted: &dyn Fn() -> bool,
+) -> bool {
+    trial(scenario, time_step_s, scheme, is_wanted).is_some_and(|most_turns| most_turns < 0.5)
+}
+
 /// What trials of `scenario` lead to; each ends as one that does not hold when `is_wanted` returns false.
 fn tried(scenario: &Scenario, is_wanted: &dyn Fn() -> bool) -> Advice {
     let (own, scheme) = (scenario.motion.time_step_s, scenario.motion.scheme);
-    let trial = |step: f64, with| {
-        let other = Arc::new(resampled(scenario, step, with));
-        turns_if_believed(&other, is_wanted)
-    };
-    let holds = |step: f64, with| trial(step, with).is_some_and(|most_turns| most_turns < 0.5);
     if !is_affordable(scenario) || Clock::end_s(scenario) / own > most_steps(scenario) {
         return Advice::Nothing;
     }
-    if trial(own, scheme).is_some() {
+    if trial(scenario, own, scheme, is_wanted).is_some() {
         return if scenario
             .edits
             .iter()
@@ -325,18 +341,19 @@ fn tried(scenario: &Scenario, is_wanted: &dyn Fn() -> bool) -> Advice {
     };
     if rescale::accumulates(scenario) {
         // At another time step it would be another run.
-        return if better != scheme && holds(own, better) {
+        return if better != scheme && holds(scenario, own, better, is_wanted) {
             with_better(own, own)
         } else {
             Advice::BoundToItsTimeStep
         };
     }
-    if let Some(step) = finer_time_steps(scenario).find(|&step| holds(step, scheme)) {
+    let mut finer = finer_time_steps(scenario);
+    if let Some(step) = finer.find(|&step| holds(scenario, step, scheme, is_wanted)) {
         return Advice::TimeStep(step);
     }
     let tried_s = finer_time_steps(scenario).last().unwrap_or(own);
     let mut steps = std::iter::once(own).chain(finer_time_steps(scenario));
-    let found = steps.find(|&step| better != scheme && holds(step, better));
+    let found = steps.find(|&step| better != scheme && holds(scenario, step, better, is_wanted));
     found.map_or(Advice::Nothing, |step| with_better(step, tried_s))
 }
 

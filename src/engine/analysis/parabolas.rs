@@ -311,10 +311,8 @@ impl Parabolas {
     /// The whole way of the azimuth over the time, for an axle that keeps its height.
     fn way_of_the_azimuth(&self) -> Option<MeasuredNumber> {
         let now = self.looks[2];
-        let rate = |from: &AxleSample| {
-            (now.azimuth_rad() - from.azimuth_rad()) / (now.time_s - from.time_s)
-        };
-        let (whole, later) = (rate(&self.start), rate(&self.half));
+        let [whole, later] = [&self.start, &self.half]
+            .map(|from| (now.azimuth_rad() - from.azimuth_rad()) / (now.time_s - from.time_s));
         let [lowest, highest] = self.heights;
         let is_steady = highest - lowest <= HEIGHT_SWING_ROUNDING;
         (is_steady && whole.is_finite() && later.is_finite()).then(|| MeasuredNumber {

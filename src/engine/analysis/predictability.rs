@@ -172,11 +172,10 @@ fn is_balanced(exact: &Truth, state: &State, error_rad: f64) -> bool {
     let scenario = exact.scenario();
     let body = &scenario.body.mechanics;
     let moment = exact.loads().moment(body);
-    let in_body = |at: &State| {
+    let [first, now] = [&scenario.start, state].map(|at| {
         let rate = observables::angular_velocity(body, at);
         at.orientation.tr_mul(&rate)
-    };
-    let (first, now) = (in_body(&scenario.start), in_body(state));
+    });
     torque(&state.orientation, &moment).norm() <= error_rad * moment.norm()
         && first.cross(&now).norm() <= error_rad * first.norm_squared()
 }

@@ -85,13 +85,13 @@ impl ReportTheory {
             libm::hypot(offset[0], offset[1]),
         );
         let tilt = libm::acos(state.momentum.z / size);
-        let off_by = |angle: f64| {
+        let [lag_off_by, swing_off_by] = [lag_size, lag_size.max(swing_size)].map(|angle| {
             2.5 * psi * kick.abs() * angle / size_2 + 1.5 * angle / libm::tan(tilt).abs()
-        };
+        });
         Some(Self {
-            lag: Some(lag_size).filter(|&angle| off_by(angle) <= THEORY_TOLERANCE),
+            lag: (lag_off_by <= THEORY_TOLERANCE).then_some(lag_size),
             growth: 0.5 * libm::log1p(-2.0 * kappa * (1.0 - kappa) * (1.0 - cos)),
-            swing: (off_by(lag_size.max(swing_size)) <= THEORY_TOLERANCE).then_some(LagSwing {
+            swing: (swing_off_by <= THEORY_TOLERANCE).then_some(LagSwing {
                 lag,
                 offset,
                 tilt,

@@ -37,17 +37,22 @@ impl FrictionEffect {
             swing_viscous,
             ..
         } = friction;
-        let time = |moment: Option<f64>, rate: f64| Some(moment? / rate).filter(|s| s.is_finite());
+
         let least = SPIN_ROUNDING * state.momentum.norm();
         let along_axle = state.axle().dot(&state.momentum).abs();
         let spin = top.map(|_| if along_axle > least { along_axle } else { 0.0 });
         Some(Self {
             work: step.friction_work(),
-            spin_decay_s: time(top.map(|top| top.along), spin_viscous),
-            spin_stop_s: time(spin, spin_dry),
-            swing_decay_s: time(top.map(|top| top.across), swing_viscous),
+            spin_decay_s: time_s(top.map(|top| top.along), spin_viscous),
+            spin_stop_s: time_s(spin, spin_dry),
+            swing_decay_s: time_s(top.map(|top| top.across), swing_viscous),
         })
     }
+}
+
+/// Returns the time in which a friction that is `rate` times as large as its effect on `moment` ends it, s.
+fn time_s(moment: Option<f64>, rate: f64) -> Option<f64> {
+    Some(moment? / rate).filter(|s| s.is_finite())
 }
 
 impl fmt::Display for FrictionEffect {

@@ -171,13 +171,14 @@ impl Turns {
             azimuths += (turned - true_rate * way).powi(2);
             between += 1;
         }
-        let mean = |sum: f64| (sum / between.max(1) as f64).sqrt();
+        let [time_scatter_s, azimuth_scatter] =
+            [times, azimuths].map(|sum| (sum / between.max(1) as f64).sqrt());
         Some(StraightLine {
             first,
             last,
             intervals: number,
-            time_scatter_s: mean(times),
-            azimuth_scatter: mean(azimuths),
+            time_scatter_s,
+            azimuth_scatter,
             between,
         })
     }
@@ -195,20 +196,21 @@ impl StraightLine {
 
     /// Standard error of [`time_s`](Self::time_s), s, where the scatter counts `weight` times.
     pub fn time_error_s(&self, weight: f64) -> f64 {
-        let of_end = |turn: &HeightExtreme| libm::hypot(turn.time_off_s, turn.time_error_s);
-        let ends = libm::hypot(of_end(&self.first), of_end(&self.last));
+        let [first, last] =
+            [&self.first, &self.last].map(|turn| libm::hypot(turn.time_off_s, turn.time_error_s));
+        let ends = libm::hypot(first, last);
         libm::hypot(ends, 2_f64.sqrt() * weight * self.time_scatter_s)
     }
 
     /// Standard error of [`rate`](Self::rate), rad/s, likewise.
     pub fn rate_error(&self, weight: f64) -> f64 {
         let rate = self.rate();
-        let of_end = |turn: &HeightExtreme| {
+        let [first, last] = [&self.first, &self.last].map(|turn| {
             let late = (turn.azimuth_rate - rate) * turn.time_error_s;
             let off = turn.azimuth_off - rate * turn.time_off_s;
             libm::hypot(libm::hypot(turn.azimuth_error, late), off)
-        };
-        let ends = libm::hypot(of_end(&self.first), of_end(&self.last));
+        });
+        let ends = libm::hypot(first, last);
         libm::hypot(ends, 2_f64.sqrt() * weight * self.azimuth_scatter) / self.time_s()
     }
 }

@@ -175,13 +175,15 @@ pub fn residuals(
     model: &[f64],
 ) -> Vec<Residual> {
     let is_direction = quantity.is_some_and(|quantity| quantity.is_direction);
-    let shift = |index: usize| turns_deg(model[index] - points[index].value);
-    let common = (is_counted(points) && !points.is_empty() && !model.is_empty()).then(|| shift(0));
-    let pairs = points.iter().zip(model).enumerate();
-    let all = pairs.map(|(index, (point, &value))| Residual {
+    let first = points.iter().zip(model).next();
+    let common = first
+        .filter(|_| is_counted(points))
+        .map(|(point, value)| turns_deg(value - point.value));
+    let pairs = points.iter().zip(model);
+    let all = pairs.map(|(point, &value)| Residual {
         row: point.row,
         measured: if is_direction {
-            point.value + common.unwrap_or_else(|| shift(index))
+            point.value + common.unwrap_or_else(|| turns_deg(value - point.value))
         } else {
             point.value
         },

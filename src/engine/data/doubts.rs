@@ -79,8 +79,8 @@ fn tilt_in_radians(series: &TimeSeries, scenario: &Arc<Scenario>) -> Option<Stri
         .curves
         .iter()
         .find(|curve| curve.quantity.name == "tilt_deg")?;
-    let most = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
-    let most_deg = most(&mut curve.points.iter().map(|point| point.value.abs()));
+    let values_deg = curve.points.iter().map(|point| point.value.abs());
+    let most_deg = values_deg.fold(0.0, f64::max);
     if most_deg > MOST_TILT_RAD || curve.points.is_empty() {
         return None;
     }
@@ -95,7 +95,7 @@ fn tilt_in_radians(series: &TimeSeries, scenario: &Arc<Scenario>) -> Option<Stri
         few.curves[0].points.truncate(1);
     }
     let of_run = at_times(&few, scenario, &|| true).ok()??;
-    let of_run_deg = most(&mut of_run.into_iter().flatten());
+    let of_run_deg = of_run.into_iter().flatten().fold(0.0, f64::max);
     (of_run_deg > MOST_TILT_RAD).then(|| {
         format!(
             "tilt_deg never exceeds {}, and the run's tilt reaches {} degrees: is it in radians? --map COLUMN=tilt_rad",

@@ -99,6 +99,14 @@ fn label(cells: &Csv, place: usize) -> String {
     }
 }
 
+/// Returns whether a table of runs has columns of this name, and a time series has none.
+fn is_of_table(name: &str) -> bool {
+    name.contains('.')
+        || readouts::find(name).is_some()
+            && RunQuantity::find(name).is_none()
+            && name != TIME_COLUMN
+}
+
 /// Columns and the names that they probably should have.
 struct Guess<'a> {
     cells: &'a Csv,
@@ -113,16 +121,7 @@ impl Guess<'_> {
                 !self.cells.own[place].is_mapped && (is_first || track(self.cells, place) == only)
             })
             .collect();
-        let has = |name: &str| {
-            let mut columns = self.cells.own.iter().zip(&self.cells.names);
-            columns.any(|(own, known)| own.is_mapped && known == name)
-        };
-        let is_of_table = |name: &str| {
-            name.contains('.')
-                || readouts::find(name).is_some()
-                    && RunQuantity::find(name).is_none()
-                    && name != TIME_COLUMN
-        };
+
         let times = self.cells.names.iter().filter(|name| *name == TIME_COLUMN);
         let has_time = times.count() == 1;
         if !has_time && self.cells.names.iter().any(|name| is_of_table(name)) {
@@ -143,11 +142,9 @@ impl Guess<'_> {
             let is_refused = name.contains('.') && is_known(name)
                 || name.contains("uncertainty") && name.starts_with("t_");
             let guessed = self.quantity(place, is_gyroscope);
-            let is_free =
-                |known: &String| self.added.iter().all(|(_, other)| other != known) && !has(known);
             if is_refused {
                 self.added.push((place, LEFT_OUT.to_owned()));
-            } else if let Some(known) = guessed.filter(is_free) {
+            } else if let Some(known) = guessed.filter(|known| self.is_free(known)) {
                 self.added.push((place, known));
             }
         }
@@ -163,6 +160,13 @@ impl Guess<'_> {
         {
             self.added.push((place, self.tilt(place).to_owned()));
         }
+    }
+
+    /// Returns whether no column has this name, given by the user or as a guess.
+    fn is_free(&self, name: &str) -> bool {
+        let mut columns = self.cells.own.iter().zip(&self.cells.names);
+        !columns.any(|(own, known)| own.is_mapped && known == name)
+            && self.added.iter().all(|(_, other)| other != name)
     }
 
     fn is_added(&self, place: usize) -> bool {
@@ -208,22 +212,31 @@ impl Guess<'_> {
 
     /// The column that is probably the time: one called so, else one whose numbers increase, else the first with numbers.
     fn time(&self, places: &[usize]) -> Option<usize> {
-        let increases = |&place: &usize| {
-            let numbers = self.numbers(place);
-            numbers.len() > 1 && numbers.windows(2).all(|pair| pair[0] < pair[1])
-        };
-        let is_called_so = |&place: &usize| time_like(&self.cells.own[place].name);
-        let mut columns = places
+        let columns: Vec<usize> = places
             .iter()
             .copied()
-            .filter(|place| RunQuantity::find(&self.cells.names[*place]).is_none());
-        let of_both = columns
-            .clone()
-            .find(|place| is_called_so(place) && increases(place));
-        of_both
-            .or_else(|| columns.clone().find(is_called_so))
-            .or_else(|| columns.clone().find(increases))
-            .or_else(|| columns.find(|&place| !self.numbers(place).is_empty()))
+            .filter(|place| RunQuantity::find(&self.cells.names[*place]).is_none())
+            .collect();
+        let mut called_so = columns
+            .iter()
+            .filter(|place| time_like(&self.cells.own[**place].name))
+            .peekable();
+        let first_called_so = called_so.peek().copied();
+        called_so
+            .find(|place| self.increases(**place))
+            .or(first_called_so)
+            .or_else(|| columns.iter().find(|place| self.increases(**place)))
+            .or_else(|| {
+                columns
+                    .iter()
+                    .find(|place| !self.numbers(**place).is_empty())
+            })
+            .copied()
+    }
+
+    fn increases(&self, place: usize) -> bool {
+        let numbers = self.numbers(place);
+        numbers.len() > 1 && numbers.windows(2).all(|pair| pair[0] < pair[1])
     }
 
     fn time_unit(&self, place: usize) -> &'static str {

@@ -99,10 +99,12 @@ impl TimeSeries {
             for (curve, has_sigma) in &curves {
                 let place = curve.points.binary_search_by_key(&row, |point| point.row);
                 let point = place.ok().map(|place| &curve.points[place]);
-                let written = |number: Option<f64>| number.map_or(String::new(), shortest);
-                text += &format!(",{}", written(point.map(|point| point.value)));
+                text.push(',');
+                text += &point.map_or(String::new(), |point| shortest(point.value));
                 if *has_sigma {
-                    text += &format!(",{}", written(point.and_then(|point| point.sigma)));
+                    let sigma = point.and_then(|point| point.sigma);
+                    text.push(',');
+                    text += &sigma.map_or(String::new(), shortest);
                 }
             }
         }
@@ -173,15 +175,19 @@ impl MeasuredData {
     pub fn notes(&self) -> Vec<String> {
         let names = listed(self.left_out.iter().map(String::as_str));
         let columns = format!("columns left out, which gyrolab does not know: {names}");
-        let rows = |count: usize, place: &str| {
+        let [before, outside] = [
+            (self.rows_before, "before t = 0"),
+            (self.rows_outside, "outside --from and --to"),
+        ]
+        .map(|(count, place)| {
             let rows = counted(count as u64, "row");
             (count > 0).then(|| format!("{rows} {place} left out"))
-        };
+        });
         let notes = [
             self.read_as.clone(),
             (!self.left_out.is_empty()).then_some(columns),
-            rows(self.rows_before, "before t = 0"),
-            rows(self.rows_outside, "outside --from and --to"),
+            before,
+            outside,
         ];
         let origin = printable(&self.origin);
         notes

@@ -71,11 +71,11 @@ impl<S: Borrow<TimeSeries>> RunReader<S> {
         let series = self.series.borrow();
         let curves = series.curves.iter().zip(&mut self.next);
         for ((curve, next), values) in curves.zip(&mut self.values) {
-            let is_now = |index: usize| {
-                let point = curve.points.get(index);
-                point.is_some_and(|point| series.times_s[point.row] == time_s)
-            };
-            while is_now(*next) {
+            while curve
+                .points
+                .get(*next)
+                .is_some_and(|point| series.times_s[point.row] == time_s)
+            {
                 values.push(curve.quantity.value_at(simulation.now()));
                 *next += 1;
             }

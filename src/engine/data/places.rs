@@ -19,13 +19,13 @@ pub struct MeasuredPlace {
 /// Where the point `traced` (body frame, m) was measured to be: by x and y, or else by tilt and azimuth, where it is on the
 /// axle. Empty where the columns of `series` do not tell.
 pub fn places(series: &TimeSeries, traced: &Vector3<f64>) -> Vec<MeasuredPlace> {
-    let of = |name: &str| {
+    let [x, y, tilt, azimuth] = ["x_m", "y_m", "tilt_deg", "azimuth_deg"].map(|name| {
         let mut curves = series.curves.iter();
         curves.find(|curve| curve.quantity.name == name)
-    };
+    });
     let is_on_axle = traced.xy().norm() <= PLACE_ON_AXLE * traced.norm();
-    let polar = || Some((of("tilt_deg")?, of("azimuth_deg")?)).filter(|_| is_on_axle);
-    let (pair, is_polar) = match (of("x_m").zip(of("y_m")), polar()) {
+    let polar = tilt.zip(azimuth).filter(|_| is_on_axle);
+    let (pair, is_polar) = match (x.zip(y), polar) {
         (Some(pair), _) => (pair, false),
         (None, Some(pair)) => (pair, true),
         (None, None) => return Vec::new(),
@@ -67,8 +67,9 @@ fn on_axle(
     }
     let outwards = length_m * cos_tilt * of_tilt.unwrap_or(0.0).to_radians();
     let around = length_m * sin_tilt * of_azimuth.unwrap_or(0.0).to_radians();
-    let sigma = |out: f64, round: f64| Some(libm::hypot(outwards * out, around * round));
-    (at, [sigma(cos, sin), sigma(sin, cos)])
+    let sigmas = [(cos, sin), (sin, cos)]
+        .map(|(out, round)| Some(libm::hypot(outwards * out, around * round)));
+    (at, sigmas)
 }
 
 #[cfg(test)]

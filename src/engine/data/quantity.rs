@@ -71,13 +71,12 @@ mod tests {
 
     #[test]
     fn every_quantity_has_a_readout_of_the_state() {
-        assert_eq!(QUANTITIES.len(), CsvColumn::all().count() - 3);
         for quantity in &*QUANTITIES {
-            let readout = quantity.readout().unwrap();
+            let source = quantity.readout().map(|readout| readout.source);
             assert_eq!(
-                readout.source,
-                readouts::ReadoutSource::State,
-                "{}",
+                source,
+                Some(readouts::ReadoutSource::State),
+                "{}: READOUTS in analysis/readouts/table.rs needs its row, of the state",
                 quantity.name
             );
         }

@@ -113,17 +113,18 @@ pub fn name_columns(
     let mut problems = Vec::new();
     for (place, meaning) in meanings.iter().enumerate() {
         let Some(meaning) = meaning else { continue };
-        let of_name = |it: &&Meaning| it.name == meaning.name;
-        let surest = meanings.iter().flatten().filter(of_name);
-        let is_surest = surest.map(|it| it.surety).max() == Some(meaning.surety);
-        let is_rival = |other: &Option<Meaning>| {
-            other
-                .as_ref()
-                .filter(of_name)
-                .is_some_and(|other| other.surety == meaning.surety)
-        };
-        let rivals: Vec<usize> = (0..meanings.len())
-            .filter(|&other| is_rival(&meanings[other]))
+        let same_name: Vec<(usize, &Meaning)> = meanings
+            .iter()
+            .enumerate()
+            .filter_map(|(other_place, other)| Some((other_place, other.as_ref()?)))
+            .filter(|(_, other)| other.name == meaning.name)
+            .collect();
+        let surest = same_name.iter().map(|(_, other)| other.surety).max();
+        let is_surest = surest == Some(meaning.surety);
+        let rivals: Vec<usize> = same_name
+            .iter()
+            .filter(|(_, other)| other.surety == meaning.surety)
+            .map(|(other_place, _)| *other_place)
             .collect();
         let mut columns = cells.own.iter().zip(&cells.names);
         let is_taken = columns.any(|(own, name)| own.is_mapped && *name == meaning.name);
@@ -179,7 +180,9 @@ pub(super) fn track(cells: &Csv, place: usize) -> Option<&str> {
 
 impl Company {
     fn new(cells: &Csv, origin: &str) -> Self {
-        let has = |name: &str| cells.own.iter().any(|own| own.name == name);
+        let mut names = cells.own.iter().map(|own| own.name.as_str());
+        let has_time = names.clone().any(|name| name == "time");
+        let is_of_logger = names.any(|name| name == SENSOR_LOGGER);
         let file = Path::new(origin)
             .file_name()
             .unwrap_or_default()
@@ -190,8 +193,8 @@ impl Company {
                 .own
                 .iter()
                 .any(|own| Unit::split(&own.name).map_or(&*own.name, |(stem, _)| stem) == "t"),
-            has_time: has("time"),
-            is_gyroscope: has(SENSOR_LOGGER) && file.contains("gyroscope"),
+            has_time,
+            is_gyroscope: is_of_logger && file.contains("gyroscope"),
         }
     }
 }

@@ -121,21 +121,23 @@ fn chosen(
     names: &[String],
     all: &(impl Iterator<Item = &'static CsvColumn> + Clone),
 ) -> Result<Vec<&'static CsvColumn>, Problem> {
-    let wrong = |rule: String| Problem::at("columns", rule);
     if names.is_empty() {
-        return Err(wrong("must name a column".to_owned()));
+        return Err(Problem::at("columns", "must name a column"));
     }
-    let column = |(index, name): (usize, &String)| {
+    let mut columns = Vec::new();
+    for (index, name) in names.iter().enumerate() {
         if names[..index].contains(name) {
-            return Err(wrong(format!("{} is named twice", printable(name))));
+            let rule = format!("{} is named twice", printable(name));
+            return Err(Problem::at("columns", rule));
         }
         let found = all.clone().find(|column| column.name == name);
-        found.ok_or_else(|| {
+        columns.push(found.ok_or_else(|| {
             let near = nearest(name, all.clone().map(|column| column.name));
-            wrong(format!("no column named {}: {near}", printable(name)))
-        })
-    };
-    names.iter().enumerate().map(column).collect()
+            let rule = format!("no column named {}: {near}", printable(name));
+            Problem::at("columns", rule)
+        })?);
+    }
+    Ok(columns)
 }
 
 impl PartialEq for CsvLayout {

@@ -84,13 +84,11 @@ impl RunSummary {
             .steps
             .clone()
             .unwrap_or_else(|| format!("{} of {} s", sample.step, shortest(readouts.time_step_s)));
-        let number = |name, write: fn(f64) -> String| {
-            readouts
-                .number(name)
-                .map_or(NOT_AVAILABLE.to_owned(), write)
-        };
-        let wall = number("wall_s", |wall| fixed(wall, 3));
-        let rate = number("steps_per_second", |rate| exponent(rate, 3));
+        let wall = readouts.number("wall_s").map(|wall| fixed(wall, 3));
+        let rate = readouts
+            .number("steps_per_second")
+            .map(|rate| exponent(rate, 3));
+        let [wall, rate] = [wall, rate].map(|text| text.unwrap_or(NOT_AVAILABLE.to_owned()));
         vec![
             ("scheme", scheme),
             ("steps", steps),
@@ -191,8 +189,8 @@ impl RunSummary {
             }
             None => format!("none by theory{about}"),
         };
-        let is_finite = |it: &MeasuredNumber| it.value.is_finite() && it.uncertainty.is_finite();
-        let measured = match measured.filter(is_finite) {
+        let finite = measured.filter(|it| it.value.is_finite() && it.uncertainty.is_finite());
+        let in_run = match finite {
             Some(MeasuredNumber { value, .. }) if is_strobed => {
                 let shown = significant(value, 3);
                 format!("strobed: {FAR_APART}, and show {shown} {unit}{about_z}")
@@ -208,7 +206,7 @@ impl RunSummary {
             None if unmeasured.is_empty() => format!("none in this run{about_z}"),
             None => format!("not stated in this run{about_z}: {unmeasured}"),
         };
-        format!("{theory}, {measured}")
+        format!("{theory}, {in_run}")
     }
 
     fn theory(&self) -> Vec<SummaryLine> {
@@ -320,13 +318,15 @@ pub fn steps_in_words(scenario: &Scenario, steps: u64) -> String {
         before.0 += if is_same { next.0 } else { 0 };
         is_same
     });
-    let one = |(count, step_s): &(u64, f64)| format!("{count} of {} s", shortest(*step_s));
     match &parts[..] {
         [] => format!("{steps} of {} s", shortest(time_step_s)),
-        [only] => one(only),
-        [first, rest @ ..] if rest.len() < 4 => {
-            let others: Vec<_> = rest.iter().map(one).collect();
-            format!("{steps}: {}, then {}", one(first), others.join(", then "))
+        [(count, step_s)] => format!("{count} of {} s", shortest(*step_s)),
+        few if few.len() <= 4 => {
+            let few: Vec<_> = few
+                .iter()
+                .map(|(count, step_s)| format!("{count} of {} s", shortest(*step_s)))
+                .collect();
+            format!("{steps}: {}", few.join(", then "))
         }
         many => {
             let least = many.iter().map(|part| part.1).fold(f64::INFINITY, f64::min);
@@ -367,12 +367,6 @@ fn on(word: &str, axis: &TheoryAxis) -> String {
 impl fmt::Display for RunSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let readouts = &self.readouts;
-        let text = |lines: Vec<SummaryLine>| -> String {
-            lines
-                .into_iter()
-                .map(|(name, said)| format!("  {name:<14}{said}\n"))
-                .collect()
-        };
         let first = text([self.extent(), self.rates()].concat());
         let verdict = readouts.health.sentence(readouts.advice.as_ref());
         let mut rest = self.state();
@@ -386,4 +380,11 @@ impl fmt::Display for RunSummary {
             text(rest).trim_end()
         )
     }
+}
+
+fn text(lines: Vec<SummaryLine>) -> String {
+    lines
+        .into_iter()
+        .map(|(name, said)| format!("  {name:<14}{said}\n"))
+        .collect()
 }

@@ -109,10 +109,8 @@ impl Original {
 fn preset_with_words_of(scenario: &Scenario) -> Option<(&'static Preset, Scenario)> {
     let words = words_of(scenario);
     PRESETS.iter().find_map(|preset| {
-        let may_have = |text: &Option<&str>| {
-            text.is_some_and(|text| text.lines().all(|line| preset.text.contains(line)))
-        };
-        if !words.iter().any(may_have) {
+        let mut lines_of_each = words.iter().flatten().map(|text| text.lines());
+        if !lines_of_each.any(|mut lines| lines.all(|line| preset.text.contains(line))) {
             return None; // parsing it would take long
         }
         let document = Document::parse(preset.name, preset.text).ok()?;

@@ -97,9 +97,9 @@ impl Act {
             .into_iter()
             .partition(|(key, _)| Effect::of_key(key) == Effect::None);
         let acts = [Self::Edit(edit), Self::Metadata(metadata)];
-        let sets_keys =
-            |act: &Self| !matches!(act, Self::Edit(set) | Self::Metadata(set) if set.is_empty());
-        acts.into_iter().filter(sets_keys).collect()
+        acts.into_iter()
+            .filter(|act| !matches!(act, Self::Edit(set) | Self::Metadata(set) if set.is_empty()))
+            .collect()
     }
 
     pub fn is_metadata(&self) -> bool {

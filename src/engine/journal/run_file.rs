@@ -78,12 +78,11 @@ impl Journal {
     /// Returns the scenario as it was when its number of steps was set last: by the opened file, or by a later
     /// `motion.steps`.
     pub(super) fn when_steps_were_set(&self) -> Result<Scenario, Problems> {
-        let sets_steps = |entry: &&JournalEntry| match &entry.act {
+        let entries = self.in_force();
+        let last = entries.iter().rposition(|entry| match &entry.act {
             Act::Metadata(set) => set.contains_key("motion.steps"),
             _ => entry.is_from_file,
-        };
-        let entries = self.in_force();
-        let last = entries.iter().rposition(sets_steps);
+        });
         self.document(&entries[..last.map_or(0, |last| last + 1)])?
             .scenario()
     }

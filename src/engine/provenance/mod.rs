@@ -67,8 +67,9 @@ pub struct File {
 
 impl File {
     pub fn new(holds: Payload, name: &str, text: &str) -> Self {
-        let fits = || text.len() <= MOST_DATA || packed(text.as_bytes()).len() <= MOST_DATA;
-        let travels = holds == Payload::Run || fits();
+        let travels = holds == Payload::Run
+            || text.len() <= MOST_DATA
+            || packed(text.as_bytes()).len() <= MOST_DATA;
         let carried = if travels { text } else { "" };
         Self {
             holds,
@@ -117,13 +118,13 @@ impl Origin {
                 "its run was changed after it was drawn: the SHA-256 is another".to_owned(),
             );
         }
-        let (length, rest) = rest.split_once('\n').ok_or(BROKEN)?;
-        let length = length
+        let (first_line, head_and_files) = rest.split_once('\n').ok_or(BROKEN)?;
+        let (head, mut files) = first_line
             .strip_prefix(", head ")
-            .and_then(|it| it.parse().ok());
-        let length = length.filter(|length| *length <= LONGEST_HEAD);
-        let cut = length.and_then(|length| rest.split_at_checked(length));
-        let (head, mut rest) = cut.ok_or(BROKEN)?;
+            .and_then(|length| length.parse().ok())
+            .filter(|length| *length <= LONGEST_HEAD)
+            .and_then(|length| head_and_files.split_at_checked(length))
+            .ok_or(BROKEN)?;
         let mut origin: Self = toml::from_str(head).map_err(|error| {
             let [version, why] =
                 [head.lines().next().unwrap_or_default(), error.message()].map(|it| brief(it, 120));
@@ -131,10 +132,10 @@ impl Origin {
             format!("its metadata ({version}) is not understood by gyrolab {own}: {why}")
         })?;
         for file in &mut origin.files {
-            let (own, after) = rest.split_at_checked(file.bytes).ok_or(BROKEN)?;
-            (file.text, rest) = (own.to_owned(), after);
+            let (own, after) = files.split_at_checked(file.bytes).ok_or(BROKEN)?;
+            (file.text, files) = (own.to_owned(), after);
         }
-        let is_whole = rest.is_empty() && !origin.files.is_empty();
+        let is_whole = files.is_empty() && !origin.files.is_empty();
         is_whole.then_some(origin).ok_or(BROKEN.to_owned())
     }
 }
@@ -148,8 +149,8 @@ pub enum FileFormat {
 }
 
 impl FileFormat {
-    /// The form of a file by its first bytes; `None` where it is no figure.
-    pub fn of(bytes: &[u8]) -> Option<Self> {
+    /// Returns the format of a file by its first bytes, or `None` if it is no figure.
+    pub fn detect(bytes: &[u8]) -> Option<Self> {
         let text = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes);
         match text.trim_ascii_start() {
             _ if bytes.starts_with(b"%PDF-") => Some(Self::Pdf),
@@ -193,7 +194,7 @@ impl FileFormat {
 
 /// The `picture`, a file that this program wrote, with its origin in it; `None` where that is too long.
 pub fn embed(picture: &[u8], origin: &Origin) -> Option<Vec<u8>> {
-    FileFormat::of(picture)?.embed(picture, &origin.text(picture)?)
+    FileFormat::detect(picture)?.embed(picture, &origin.text(picture)?)
 }
 
 /// A figure that was read.
@@ -208,11 +209,11 @@ pub struct FigureFile {
 }
 
 impl FigureFile {
-    /// The figure whose file has these bytes; or why no run can be had of it.
+    /// Parses the bytes of a figure's file. The error says why no run can be extracted from it.
     ///
-    /// A file may be large: it is neither copied, nor are two copies of its text kept with it for longer than is needed.
-    pub fn of(mut file: Vec<u8>) -> Result<Self, String> {
-        let form = FileFormat::of(&file).ok_or(NO_RUN_TEXT)?;
+    /// A file may be large: it is not copied, and two copies of its text exist only as long as needed.
+    pub fn parse(mut file: Vec<u8>) -> Result<Self, String> {
+        let form = FileFormat::detect(&file).ok_or(NO_RUN_TEXT)?;
         let Extracted { carrier, text } = form.extract(&file)?;
         let text = String::from_utf8(text).map_err(|_| BROKEN)?;
         let (before, rest) = file.split_at(carrier.start);
@@ -250,7 +251,7 @@ impl FigureFile {
     /// The same for what `reader` gives, of which only the first bytes are looked at where it is no figure.
     pub fn read(reader: &mut impl BufRead) -> Result<Option<Self>, String> {
         let first = reader.fill_buf().map_err(|error| unread(&error))?;
-        if FileFormat::of(first).is_none() {
+        if FileFormat::detect(first).is_none() {
             return Ok(None);
         }
         let mut file = Vec::new();
@@ -259,7 +260,7 @@ impl FigureFile {
         if file.len() as u64 > LONGEST_FIGURE {
             return Err("is longer than 128 MiB, the most that is read of a figure".to_owned());
         }
-        Self::of(file).map(Some)
+        Self::parse(file).map(Some)
     }
 }
 

@@ -288,10 +288,12 @@ fn closest<'a>(
     // A name that lacks its unit ("radius" for "radius_m", "L_z" for "Lz_Js") is near however long the unit; nearer is one
     // that differs in no letter and no digit ("method2" for "method-2", and not for "method-2-slow").
     if !bare.is_empty() {
-        let same = known.clone().find(|name| letters(name) == bare);
-        let begins_so = || known.clone().find(|name| letters(name).starts_with(bare));
-        if let Some(found) = same.or_else(begins_so) {
-            return Some(found);
+        let found = known
+            .clone()
+            .find(|name| letters(name) == bare)
+            .or_else(|| known.clone().find(|name| letters(name).starts_with(bare)));
+        if found.is_some() {
+            return found;
         }
     }
     let lower = wrong.to_lowercase();

@@ -132,16 +132,12 @@ pub fn uncertain(number: f64, uncertainty: f64) -> Option<Uncertain> {
     } else {
         scientific(number, 16).1.max(first)
     };
-    // Of an uncertainty such as 1.2 the point stands between its digits.
-    let behind = |decimals: usize| match decimals {
-        1 => format!("({}.{})", &two_digits[..1], &two_digits[1..]),
-        _ => format!("({two_digits})"),
-    };
+
     if (-3..=5).contains(&top) && last <= 0 {
         let decimals = last.unsigned_abs() as usize;
         let digits = without_minus_zero(format!("{number:.decimals$}"));
         return Some(Uncertain {
-            digits: digits + &behind(decimals),
+            digits: digits + &in_brackets(&two_digits, decimals),
             exponent: 0,
         });
     }
@@ -155,9 +151,18 @@ pub fn uncertain(number: f64, uncertainty: f64) -> Option<Uncertain> {
         }
     };
     Some(Uncertain {
-        digits: digits + &behind(decimals),
+        digits: digits + &in_brackets(&two_digits, decimals),
         exponent: top,
     })
+}
+
+/// Returns the two digits of an uncertainty whose last one is so many places behind the point. Of one such as 1.2 the point
+/// stands between them.
+fn in_brackets(two_digits: &str, decimals: usize) -> String {
+    match decimals {
+        1 => format!("({}.{})", &two_digits[..1], &two_digits[1..]),
+        _ => format!("({two_digits})"),
+    }
 }
 
 /// The digits of `number`, `decimals` of them after the point, and its power of ten.

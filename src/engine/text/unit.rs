@@ -112,16 +112,20 @@ impl Unit {
     /// The unit that `text` is, as people write it: `s`, `m/s2`, `°/s`, `deg s^-1`, `1/min`.
     pub fn written(text: &str) -> Option<&'static Self> {
         let name = plain(text);
-        let known = || OURS.iter().chain(&OTHER_UNITS);
+        let mut known = OURS.iter().chain(&OTHER_UNITS);
         let in_lower_case = name.to_lowercase();
         let alias = ALIASES
             .iter()
             .find(|(written, _)| *written == in_lower_case);
-        known()
+        known
+            .clone()
             .find(|unit| unit.name.replace(' ', "") == name)
-            .or_else(|| known().find(|unit| alias.is_some_and(|(_, end)| unit.end == *end)))
             .or_else(|| {
-                known().find(|unit| unit.name.replace(' ', "").to_lowercase() == in_lower_case)
+                let (_, end) = alias?;
+                known.clone().find(|unit| unit.end == *end)
+            })
+            .or_else(|| {
+                known.find(|unit| unit.name.replace(' ', "").to_lowercase() == in_lower_case)
             })
     }
 
@@ -129,38 +133,41 @@ impl Unit {
     /// `gx_dps`.
     pub fn split(text: &str) -> Option<(&str, &'static Self)> {
         let name = text.trim();
-        let in_brackets = || {
-            let opening = match name.chars().last()? {
-                ')' => '(',
-                ']' => '[',
-                '}' => '{',
-                _ => return None,
-            };
-            let (stem, unit) = name[..name.len() - 1].rsplit_once(opening)?;
-            let name_alone = stem.trim_end().trim_end_matches('/');
-            Some((name_alone, Self::written(unit)?))
-        };
-        let behind = |sign: &str| {
-            let (stem, unit) = name.split_once(sign)?;
-            Some((stem, Self::written(unit)?))
-        };
-        let at_end = || {
-            // The first of them has the longest unit behind it: "rad_per_s" and not "s".
-            let mut separators = name.match_indices(['_', '-', '.', ' ']);
-            separators.find_map(|(at, _)| {
-                let unit = name[at + 1..].replace(['-', '.', ' '], "_");
-                let known = OURS
-                    .iter()
-                    .chain(&OTHER_UNITS)
-                    .find(|known| known.end[1..] == unit);
-                Some((&name[..at], known.or_else(|| Self::written(&unit))?))
-            })
-        };
-        let found = in_brackets()
-            .or_else(|| behind("/"))
-            .or_else(|| behind(" in "));
-        let (stem, unit) = found.or_else(at_end)?;
+        let (stem, unit) = Self::in_brackets(name)
+            .or_else(|| Self::behind(name, "/"))
+            .or_else(|| Self::behind(name, " in "))
+            .or_else(|| Self::at_end(name))?;
         Some((stem.trim(), unit))
+    }
+
+    fn in_brackets(name: &str) -> Option<(&str, &'static Self)> {
+        let opening = match name.chars().last()? {
+            ')' => '(',
+            ']' => '[',
+            '}' => '{',
+            _ => return None,
+        };
+        let (stem, unit) = name[..name.len() - 1].rsplit_once(opening)?;
+        let name_alone = stem.trim_end().trim_end_matches('/');
+        Some((name_alone, Self::written(unit)?))
+    }
+
+    fn behind<'a>(name: &'a str, sign: &str) -> Option<(&'a str, &'static Self)> {
+        let (stem, unit) = name.split_once(sign)?;
+        Some((stem, Self::written(unit)?))
+    }
+
+    fn at_end(name: &str) -> Option<(&str, &'static Self)> {
+        // The first of them has the longest unit behind it: "rad_per_s" and not "s".
+        let mut separators = name.match_indices(['_', '-', '.', ' ']);
+        separators.find_map(|(at, _)| {
+            let unit = name[at + 1..].replace(['-', '.', ' '], "_");
+            let known = OURS
+                .iter()
+                .chain(&OTHER_UNITS)
+                .find(|known| known.end[1..] == unit);
+            Some((&name[..at], known.or_else(|| Self::written(&unit))?))
+        })
     }
 
     /// By what a number in this unit is multiplied to be one in `other`; `None` where they do not measure the same.

@@ -152,11 +152,11 @@ impl DataComparison {
             .map(|(_, quantity)| quantity.value_at(now))
             .collect();
         let (time_s, axle_height) = (now.time_s(), now.after().axle().z);
-        for (values, recording) in values.chunks(IN_A_RECORDING).zip(&mut self.recorded) {
+        for (group, recording) in values.chunks(IN_A_RECORDING).zip(&mut self.recorded) {
             recording.push(&RecordedSample {
                 time_s,
                 position: Vector3::from_fn(|place, _| {
-                    values.get(place).copied().unwrap_or_default()
+                    group.get(place).copied().unwrap_or_default()
                 }),
                 axle_height,
             });

@@ -61,15 +61,14 @@ impl Exporting {
         replace: bool,
     ) -> Result<Self, DestinationError> {
         let destination = Destination::open_file(path, replace)?;
-        let begin = || {
-            let csv = CsvWriter::with_layout(destination, &scenario, layout)?;
-            let full = std::path::absolute(path)?;
-            let (steps, written) = (scenario.steps, full.clone());
-            Self::spawn(full, steps, move |shared| {
-                write(scenario, csv, written, shared)
-            })
-        };
-        begin().map_err(|error| DestinationError::refused(path, error))
+        let refused = |error| DestinationError::refused(path, error);
+        let csv = CsvWriter::with_layout(destination, &scenario, layout).map_err(refused)?;
+        let full = std::path::absolute(path).map_err(refused)?;
+        let (steps, written) = (scenario.steps, full.clone());
+        Self::spawn(full, steps, move |shared| {
+            write(scenario, csv, written, shared)
+        })
+        .map_err(refused)
     }
 
     /// Starts drawing the figure of `source` to the file `path` in this `format`. It writes the same bytes as
@@ -81,15 +80,14 @@ impl Exporting {
         replace: bool,
     ) -> Result<Self, DestinationError> {
         let output = Destination::open_file(path, replace)?;
-        let begin = || {
-            let full = std::path::absolute(path)?;
-            let steps = source.runs.iter().map(|run| run.scenario.steps).max();
-            let written = full.clone();
-            Self::spawn(full, steps.unwrap_or_default(), move |shared| {
-                draw(&source, output, written, format, shared)
-            })
-        };
-        begin().map_err(|error| DestinationError::refused(path, error))
+        let refused = |error| DestinationError::refused(path, error);
+        let full = std::path::absolute(path).map_err(refused)?;
+        let steps = source.runs.iter().map(|run| run.scenario.steps).max();
+        let written = full.clone();
+        Self::spawn(full, steps.unwrap_or_default(), move |shared| {
+            draw(&source, output, written, format, shared)
+        })
+        .map_err(refused)
     }
 
     fn spawn(

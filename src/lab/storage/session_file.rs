@@ -81,9 +81,11 @@ fn names(folder: &Path, kind: &str) -> io::Result<Vec<String>> {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
         entries => entries?,
     };
-    let name = |file: String| Some(file.strip_suffix(kind)?.strip_suffix('.')?.to_owned());
     Ok(entries
-        .filter_map(|entry| name(entry.ok()?.file_name().into_string().ok()?))
+        .filter_map(|entry| {
+            let file = entry.ok()?.file_name().into_string().ok()?;
+            Some(file.strip_suffix(kind)?.strip_suffix('.')?.to_owned())
+        })
         .collect())
 }
 

@@ -169,12 +169,12 @@ impl Match {
     /// Returns how `names` answer the search for `name`; `None` where they do not.
     pub fn find(names: &str, name: &str) -> Option<Self> {
         let (text, search) = (names.to_lowercase(), name.to_lowercase());
-        let begins = |wanted: &str| {
+        let mut wanted = search.split_whitespace();
+        let begins_words = wanted.clone().all(|wanted| {
             let mut words = text.split(|c: char| !c.is_alphanumeric());
             text.starts_with(wanted) || words.any(|word| word.starts_with(wanted))
-        };
-        let mut wanted = search.split_whitespace();
-        if wanted.clone().all(begins) {
+        });
+        if begins_words {
             return Some(Self::Word);
         }
         wanted.all(|word| text.contains(word)).then_some(Self::Part)

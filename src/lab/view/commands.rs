@@ -110,8 +110,8 @@ impl View {
     fn mark_turn(&mut self, player: &Player) -> ActionResult {
         let none = "the cursor is nowhere: ) and ( put it on a turn of the tilt";
         let here = self.cursor.ok_or(none)?;
-        let Some(mark) = self.mark.take().filter(|mark| *mark != here) else {
-            self.mark = Some(here);
+        let Some(mark) = self.swing_mark.take().filter(|mark| *mark != here) else {
+            self.swing_mark = Some(here);
             return Ok(Done::saying(
                 "marked: ) to a later turn of the tilt, and | counts the swings between",
             ));
@@ -294,7 +294,7 @@ impl View {
 
     /// The command that fills the screen with the pane in focus, or shows all panes again.
     pub fn fill_toggled(&self) -> Command {
-        Command::Fill((!self.filled).then_some(self.focus))
+        Command::Fill((!self.fullscreen).then_some(self.focus))
     }
 }
 

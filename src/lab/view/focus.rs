@@ -8,7 +8,7 @@ impl View {
     pub(in crate::lab) fn toggled(&self, pane: Pane) -> Vec<Command> {
         let with_it = [Pane::ThreeD, pane];
         let mut commands = Vec::new();
-        if self.filled {
+        if self.fullscreen {
             commands.push(Command::Fill(None));
         }
         if self.look.show.contains(&pane) == self.shows(pane) {
@@ -26,9 +26,9 @@ impl View {
 
     /// Fills the screen with `pane` and moves the focus there; with `None` shows all panes again.
     pub fn fill(&mut self, pane: Option<Pane>) {
-        self.filled = pane.is_some();
+        self.fullscreen = pane.is_some();
         self.focus_on(pane.unwrap_or(self.focus));
-        self.is_touched |= self.filled;
+        self.is_touched |= self.fullscreen;
     }
 
     /// Whether the title of `pane` shows the focus: not before the user has turned to a pane.
@@ -37,7 +37,7 @@ impl View {
     }
 
     pub fn is_filled_by(&self, pane: Pane) -> bool {
-        self.filled && self.focus == pane
+        self.fullscreen && self.focus == pane
     }
 
     /// The panes that can have the focus, from left to right. One that is not on the screen comes there with the focus.
@@ -72,7 +72,7 @@ impl View {
 
     /// Moves the focus to `pane`, which fills the screen if it is not on it.
     pub fn turn_to(&mut self, pane: Pane) {
-        self.filled = self.is_filled_by(pane) || !self.focusable().contains(&pane);
+        self.fullscreen = self.is_filled_by(pane) || !self.focusable().contains(&pane);
         self.focus_on(pane);
         self.is_touched = true;
     }
@@ -112,7 +112,7 @@ impl View {
     /// Moves the focus to the first pane that can have it, if the one in focus no longer can.
     pub fn keep_focus(&mut self) {
         self.keep_focus_among(&self.focusable());
-        if self.focus != Pane::Lesson && !self.filled {
+        if self.focus != Pane::Lesson && !self.fullscreen {
             self.beside = Some(self.focus);
         }
     }

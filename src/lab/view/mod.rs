@@ -118,7 +118,7 @@ pub struct View {
     pub focus: Pane,
     /// Whether the user turned to it, or pressed a key of its own: the footer then names those.
     pub is_touched: bool,
-    pub filled: bool,
+    pub fullscreen: bool,
     pub marker: Marker,
     pub theme: Theme,
     /// The time that the traces show.
@@ -133,7 +133,7 @@ pub struct View {
     /// The step at which the traces are read off.
     pub cursor: Option<u64>,
     /// The step of a turn of the tilt from which swings are counted.
-    pub mark: Option<u64>,
+    pub swing_mark: Option<u64>,
     /// Where the 3-D view is looked at from.
     pub camera: Camera,
     /// The phase to which the step pane returns from its last page.
@@ -164,7 +164,7 @@ impl View {
             look: ViewSettings::default(),
             focus: Pane::ALL[0],
             is_touched: false,
-            filled: false,
+            fullscreen: false,
             marker,
             theme,
             window: TimeWindow::default(),
@@ -172,7 +172,7 @@ impl View {
             since_s: None,
             magnified: 1.0,
             cursor: None,
-            mark: None,
+            swing_mark: None,
             camera: Camera::default(),
             page_before: StepPageChoice::default(),
             pointed_at: None,
@@ -222,7 +222,7 @@ impl View {
 
     pub fn turn_to_sheet(&mut self) {
         if self.sheet.is_some() {
-            self.filled &= self.focus == Pane::Lesson;
+            self.fullscreen &= self.focus == Pane::Lesson;
             self.focus = Pane::Lesson;
         }
     }
@@ -245,7 +245,7 @@ impl View {
             residuals: self.look.residuals,
             ..ViewSettings::default()
         };
-        (self.since_s, self.magnified, self.cursor, self.mark) = (None, 1.0, None, None);
+        (self.since_s, self.magnified, self.cursor, self.swing_mark) = (None, 1.0, None, None);
         if self.look.camera.is_none() {
             self.camera = Camera::default();
         }
@@ -268,7 +268,7 @@ impl View {
         let mut shown = self.look.show.iter();
         let requested = shown.find(|pane| pane.is_on_request() && !before.show.contains(pane));
         if let Some(pane) = requested
-            && !self.filled
+            && !self.fullscreen
         {
             self.focus = *pane;
         }
@@ -300,7 +300,7 @@ impl View {
 
     /// Whether `pane` is on the screen, if that has room for it.
     pub fn shows(&self, pane: Pane) -> bool {
-        self.is_filled_by(pane) || (!self.filled && self.may_show(pane))
+        self.is_filled_by(pane) || (!self.fullscreen && self.may_show(pane))
     }
 
     pub fn to_show(&self) -> Vec<Pane> {

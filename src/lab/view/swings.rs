@@ -33,8 +33,8 @@ pub(super) fn in_words(
             let predicted = period.to_the_same_digit(period_s);
             let asymmetry = readouts.theory.and_then(|theory| theory.of_mean_moment());
             let asymmetry = asymmetry.map_or(String::new(), |it| format!(" (asymmetry {it})"));
-            let mean = short(0.5 * (low + high));
-            format!("theory: {predicted} s, {mean} deg{asymmetry}")
+            let middle = short(0.5 * (low + high));
+            format!("theory: {predicted} s, {middle} deg{asymmetry}")
         }
         _ => "no theory of it here".to_owned(),
     };

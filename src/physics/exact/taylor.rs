@@ -100,10 +100,9 @@ impl AccurateMotion {
         momentum: Vector3<f64>,
         damping: Option<Damping>,
     ) -> Option<Self> {
-        let finite = |m: &Matrix3<f64>| m.iter().all(|x| x.is_finite());
-        if ![inertia, moment, orientation].iter().all(finite)
-            || !momentum.iter().all(|x| x.is_finite())
-        {
+        let matrices = [inertia, moment, orientation];
+        let mut numbers = matrices.iter().flatten().chain(&momentum);
+        if !numbers.all(|number| number.is_finite()) {
             return None;
         }
         let turn =

@@ -28,12 +28,10 @@ impl FreeBody {
     /// motion is not a number.
     pub fn new(inertia: &Matrix3<f64>) -> Self {
         let (moments, axes) = principal_axes(inertia);
-        let equal = |i: usize, j: usize| {
-            (moments[i] - moments[j]).abs() <= SYMMETRY_ROUNDING * moments[i].max(moments[j])
-        };
         // Equal to rounding is symmetric; the elliptic functions take over continuously. z first: a sphere's axis is then the axle.
         for (axis, i, j) in [(2, 0, 1), (1, 0, 2), (0, 1, 2)] {
-            if equal(i, j) {
+            let rounding = SYMMETRY_ROUNDING * moments[i].max(moments[j]);
+            if (moments[i] - moments[j]).abs() <= rounding {
                 return Self::Symmetric(SymmetricBody::new(
                     &moments,
                     axes.column(axis).into(),

@@ -48,10 +48,9 @@ impl AxisScale {
     /// The ticks of an axis below the picture, whose labels stand beside each other.
     pub fn ticks_below(&self, axis: &ChartAxis) -> Ticks {
         self.ticks(axis, |ticks| {
-            ticks.windows(2).all(|pair| {
-                let apart = (self.place(pair[1].at) - self.place(pair[0].at)).abs();
-                let half = |tick: &Tick| 0.5 * ink::width(&tick.label, LABEL_PT);
-                half(&pair[0]) + half(&pair[1]) + BESIDE <= apart
+            ticks.array_windows().all(|[a, b]| {
+                let apart = (self.place(b.at) - self.place(a.at)).abs();
+                a.half_width() + b.half_width() + BESIDE <= apart
             })
         })
     }

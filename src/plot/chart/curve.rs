@@ -87,14 +87,16 @@ impl PlacedPanel {
 
     /// Whether something of `series` is in `frame`.
     fn has_in(&self, frame: &PageRectangle, series: &ChartSeries) -> bool {
-        let is_in = |points: &[[f64; 2]]| {
-            let places = points.iter().map(|point| self.place(point));
-            !clipped(places, frame).is_empty()
-        };
         let mut bars =
             (0..series.points.len()).flat_map(|index| [0, 1].map(|axis| series.ends(index, axis)));
-        (series.style.width_pt > 0.0 && is_in(&series.points))
-            || (series.style.mark.is_some() && bars.any(|bar| is_in(&bar)))
+        (series.style.width_pt > 0.0 && self.has_line_in(frame, &series.points))
+            || (series.style.mark.is_some() && bars.any(|bar| self.has_line_in(frame, &bar)))
+    }
+
+    /// Returns whether a part of the line through `points` is in `frame`.
+    fn has_line_in(&self, frame: &PageRectangle, points: &[[f64; 2]]) -> bool {
+        let places = points.iter().map(|point| self.place(point));
+        !clipped(places, frame).is_empty()
     }
 }
 

@@ -153,12 +153,13 @@ impl PlacedPanel {
             return;
         }
         let mut taken = HashSet::new();
-        let mut is_kept = |index: &usize| {
-            let place = self.place(&series.points[*index]);
-            let cell = [place.x, place.y].map(|length| (length / cell_pt).floor() as i64);
-            self.frame.holds(place) && taken.insert(cell)
-        };
-        let kept: Vec<usize> = (0..series.points.len()).filter(&mut is_kept).collect();
+        let kept: Vec<usize> = (0..series.points.len())
+            .filter(|&index| {
+                let place = self.place(&series.points[index]);
+                let cell = [place.x, place.y].map(|length| (length / cell_pt).floor() as i64);
+                self.frame.holds(place) && taken.insert(cell)
+            })
+            .collect();
         series.errors = [0, 1].map(|axis| {
             let errors = kept
                 .iter()
@@ -209,23 +210,27 @@ fn write_below(chart: &Chart, panels: &[PlacedPanel], layout: &ChartLayout, scen
 
 impl Panel {
     fn draw(&self, placed: &PlacedPanel, scene: &mut PageScene) {
-        let part = |is_behind: bool| {
-            let series = self.series.iter();
-            series.filter(move |series| series.style.is_behind == is_behind)
-        };
+        let (behind, before): (Vec<_>, Vec<_>) = self
+            .series
+            .iter()
+            .partition(|series| series.style.is_behind);
         for series in self.series.iter().rev() {
             placed.fill_band(series, scene);
         }
-        for series in part(true).rev() {
+        for series in behind.iter().rev() {
             draw_points(series, placed, scene);
             placed.draw_line(series, scene);
         }
-        part(false).for_each(|series| placed.draw_line(series, scene));
-        part(true)
-            .rev()
-            .for_each(|series| placed.draw_core(series, scene));
+        for series in &before {
+            placed.draw_line(series, scene);
+        }
+        for series in behind.iter().rev() {
+            placed.draw_core(series, scene);
+        }
         draw_frame(placed, scene);
-        part(false).for_each(|series| draw_points(series, placed, scene));
+        for series in &before {
+            draw_points(series, placed, scene);
+        }
     }
 
     fn write_beside(&self, placed: &PlacedPanel, layout: &ChartLayout, scene: &mut PageScene) {

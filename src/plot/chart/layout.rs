@@ -72,25 +72,8 @@ impl ChartLayout {
         let y_ranges: Vec<_> = chart.panels.iter().map(y_range).collect();
         let (left, right, height) = sides(chart, x_range(chart), &y_ranges);
         let top = above + PAGE_EDGE + 0.5 * label;
-        let place = |part: &Chart, x: AxisScale| {
-            let ticks = ticks_of(part, &y_ranges, height);
-            let panels = part
-                .panels
-                .iter()
-                .zip(&y_ranges)
-                .zip(ticks)
-                .enumerate()
-                .map(|(index, ((panel, range), ticks))| {
-                    let own_top = top + index as f64 * (height + label + PANEL_GAP);
-                    let places = (own_top + height, own_top);
-                    let y = AxisScale::new(&panel.y, *range, places);
-                    let title = fitted(panel.y.title(&ticks), height + 0.7 * (label + PANEL_GAP));
-                    PlacedPanel::new(part, x, y, ticks, title)
-                });
-            panels.collect::<Vec<_>>()
-        };
         let [x, beside] = columns(chart, left, right);
-        let panels = place(chart, x);
+        let panels = placed(chart, x, &y_ranges, top, height);
         let bottom = panels.last().map_or(top, |panel| panel.frame.bottom);
         let magnified = chart.magnified.iter();
         Self {
@@ -102,7 +85,7 @@ impl ChartLayout {
                 + title_height()
                 + PAGE_EDGE,
             magnified: magnified
-                .flat_map(|beside_it| place(beside_it, beside))
+                .flat_map(|beside_it| placed(beside_it, beside, &y_ranges, top, height))
                 .collect(),
             panels,
         }
@@ -118,6 +101,30 @@ impl ChartLayout {
     }
 }
 
+/// Returns the panels of `part` along its scale `x`, each `height` pt high, the first one `top` pt below the upper edge.
+fn placed(
+    part: &Chart,
+    x: AxisScale,
+    y_ranges: &[(f64, f64)],
+    top: f64,
+    height: f64,
+) -> Vec<PlacedPanel> {
+    let label = ink::height(LABEL_PT);
+    let ticks = ticks_of(part, y_ranges, height);
+    part.panels
+        .iter()
+        .zip(y_ranges)
+        .zip(ticks)
+        .enumerate()
+        .map(|(index, ((panel, range), ticks))| {
+            let own_top = top + index as f64 * (height + label + PANEL_GAP);
+            let y = AxisScale::new(&panel.y, *range, (own_top + height, own_top));
+            let title = fitted(panel.y.title(&ticks), height + 0.7 * (label + PANEL_GAP));
+            PlacedPanel::new(part, x, y, ticks, title)
+        })
+        .collect()
+}
+
 fn x_range(chart: &Chart) -> (f64, f64) {
     let all = chart.panels.iter().flat_map(|panel| &panel.series);
     chart.x.range_of(all.flat_map(|series| series.reach(0)))
@@ -125,27 +132,35 @@ fn x_range(chart: &Chart) -> (f64, f64) {
 
 /// The axes x of `chart` and of what it magnifies, from `left` to `right`: so far apart that their labels do not touch.
 fn columns(chart: &Chart, left: f64, right: f64) -> [AxisScale; 2] {
-    let scale = |part: &Chart, places| AxisScale::new(&part.x, x_range(part), places);
     let Some(magnified) = &chart.magnified else {
-        return [scale(chart, (left, right)); 2];
+        return [x_scale(chart, (left, right)); 2];
     };
     let half = 0.5 * (left + right);
-    let [from, to] = [scale(chart, (left, half)), scale(magnified, (half, right))];
-    let over = |along: &AxisScale, axis, tick: fn(&[Tick]) -> Option<&Tick>, edge: f64| {
-        let ticks = along.ticks_below(axis);
-        let label = tick(&ticks.major);
-        label.map_or(0.0, |label_there| {
-            0.5 * ink::width(&label_there.label, LABEL_PT)
-                - (edge - along.place(label_there.at)).abs()
-        })
-    };
-    let both = over(&from, &chart.x, <[Tick]>::last, half).max(0.0)
-        + over(&to, &magnified.x, <[Tick]>::first, half).max(0.0);
+    let (from, to) = (
+        x_scale(chart, (left, half)),
+        x_scale(magnified, (half, right)),
+    );
+    let (last, first) = (from.ticks_below(&chart.x), to.ticks_below(&magnified.x));
+    let both =
+        over_edge(&from, last.major.last(), half) + over_edge(&to, first.major.first(), half);
     let apart = 0.5 * (both + BESIDE);
     [
-        scale(chart, (left, half - apart)),
-        scale(magnified, (half + apart, right)),
+        x_scale(chart, (left, half - apart)),
+        x_scale(magnified, (half + apart, right)),
     ]
+}
+
+/// Returns the scale of the x axis of `part` between two `places` on the page.
+fn x_scale(part: &Chart, places: (f64, f64)) -> AxisScale {
+    AxisScale::new(&part.x, x_range(part), places)
+}
+
+/// Returns by how much the label of a `tick` reaches over the end of its axis at `edge`, pt.
+fn over_edge(along: &AxisScale, tick: Option<&Tick>, edge: f64) -> f64 {
+    tick.map_or(0.0, |tick| {
+        tick.half_width() - (edge - along.place(tick.at)).abs()
+    })
+    .max(0.0)
 }
 
 /// Where the panels begin and end, and how high each is, pt.
@@ -216,7 +231,7 @@ fn right_edge(chart: &Chart, range: (f64, f64), left: f64, right: f64) -> f64 {
     let scale = AxisScale::new(&chart.x, range, (left, right));
     let ticks = scale.ticks_below(&chart.x);
     let over = ticks.major.last().map_or(0.0, |tick| {
-        let end = scale.place(tick.at) + 0.5 * ink::width(&tick.label, LABEL_PT);
+        let end = scale.place(tick.at) + tick.half_width();
         end - (chart.width_pt - PAGE_EDGE)
     });
     right - over.max(0.0)

@@ -5,6 +5,7 @@
 //! digits only leave an offset to it.
 
 use crate::engine::text::nice_numbers;
+use crate::plot::ink::{self, LABEL_PT};
 
 /// Numbers from this power of ten on leave a power to the title, and those up to the other.
 const LARGE_POWER: i32 = 4;
@@ -24,6 +25,13 @@ const MOST_ZEROS: i32 = 12;
 pub struct Tick {
     pub at: f64,
     pub label: String,
+}
+
+impl Tick {
+    /// Returns half of the width of its label, pt.
+    pub fn half_width(&self) -> f64 {
+        0.5 * ink::width(&self.label, LABEL_PT)
+    }
 }
 
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -125,12 +133,8 @@ impl Ticks {
                 Self::linear(low, high, fits)
             };
         }
-        let all = |every: i64| -> Vec<Tick> {
-            let powers = (first..=last).filter(|power| power.rem_euclid(every) == 0);
-            powers.map(|power| decade(power as i32)).collect()
-        };
         let every = (1..=last - first + 1)
-            .find(|&every| fits(&all(every)))
+            .find(|&every| fits(&decades(first, last, every)))
             .unwrap_or(last - first + 1);
         let minor = match every {
             1 => (first - 1..=last).flat_map(parts_of_decade).collect(),
@@ -140,7 +144,7 @@ impl Ticks {
                 .collect::<Vec<_>>(),
         };
         Self {
-            major: all(every),
+            major: decades(first, last, every),
             minor: minor
                 .into_iter()
                 .filter(|at| (low..=high).contains(at))
@@ -171,6 +175,22 @@ impl Ticks {
     }
 }
 
+/// Returns the round values from `low` to `high`, the finest of which there are at most `most`.
+pub fn round_values(low: f64, high: f64, most: usize) -> Vec<f64> {
+    let range = high - low;
+    if !(range > 0.0 && range.is_finite()) || most == 0 {
+        return Vec::new();
+    }
+    let first = nice_numbers::rung_below(range / most as f64);
+    let finest = (first..first + 4).find_map(|rung| {
+        let step = nice_numbers::rung(rung);
+        let (from, to) = between(low / step, high / step);
+        let numbers = RoundMultiples::of_rung(rung);
+        (to - from < most as i64).then(|| (from..=to).map(|count| numbers.value(count)).collect())
+    });
+    finest.unwrap_or_default()
+}
+
 fn between(low: f64, high: f64) -> (i64, i64) {
     (ceil(low), floor(high))
 }
@@ -196,6 +216,12 @@ fn leading_power(largest: f64) -> i32 {
 /// 2, 3, ..., 9 times ten to this power.
 fn parts_of_decade(power: i64) -> impl Iterator<Item = f64> {
     (2..10).map(move |digit| f64::from(digit) * nice_numbers::rung(3 * power))
+}
+
+/// Returns ticks at the powers of ten from `first` to `last` that are multiples of `every`.
+fn decades(first: i64, last: i64, every: i64) -> Vec<Tick> {
+    let powers = (first..=last).filter(|power| power.rem_euclid(every) == 0);
+    powers.map(|power| decade(power as i32)).collect()
 }
 
 fn decade(power: i32) -> Tick {
@@ -326,6 +352,21 @@ mod tests {
         assert!(narrow.major.len() >= 3);
     }
 
+    #[test]
+    fn values_are_round_and_no_more_than_there_is_room_for() {
+        for (low, high, most, expected) in [
+            (0.0, 230.0, 6, &[0.0, 50.0, 100.0, 150.0, 200.0][..]),
+            (0.0, 230.0, 2, &[0.0, 200.0]),
+            (-0.8, 0.8, 5, &[-0.5, 0.0, 0.5]),
+            (12.25, 12.35, 3, &[12.25, 12.3, 12.35]),
+            (1.0, 1.0, 5, &[]),
+            (0.0, f64::INFINITY, 5, &[]),
+            (0.0, 1.0, 0, &[]),
+        ] {
+            assert_eq!(round_values(low, high, most), expected, "{low} to {high}");
+        }
+    }
+
     proptest! {
         #[test]
         fn every_label_is_its_number(low in -1e6_f64..1e6, exponent in -9_i32..12, most in 2_usize..9) {
@@ -351,8 +392,8 @@ mod tests {
             prop_assert!(ticks.major.len() <= 9 && ticks.minor.len() <= 60);
             let (low, high) = (low.abs().min(high.abs()), low.abs().max(high.abs()));
             if low > 0.0 && high.is_finite() && high > low {
-                let ticks = Ticks::log(low, high, at_most(6));
-                prop_assert!(ticks.major.len() <= 9, "{:?}", ticks.major);
+                let decades = Ticks::log(low, high, at_most(6));
+                prop_assert!(decades.major.len() <= 9, "{:?}", decades.major);
             }
         }
     }

@@ -14,11 +14,14 @@ pub struct Font {
     glyphs: Vec<Glyph>,
 }
 
+/// A place x, y, and whether the outline runs through it.
+type ContourPoint = (i16, i16, bool);
+
 /// A letter in the units of the font, y up.
 struct Glyph {
     advance: u16,
-    /// The contours, each without its first point at its end: a place, and whether the outline runs through it.
-    contours: Vec<Vec<(i16, i16, bool)>>,
+    /// The contours, each without its first point at its end.
+    contours: Vec<Vec<ContourPoint>>,
     /// Left, lowest, right and highest place.
     bounds: [i16; 4],
 }
@@ -110,7 +113,11 @@ impl Font {
     }
 
     fn maxp(&self) -> Vec<u8> {
-        let most = |count: &dyn Fn(&Glyph) -> u16| self.glyphs.iter().map(count).max().unwrap_or(0);
+        let contours = self.glyphs.iter().map(|glyph| glyph.contours.len());
+        let points = self
+            .glyphs
+            .iter()
+            .map(|glyph| glyph.contours.iter().map(Vec::len).sum::<usize>());
         let count = self.glyphs.len() as u16;
         // No letters made of others, no instructions.
         shorts(&[
@@ -118,8 +125,8 @@ impl Font {
                 1,
                 0,
                 count,
-                most(&|glyph| glyph.contours.iter().map(Vec::len).sum::<usize>() as u16),
-                most(&|glyph| glyph.contours.len() as u16),
+                points.max().unwrap_or(0) as u16,
+                contours.max().unwrap_or(0) as u16,
                 0,
                 0,
                 2,
@@ -134,18 +141,24 @@ fn shorts(parts: &[&[u16]]) -> Vec<u8> {
     numbers.flat_map(|number| number.to_be_bytes()).collect()
 }
 
+fn contour_point(p: Point, is_on: bool) -> ContourPoint {
+    (p.x as i16, -p.y as i16, is_on)
+}
+
 impl Glyph {
     fn from_letter(letter: &Letter) -> Self {
-        let mut contours: Vec<Vec<(i16, i16, bool)>> = Vec::new();
-        let point = |p: Point, is_on: bool| (p.x as i16, -p.y as i16, is_on);
+        let mut contours: Vec<Vec<ContourPoint>> = Vec::new();
+
         for segment in &letter.outline.0 {
             if let Segment::Move(_) = segment {
                 contours.push(Vec::new());
             }
             let contour = contours.last_mut().into_iter();
             let points = match *segment {
-                Segment::Move(to) | Segment::Line(to) => vec![point(to, true)],
-                Segment::Quadratic(control, to) => vec![point(control, false), point(to, true)],
+                Segment::Move(to) | Segment::Line(to) => vec![contour_point(to, true)],
+                Segment::Quadratic(control, to) => {
+                    vec![contour_point(control, false), contour_point(to, true)]
+                }
                 // The table has none, and a contour is closed by itself.
                 Segment::Cubic(..) | Segment::Close => vec![],
             };
@@ -156,11 +169,11 @@ impl Glyph {
                 contour.pop();
             }
         }
-        let ends = |of: fn(&(i16, i16, bool)) -> i16| {
-            let places = || contours.iter().flatten().map(of);
-            (places().min().unwrap_or(0), places().max().unwrap_or(0))
-        };
-        let ((left, right), (low, high)) = (ends(|p| p.0), ends(|p| p.1));
+        let sides: [fn(&ContourPoint) -> i16; 2] = [|p| p.0, |p| p.1];
+        let [(left, right), (low, high)] = sides.map(|side| {
+            let places = contours.iter().flatten().map(side);
+            (places.clone().min().unwrap_or(0), places.max().unwrap_or(0))
+        });
         Self {
             advance: letter.advance as u16,
             bounds: [left, low, right, high],
@@ -181,14 +194,12 @@ impl Glyph {
             table.extend((count - 1).to_be_bytes());
         }
         table.extend([0, 0]); // no instructions
-        let points = || self.contours.iter().flatten();
-        table.extend(points().map(|point| u8::from(point.2)));
-        for of in [
-            |point: &(i16, i16, bool)| point.0,
-            |point: &(i16, i16, bool)| point.1,
-        ] {
+        let points = self.contours.iter().flatten();
+        table.extend(points.clone().map(|point| u8::from(point.2)));
+        let sides: [fn(&ContourPoint) -> i16; 2] = [|p| p.0, |p| p.1];
+        for side in sides {
             let mut before = 0;
-            for place in points().map(of) {
+            for place in points.clone().map(side) {
                 table.extend((place - before).to_be_bytes());
                 before = place;
             }

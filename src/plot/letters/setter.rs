@@ -166,15 +166,20 @@ impl Setter {
 
 /// An upright box, drawn as a line around nothing: the inner contour runs against the outer one.
 pub fn missing() -> table::Letter {
-    let contour = |corners: [[f64; 2]; 4]| VectorPath::polygon(corners.map(|[x, y]| at(x, y)));
-    let mut outline = contour([[70.0, 0.0], [530.0, 0.0], [530.0, -656.0], [70.0, -656.0]]);
-    let inner = [
-        [110.0, -40.0],
-        [110.0, -616.0],
-        [490.0, -616.0],
-        [490.0, -40.0],
+    let outer = [
+        at(70.0, 0.0),
+        at(530.0, 0.0),
+        at(530.0, -656.0),
+        at(70.0, -656.0),
     ];
-    outline.0.extend(contour(inner).0);
+    let inner = [
+        at(110.0, -40.0),
+        at(110.0, -616.0),
+        at(490.0, -616.0),
+        at(490.0, -40.0),
+    ];
+    let mut outline = VectorPath::polygon(outer);
+    outline.0.extend(VectorPath::polygon(inner).0);
     table::Letter {
         advance: BOX,
         outline,

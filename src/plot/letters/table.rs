@@ -66,9 +66,9 @@ impl FontStyle {
 
     /// By how much the right letter of a pair is moved to the right, in thousandths of their size; mostly not at all.
     pub fn kerning(&self, left: char, right: char) -> f64 {
-        let class = |side: usize, letter: char| self.classes[side].get(&letter.into()).copied();
-        let pair = class(0, left).zip(class(1, right));
-        let kerning = pair.and_then(|pair| self.kerning.get(&pair));
+        let [lefts, rights] = &self.classes;
+        let classes = lefts.get(&left.into()).zip(rights.get(&right.into()));
+        let kerning = classes.and_then(|(before, after)| self.kerning.get(&(*before, *after)));
         kerning.copied().unwrap_or(0.0)
     }
 

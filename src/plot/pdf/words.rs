@@ -81,14 +81,8 @@ impl Fonts {
         for line in words
             .letters
             .chunk_by(|a: &PlacedLetter, b: &PlacedLetter| {
-                let off = |p: &PlacedLetter| {
-                    if words.is_upward {
-                        p.origin.x
-                    } else {
-                        p.origin.y
-                    }
-                };
-                (a.is_italic, a.size_pt, off(a)) == (b.is_italic, b.size_pt, off(b))
+                let [a_line, b_line] = [a, b].map(|it| it.along_and_across(words.is_upward).1);
+                (a.is_italic, a.size_pt, a_line) == (b.is_italic, b.size_pt, b_line)
             })
         {
             self.put_line(line, words.is_upward, content);
@@ -112,14 +106,14 @@ impl Fonts {
         } else {
             [1.0, 0.0, 0.0, -1.0, x, y]
         });
-        let along = |p: &PlacedLetter| if is_upward { -p.origin.y } else { p.origin.x };
         let advances: Vec<f32> = font.advances().collect();
         let mut shown = content.show_positioned();
         let mut items = shown.items();
         let mut glyphs: Vec<u8> = Vec::new();
-        let mut next = along(first);
+        let (mut next, _) = first.along_and_across(is_upward);
         for letter in line {
-            let off = (along(letter) - next) * 1000.0 / letter.size_pt;
+            let (along, _) = letter.along_and_across(is_upward);
+            let off = (along - next) * 1000.0 / letter.size_pt;
             if off.abs() > SAME_LENGTH {
                 items.show(Str(&glyphs)).adjust(-libm::round(off) as f32);
                 glyphs.clear();

@@ -137,15 +137,21 @@ fn in_parts(curves: &Recording) -> Vec<RecordingBin> {
     let Some(whole) = curves.whole() else {
         return blocks;
     };
-    let length_s = (whole.end_s - whole.begin_s).max(f64::MIN_POSITIVE);
-    let part = |time_s: f64| (CURVE_BINS * ((time_s - whole.begin_s) / length_s)) as u64;
     for block in curves.finest() {
         match blocks.last_mut() {
-            Some(last) if part(last.begin_s) == part(block.end_s) => *last = last.and(block),
+            Some(last) if part_at(&whole, last.begin_s) == part_at(&whole, block.end_s) => {
+                *last = last.and(block);
+            }
             _ => blocks.push(block),
         }
     }
     blocks
+}
+
+/// Returns which part of `whole` holds the time `time_s`.
+fn part_at(whole: &RecordingBin, time_s: f64) -> u64 {
+    let length_s = (whole.end_s - whole.begin_s).max(f64::MIN_POSITIVE);
+    (CURVE_BINS * ((time_s - whole.begin_s) / length_s)) as u64
 }
 
 #[derive(Clone, Debug)]
@@ -163,20 +169,24 @@ pub struct RunSampler {
 impl RunSampler {
     /// A recorder of what is `wanted` of the run of `scenario`, before its start.
     pub fn new(scenario: &Arc<Scenario>, wanted: SampleRequest) -> Self {
-        Self::of(scenario, wanted, false)
-    }
-
-    /// The same; `is_exact` says whether it is of the exact motion, whose path is a line.
-    fn of(scenario: &Arc<Scenario>, wanted: SampleRequest, is_exact: bool) -> Self {
         Self {
             stretch_end_s: wanted.end_s(scenario),
             curves: vec![Recording::default(); wanted.columns.len().div_ceil(EXACT_TOGETHER)],
-            path: path::PathRecorder::new(is_exact),
-            above: path::PathRecorder::new(is_exact),
+            path: path::PathRecorder::new(false),
+            above: path::PathRecorder::new(false),
             end_s: 0.0,
             is_empty: true,
             scenario: Arc::clone(scenario),
             wanted,
+        }
+    }
+
+    /// Returns a recorder of the exact motion, whose path is a line.
+    fn of_exact_motion(scenario: &Arc<Scenario>, wanted: SampleRequest) -> Self {
+        Self {
+            path: path::PathRecorder::new(true),
+            above: path::PathRecorder::new(true),
+            ..Self::new(scenario, wanted)
         }
     }
 
@@ -213,9 +223,9 @@ impl RunSampler {
         }
         let numbers = sample();
         let columns = self.wanted.columns.chunks(EXACT_TOGETHER);
-        for (columns, curves) in columns.zip(&mut self.curves) {
+        for (together, curves) in columns.zip(&mut self.curves) {
             let mut values = [0.0; EXACT_TOGETHER];
-            for (value, column) in values.iter_mut().zip(columns) {
+            for (value, column) in values.iter_mut().zip(together) {
                 *value = column.value(&self.scenario, &numbers);
             }
             curves.push_values(time_s, values);
@@ -255,11 +265,16 @@ pub fn play(
     let last = Simulation::step_at(scenario, wanted.end_s(scenario)).min(scenario.steps);
     let mut beside = ExactReference::new(scenario);
     recorder.follow(simulation.now());
-    let each = |step: &Step| {
-        recorder.follow(step);
-        beside.hold(step.after());
-    };
-    let ended = stream::play::<io::Sink>(&mut simulation, last, None, each, &mut watch);
+    let ended = stream::play::<io::Sink>(
+        &mut simulation,
+        last,
+        None,
+        |step: &Step| {
+            recorder.follow(step);
+            beside.hold(step.after());
+        },
+        &mut watch,
+    );
     let broke = match ended {
         Ok((Ended::Stopped, _)) => return None,
         Ok((Ended::NotFinite(error), _)) => Some(error),
@@ -304,7 +319,7 @@ pub fn exact(
     let count = ((end_s - begin_s) / interval_s)
         .ceil()
         .max(LEAST_EXACT_SAMPLES) as u64;
-    let mut recorder = RunSampler::of(scenario, wanted.clone(), true);
+    let mut recorder = RunSampler::of_exact_motion(scenario, wanted.clone());
     let mut azimuth = Azimuth::start(&scenario.start.axle());
     for number in 0..=count {
         let time_s = begin_s + (end_s - begin_s) * (number as f64 / count as f64);

@@ -61,15 +61,11 @@ impl Columns {
     fn band(&self, placed: &PlacedPanel) -> Vec<[f64; 3]> {
         let (low, high) = placed.x.range;
         let apart = (high - low) / self.0.len() as f64;
-        let extent = |index: usize| {
-            let near = &self.0[index.saturating_sub(1)..(index + 2).min(self.0.len())];
-            near.iter()
-                .filter_map(|(_, extent)| *extent)
-                .reduce(Extent::and)
-        };
         let mut band: Vec<_> = (0..self.0.len())
             .filter_map(|index| {
-                let Extent { min, max } = extent(index)?;
+                let near = &self.0[index.saturating_sub(1)..(index + 2).min(self.0.len())];
+                let extents = near.iter().filter_map(|(_, extent)| *extent);
+                let Extent { min, max } = extents.reduce(Extent::and)?;
                 Some([low + apart * (index as f64 + 0.5), min, max])
             })
             .collect();
@@ -97,12 +93,12 @@ pub(super) fn over_time(
     let panels = columns.iter().zip(chart.panels.iter().zip(&layout.panels));
     let all = panels.flat_map(|(column, (panel, placed))| {
         let series = drawn.iter().zip(&panel.series);
-        series.filter_map(|(drawn, series)| {
-            let columns = Columns::new(&drawn.course.parts(column), placed);
-            let is_dense = columns.are_dense(series.style.width_pt, placed);
-            let swing_s = drawn.course.swing_s.unwrap_or(f64::INFINITY);
-            let swings = (drawn.course.end_s - spec.from_s) / swing_s;
-            is_dense.then(|| columns.turns().max((2.0 * swings) as u64))
+        series.filter_map(|(run, series)| {
+            let parts = Columns::new(&run.course.parts(column), placed);
+            let is_dense = parts.are_dense(series.style.width_pt, placed);
+            let swing_s = run.course.swing_s.unwrap_or(f64::INFINITY);
+            let swings = (run.course.end_s - spec.from_s) / swing_s;
+            is_dense.then(|| parts.turns().max((2.0 * swings) as u64))
         })
     });
     // What shows the most swings shows those of the other curves too.
@@ -138,9 +134,9 @@ pub(super) fn draw_bands(
             .zip(widths)
             .filter(|(it, width_pt)| it.are_dense(*width_pt, placed));
         let widest = dense.map(|(_, width_pt)| width_pt).fold(0.0, f64::max);
-        for (columns, series) in all.iter().zip(&mut panel.series) {
-            if columns.are_dense(series.style.width_pt.max(widest), placed) {
-                series.band = columns.band(placed);
+        for (parts, series) in all.iter().zip(&mut panel.series) {
+            if parts.are_dense(series.style.width_pt.max(widest), placed) {
+                series.band = parts.band(placed);
                 (series.style.is_band, series.style.core) = (true, None);
             }
         }
@@ -162,32 +158,37 @@ pub(super) fn of_paths(
     path: fn(&SampledRun) -> &TracedPath,
     place: impl Fn(&[f64; 3]) -> Point,
 ) -> Option<Dense> {
-    let dense = |drawn: &SampledRunNumbers| {
-        let path = path(&drawn.course);
-        if path.points.len() < 2000 {
-            return None;
-        }
-        let lines = path.lines(&place);
-        let grid = Grid::inked(&lines, PLACE_PT, 0.0)?;
-        let area_pt2 = grid.area_pt2();
-        if grid.area_inside_pt2(INSIDE) < DENSE_SHARE * area_pt2 {
-            return None;
-        }
-        let length_pt: f64 = lines.iter().map(|line| curve::length(line)).sum();
-        let share = (LOOSE * area_pt2 / (path.times * length_pt * LINE_PT)).min(0.5);
-        let window_s = share * (drawn.course.end_s - spec.from_s);
-        let what = format!(
-            "on {} mm its turns cover the paper, so that nothing of them is told apart",
-            width_mm(spec)
-        );
-        Some(proposal(window_s, spec, what))
-    };
-    let earliest = |is_exact: bool| {
-        let drawn = drawn.iter().filter(|drawn| drawn.is_exact == is_exact);
-        let dense = drawn.filter_map(dense);
-        dense.min_by(|a, b| a.to_s.total_cmp(&b.to_s))
-    };
-    earliest(false).or_else(|| earliest(true))
+    let (exact, stepped): (Vec<_>, Vec<_>) = drawn.iter().partition(|run| run.is_exact);
+    [stepped, exact].into_iter().find_map(|runs| {
+        runs.into_iter()
+            .filter_map(|run| of_path(path(&run.course), run.course.end_s, spec, &place))
+            .min_by(|a, b| a.to_s.total_cmp(&b.to_s))
+    })
+}
+
+/// Proposes a stretch for one `path`, which was recorded until `end_s`; `None` where it is not dense.
+fn of_path(
+    path: &TracedPath,
+    end_s: f64,
+    spec: &FigureSpec,
+    place: impl Fn(&[f64; 3]) -> Point,
+) -> Option<Dense> {
+    if path.points.len() < 2000 {
+        return None;
+    }
+    let lines = path.lines(place);
+    let grid = Grid::inked(&lines, PLACE_PT, 0.0)?;
+    let area_pt2 = grid.area_pt2();
+    if grid.area_inside_pt2(INSIDE) < DENSE_SHARE * area_pt2 {
+        return None;
+    }
+    let length_pt: f64 = lines.iter().map(|line| curve::length(line)).sum();
+    let share = (LOOSE * area_pt2 / (path.times * length_pt * LINE_PT)).min(0.5);
+    let what = format!(
+        "on {} mm its turns cover the paper, so that nothing of them is told apart",
+        width_mm(spec)
+    );
+    Some(proposal(share * (end_s - spec.from_s), spec, what))
 }
 
 fn width_mm(spec: &FigureSpec) -> f64 {

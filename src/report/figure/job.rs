@@ -67,13 +67,13 @@ impl<'a> FigureJob<'a> {
 
     /// Whether both are drawn from the same numbers of the runs under the same names.
     pub fn is_alike(&self, other: &Self) -> bool {
-        let is_of_data = |it: &Self| matches!(it.kind, FigureKind::Residuals);
+        let are_residuals = [self, other].map(|it| matches!(it.kind, FigureKind::Residuals));
         let [a, b] = [self.spec, other.spec];
         (a.from_s, a.to_s) == (b.from_s, b.to_s)
             && a.width_pt == b.width_pt
             && a.exact == b.exact
             && self.is_beside() == other.is_beside()
-            && is_of_data(self) == is_of_data(other)
+            && are_residuals[0] == are_residuals[1]
             && a.labels == b.labels
     }
 
@@ -152,7 +152,7 @@ pub struct DrawnFigure {
 
 impl DrawnFigure {
     /// A picture of which there is nothing to say.
-    pub fn of(scene: PageScene) -> Self {
+    pub fn without_remarks(scene: PageScene) -> Self {
         Self {
             scene,
             warnings: Vec::new(),

@@ -98,14 +98,14 @@ fn column(name: &str) -> Result<&'static CsvColumn, String> {
     if FIGURE_KIND_NAMES.contains(&name) {
         return Err("is a figure of its own: no columns can stand beside it".to_owned());
     }
-    let columns = || CsvColumn::all().map(|column| column.name);
+    let columns: Vec<&str> = CsvColumn::all().map(|column| column.name).collect();
     find(name).ok_or_else(|| if readouts::find(name).is_some() {
         format!(
             "is a readout, one number of a run, and no column: a sweep's table is drawn by its readouts; over time there is {}",
-            columns().collect::<Vec<_>>().join(", ")
+            columns.join(", ")
         )
     } else {
-        let near = problem::nearest(name, FIGURE_KIND_NAMES.into_iter().chain(columns()));
+        let near = problem::nearest(name, FIGURE_KIND_NAMES.into_iter().chain(columns));
         format!("is no kind of figure (traces, above, 3d, residuals) and no column of the CSV: {near}")
     })
 }

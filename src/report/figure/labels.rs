@@ -69,12 +69,9 @@ impl FigureLabels {
     /// Where the chart cannot have them.
     pub fn apply(&self, chart: &mut Chart) -> Result<Option<String>, String> {
         self.check(chart)?;
-        let renamed = |text: &String, axis: &mut ChartAxis, room_pt: f64| {
-            axis.name = letters::shortened(text, TITLE_PT, room_pt);
-            axis.unit.clear();
-        };
+
         if let Some(text) = &self.x {
-            renamed(text, &mut chart.x, AXIS_TITLE_SHARE * chart.width_pt);
+            rename(&mut chart.x, text, AXIS_TITLE_SHARE * chart.width_pt);
         }
         chart.x.is_log |= self.is_log[0];
         chart.x.range = chart
@@ -82,7 +79,7 @@ impl FigureLabels {
             .range
             .filter(|range| !chart.x.is_log || range.0 > 0.0);
         for (panel, text) in chart.panels.iter_mut().zip(&self.y) {
-            renamed(text, &mut panel.y, LONGEST_PT);
+            rename(&mut panel.y, text, LONGEST_PT);
         }
         for panel in &mut chart.panels {
             panel.y.is_log |= self.is_log[1];
@@ -123,4 +120,10 @@ impl FigureLabels {
         let place = at(0.5 * scene.width_pt, AROUND_PT + height);
         scene.write(&markup, TITLE_PT, place, 0.5);
     }
+}
+
+/// Writes `text` at `axis` in place of its name and unit.
+fn rename(axis: &mut ChartAxis, text: &str, room_pt: f64) {
+    axis.name = letters::shortened(text, TITLE_PT, room_pt);
+    axis.unit.clear();
 }

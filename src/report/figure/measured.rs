@@ -46,18 +46,17 @@ pub(super) fn over_time(
             added.push((index, drawn(job, series, &points)));
         }
     }
-    let times = || {
-        added
-            .iter()
-            .flat_map(|(_, it)| it.points.iter().map(|at| at[0]))
-    };
+    let times_s: Vec<f64> = added
+        .iter()
+        .flat_map(|(_, it)| it.points.iter().map(|at| at[0]))
+        .collect();
     if let Some(range) = &mut chart.x.range {
         if job.spec.to_s.is_none() {
-            range.1 = times().fold(range.1, f64::max);
+            range.1 = times_s.iter().copied().fold(range.1, f64::max);
         }
-        make_room(range, times);
+        make_room(range, &times_s);
     }
-    let count = times().count();
+    let count = times_s.len();
     for (index, it) in added {
         chart.panels[index].series.push(ChartSeries {
             name: name(measured, count, job.spec),
@@ -65,25 +64,25 @@ pub(super) fn over_time(
             ..it
         });
     }
-    let columns: Vec<_> = series.curves.iter().map(|it| it.quantity.name).collect();
+    let names: Vec<_> = series.curves.iter().map(|it| it.quantity.name).collect();
     Ok((count == 0).then(|| {
         format!(
             "no point of {} is in this figure: it has {}; --kind {} shows them",
             measured.origin,
-            columns.join(", "),
-            columns.join(",")
+            names.join(", "),
+            names.join(",")
         )
     }))
 }
 
-/// Widens the `range` of an axis where one of `times` would stand on the frame: its error bar would lie on it.
-fn make_room<Times: Iterator<Item = f64>>(range: &mut (f64, f64), times: impl Fn() -> Times) {
+/// Widens the `range` of an axis where one of `times_s` would stand on the frame: its error bar would lie on it.
+fn make_room(range: &mut (f64, f64), times_s: &[f64]) {
     let room = BESIDE_POINTS * (range.1 - range.0);
     let (least, most) = (range.0 + room, range.1 - room);
-    if times().any(|time_s| time_s < least) {
+    if times_s.iter().any(|time_s| *time_s < least) {
         range.0 -= room;
     }
-    if times().any(|time_s| time_s > most) {
+    if times_s.iter().any(|time_s| *time_s > most) {
         range.1 += room;
     }
 }
@@ -109,14 +108,14 @@ pub(super) fn above(job: &FigureJob<'_>) -> Result<(Option<ChartSeries>, Option<
             )),
         ));
     }
-    let errors = |part: usize| {
-        let sigmas = shown.iter().map(|place| place.sigmas[part]);
-        sigmas.map(|sigma| sigma.unwrap_or(f64::NAN)).collect()
-    };
+
     let places = ChartSeries {
         name: name(measured, shown.len(), job.spec),
         points: shown.iter().map(|place| [place.at.x, place.at.y]).collect(),
-        errors: [errors(0), errors(1)],
+        errors: [0, 1].map(|part| {
+            let sigmas = shown.iter().map(|place| place.sigmas[part]);
+            sigmas.map(|sigma| sigma.unwrap_or(f64::NAN)).collect()
+        }),
         style: SeriesStyle::measured(shown.len()),
         ..ChartSeries::default()
     };
@@ -167,10 +166,12 @@ pub(super) fn residuals(
     let end_s = spec.to_s.unwrap_or(job.end_s().max(last_s));
     let margin_s = RESIDUAL_MARGIN * (end_s - spec.from_s);
     let range = (spec.from_s - margin_s, end_s + margin_s);
-    let curves = || series.curves.iter();
-    let mut panels: Vec<Panel> = curves().map(|curve| empty(curve, range)).collect();
-    let shown = curves().map(|curve| drawn(job, series, &curve.points));
-    let count = shown.map(|shown| shown.points.len()).sum();
+    let curves = &series.curves;
+    let mut panels: Vec<Panel> = curves.iter().map(|curve| empty(curve, range)).collect();
+    let count = curves
+        .iter()
+        .map(|curve| drawn(job, series, &curve.points).points.len())
+        .sum();
     for (index, (run, run_name)) in runs.iter().zip(names(job)).enumerate() {
         let Some(model) = said(job, series, run, &mut watch)? else {
             return Ok(None);
@@ -179,8 +180,8 @@ pub(super) fn residuals(
             [_] => (name(measured, count, spec), SeriesStyle::measured(0)),
             _ => (run_name, SeriesStyle::points(index)),
         };
-        for ((panel, curve), model) in panels.iter_mut().zip(&series.curves).zip(&model) {
-            let points = beside(curve, model, Residual::value);
+        for ((panel, curve), values) in panels.iter_mut().zip(curves).zip(&model) {
+            let points = beside(curve, values, Residual::value);
             panel.series.push(ChartSeries {
                 name: name.clone(),
                 style: style.clone(),
@@ -192,7 +193,7 @@ pub(super) fn residuals(
     spec.labels.apply(&mut chart)?;
     let mut scene = chart.scene();
     spec.labels.write_title(&mut scene);
-    Ok(Some(DrawnFigure::of(scene)))
+    Ok(Some(DrawnFigure::without_remarks(scene)))
 }
 
 /// The panel of the residuals of `curve` with the line of zero alone.

@@ -11,40 +11,48 @@ use crate::plot::letters;
 pub(super) fn names(job: &FigureJob<'_>) -> Vec<String> {
     let &FigureJob { runs, spec, .. } = job;
     let room_pt = longest_name(spec.page_width_pt()) - ink::width(EVERY_STEP, LABEL_PT);
-    let shortened = |text: &str| letters::shortened(text, LABEL_PT, room_pt);
     let given = &spec.labels.names;
     if !given.is_empty() {
-        return given.iter().map(|name| shortened(name)).collect();
+        let names = given.iter();
+        return names
+            .map(|name| letters::shortened(name, LABEL_PT, room_pt))
+            .collect();
     }
-    let title = |run: &FigureRun| run.scenario.file.title.clone();
-    let scheme = |run: &FigureRun| scheme_in_words(run.scenario.motion.scheme.name).to_owned();
-    let parts: [&dyn Fn(&FigureRun) -> String; 3] = [&title, &scheme, &step];
-    let mut differs = parts.map(|of| runs.iter().any(|run| of(run) != of(&runs[0])));
+    let mut differs = PARTS.map(|of| runs.iter().any(|run| of(run) != of(&runs[0])));
     if let ([run], true) = (runs, job.is_beside()) {
         differs = [false, true, run.scenario.motion.scheme.order.is_some()];
     }
-    let name = |run: &FigureRun| -> String {
-        if differs == [false; 3] {
-            let is_alone = runs.len() == 1;
-            return if is_alone {
-                String::new()
-            } else {
-                shortened(&run.named)
-            };
-        }
-        let words = (0..2).filter(|part| differs[*part]);
-        let words: Vec<_> = words.map(|part| parts[part](run)).collect();
-        // The step comes as markup, and keeps its room; the title is cut.
-        let step = match (differs[2], words.is_empty()) {
-            (false, _) => String::new(),
-            (true, true) => step(run),
-            (true, false) => format!(", {}", step(run)),
-        };
-        let rest = room_pt - ink::width(&step, LABEL_PT);
-        letters::shortened(&words.join(", "), LABEL_PT, rest) + &step
-    };
-    runs.iter().map(name).collect()
+    runs.iter()
+        .map(|run| match (differs, runs) {
+            ([false, false, false], [_]) => String::new(),
+            ([false, false, false], _) => letters::shortened(&run.named, LABEL_PT, room_pt),
+            _ => by_parts(run, differs, room_pt),
+        })
+        .collect()
 }
+
+/// Returns the name of `run` by those of its [`PARTS`] that differ.
+fn by_parts(run: &FigureRun, differs: [bool; 3], room_pt: f64) -> String {
+    let words: Vec<_> = (0..2)
+        .filter(|part| differs[*part])
+        .map(|part| PARTS[part](run))
+        .collect();
+    // The step comes as markup, and keeps its room; the title is cut.
+    let step = match (differs[2], words.is_empty()) {
+        (false, _) => String::new(),
+        (true, true) => step(run),
+        (true, false) => format!(", {}", step(run)),
+    };
+    let rest = room_pt - ink::width(&step, LABEL_PT);
+    letters::shortened(&words.join(", "), LABEL_PT, rest) + &step
+}
+
+/// What a name consists of.
+const PARTS: [fn(&FigureRun) -> String; 3] = [
+    |run| run.scenario.file.title.clone(),
+    |run| scheme_in_words(run.scenario.motion.scheme.name).to_owned(),
+    step,
+];
 
 /// What a reader who does not know the program calls the motion of a scheme.
 pub(super) fn scheme_in_words(name: &str) -> &str {

@@ -17,7 +17,7 @@ use crate::engine::analysis::Predictability;
 use crate::engine::analysis::health::LEAST_SWING_DEG;
 use crate::engine::export::CsvColumn;
 use crate::engine::run::Truth;
-use crate::engine::scenario::Scenario;
+use crate::engine::scenario::{Scenario, ScenarioFile};
 use crate::engine::text::nice_numbers;
 use crate::engine::text::number::{short, shortest};
 use crate::physics::exact::LagrangeTop;
@@ -398,33 +398,37 @@ const IS_EXACT: &str =
 
 /// The runs whose exact motions differ and are drawn by none of `runs`, each with the name of that motion.
 fn truths(runs: &[FigureRun], room_pt: f64) -> Vec<(&FigureRun, String)> {
-    let motion = |run: &FigureRun| {
-        let mut file = run.scenario.file.clone();
-        let motion = &mut file.motion;
-        (motion.scheme, motion.time_step_s, motion.steps) = (None, 0.0, 0);
-        (file.title, file.about, file.source) = (String::new(), None, None);
-        (file.view, file.gyrolab) = (None, None);
-        file.expected.clear();
-        file
-    };
     let mut distinct: Vec<&FigureRun> = Vec::new();
     for run in runs {
         if distinct.iter().all(|other| motion(other) != motion(run)) {
             distinct.push(run);
         }
     }
-    let is_drawn = |run: &&FigureRun| {
+    let is_alone = distinct.len() == 1;
+    distinct.retain(|run| {
         let mut exact = runs.iter().filter(|other| is_exact(&other.scenario));
-        exact.any(|other| motion(other) == motion(run))
-    };
-    let count = distinct.len();
-    distinct.retain(|run| !is_drawn(run));
-    let name = |run: &FigureRun| {
-        if count == 1 {
-            return EXACT_CURVE_NAME.to_owned();
-        }
-        let title = format!("{}, {EXACT_CURVE_NAME}", run.scenario.file.title);
-        letters::shortened(&title, crate::plot::ink::LABEL_PT, room_pt)
-    };
-    distinct.iter().map(|run| (*run, name(run))).collect()
+        !exact.any(|other| motion(other) == motion(run))
+    });
+    distinct
+        .into_iter()
+        .map(|run| {
+            if is_alone {
+                return (run, EXACT_CURVE_NAME.to_owned());
+            }
+            let title = format!("{}, {EXACT_CURVE_NAME}", run.scenario.file.title);
+            let name = letters::shortened(&title, crate::plot::ink::LABEL_PT, room_pt);
+            (run, name)
+        })
+        .collect()
+}
+
+/// Returns what decides the exact motion of `run`: its file without title, view, scheme and time step.
+fn motion(run: &FigureRun) -> ScenarioFile {
+    let mut file = run.scenario.file.clone();
+    (file.motion.scheme, file.motion.time_step_s) = (None, 0.0);
+    file.motion.steps = 0;
+    (file.title, file.about, file.source) = (String::new(), None, None);
+    (file.view, file.gyrolab) = (None, None);
+    file.expected.clear();
+    file
 }

@@ -1,6 +1,5 @@
 //! A path in bounded memory: where it has been already, it is not kept again.
 
-use foldhash::fast::FixedState;
 use nalgebra::Vector3;
 use std::collections::HashSet;
 use std::f64::consts::TAU;
@@ -23,7 +22,7 @@ pub struct PathRecorder {
     /// Cells along each side; `None` while every point is kept.
     cells: Option<f64>,
     size: [f64; 3],
-    gone: HashSet<[[i32; 3]; 2], FixedState>,
+    gone: HashSet<[[i32; 3]; 2]>,
     left_out: u64,
 }
 
@@ -103,11 +102,11 @@ impl PathRecorder {
             return;
         }
         let end = self.path.points.last();
-        let is_near = |end: &[f64; 3]| {
-            let end = self.cell(end);
-            (0..3).all(|axis| end[axis].abs_diff(from[axis]) <= 2)
-        };
-        if end.is_none_or(|end| !is_near(end)) {
+        let is_far = end.is_none_or(|end| {
+            let cell = self.cell(end);
+            (0..3).any(|axis| cell[axis].abs_diff(from[axis]) > 2)
+        });
+        if is_far {
             let gap = end.map(|_| [f64::NAN; 3]);
             self.path.points.extend(gap.into_iter().chain([last]));
         }
@@ -236,7 +235,7 @@ mod tests {
         assert!(most < 2.0 / 300.0, "{most}");
         let bounded = |step: f64| {
             let angle = |number: u32| step * f64::from(number);
-            let point = |angle: f64| [libm::cos(angle), libm::sin(angle), 0.0];
+            let point = |turned: f64| [libm::cos(turned), libm::sin(turned), 0.0];
             recorded(false, (0..600_000).map(|number| point(angle(number))))
         };
         // Chords that are never repeated become points; a path that stands still is one point.

@@ -81,20 +81,6 @@ fn at_start(symbol: &str) -> String {
 /// A name as words in markup, and its unit.
 pub fn words(name: &str) -> (String, &'static str) {
     let mut unit = "";
-    let mut in_words = |part: &str| -> String {
-        let (bare, of_part) = match Unit::from_name(part) {
-            Some(unit) => (&part[..part.len() - unit.end.len()], unit.name),
-            None => (part, ""),
-        };
-        if !of_part.is_empty() {
-            unit = of_part;
-        }
-        let bare = match bare.strip_prefix(MEASURED_PREFIX) {
-            Some(bare) => format!("{SIMULATED} {bare}"),
-            None => bare.to_owned(),
-        };
-        letters::escape(&bare.replace('_', " "))
-    };
     let mut parts: Vec<&str> = name.split('.').collect();
     if parts.len() > 1 && ["motion", "body"].contains(&parts[0]) {
         parts.remove(0);
@@ -105,7 +91,21 @@ pub fn words(name: &str) -> (String, &'static str) {
     if component.is_some() {
         parts.pop();
     }
-    let mut words: Vec<String> = parts.into_iter().map(&mut in_words).collect();
+    let mut words: Vec<String> = Vec::new();
+    for part in parts {
+        let (bare, of_part) = match Unit::from_name(part) {
+            Some(own) => (&part[..part.len() - own.end.len()], own.name),
+            None => (part, ""),
+        };
+        if !of_part.is_empty() {
+            unit = of_part;
+        }
+        let named = match bare.strip_prefix(MEASURED_PREFIX) {
+            Some(measured) => format!("{SIMULATED} {measured}"),
+            None => bare.to_owned(),
+        };
+        words.push(letters::escape(&named.replace('_', " ")));
+    }
     words.extend(component.map(|(_, letter)| (*letter).to_owned()));
     (words.join(" "), unit)
 }
@@ -113,16 +113,6 @@ pub fn words(name: &str) -> (String, &'static str) {
 /// A unit in markup: rad/s becomes rad s^{−1}.
 pub fn unit_markup(unit: &str) -> String {
     let (above, below) = unit.split_once('/').unwrap_or((unit, ""));
-    let power = |word: &str, sign: &str| -> String {
-        let digits = word.trim_start_matches(|c: char| !c.is_ascii_digit());
-        let base = &word[..word.len() - digits.len()];
-        let base = if base == "deg" { "°" } else { base };
-        match (digits, sign) {
-            ("", "") => base.to_owned(),
-            ("", sign) => format!("{base}^{{{}}}", with_minus(&format!("{sign}1"))),
-            (digits, sign) => format!("{base}^{{{}}}", with_minus(&format!("{sign}{digits}"))),
-        }
-    };
     let numerator = above
         .split(' ')
         .filter(|word| !word.is_empty() && *word != "1")
@@ -132,6 +122,20 @@ pub fn unit_markup(unit: &str) -> String {
         .filter(|word| !word.is_empty())
         .map(|word| power(word, "-"));
     numerator.chain(denominator).collect::<Vec<_>>().join(" ")
+}
+
+/// Returns a factor of a unit such as `m2` as markup; `sign` is "-" in the denominator and "" above.
+fn power(word: &str, sign: &str) -> String {
+    let digits = word.trim_start_matches(|c: char| !c.is_ascii_digit());
+    let base = match &word[..word.len() - digits.len()] {
+        "deg" => "°",
+        base => base,
+    };
+    match (digits, sign) {
+        ("", "") => base.to_owned(),
+        ("", sign) => format!("{base}^{{{}}}", with_minus(&format!("{sign}1"))),
+        (digits, sign) => format!("{base}^{{{}}}", with_minus(&format!("{sign}{digits}"))),
+    }
 }
 
 #[cfg(test)]

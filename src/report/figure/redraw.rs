@@ -28,30 +28,32 @@ pub fn redraw(
         return Err(rule.to_owned().into());
     }
     let folder = path.parent().unwrap_or(Path::new(""));
-    let source = FigureSource::of(&figure.origin, folder).map_err(|problems| {
+    let source = FigureSource::from_origin(&figure.origin, folder).map_err(|problems| {
         let versions = notes.first().map(|note| format!(" ({note})"));
         problems.in_one_line() + &versions.unwrap_or_default()
     })?;
     let drawn = source.draw(watch)?.ok_or(Unverified::Stopped)?;
     let again = write(&drawn.scene, format(&figure, &source), Some(&figure.origin));
-    let again = FigureFile::of(again.map_err(|error| error.to_string())?)?;
+    let again = FigureFile::parse(again.map_err(|error| error.to_string())?)?;
     if figure.origin.all(Payload::Table).next().is_some() {
         notes.push("drawn from the table in it; gyrolab verify computes that where it has a file of its own".to_owned());
     }
-    let (there, drawn) = (&figure.picture, &again.picture);
     let mut difference = None;
-    if there != drawn {
-        let is_same = || {
-            let drawn = pixels(drawn, MOST_PIXELS)?;
-            Some(pixels(there, drawn.1.len())? == drawn)
-        };
-        if figure.form == FileFormat::Png && is_same() == Some(true) {
+    if figure.picture != again.picture {
+        let is_png = figure.form == FileFormat::Png;
+        if is_png && have_same_pixels(&figure.picture, &again.picture) == Some(true) {
             notes.push("its pixels are the same, compressed otherwise".to_owned());
         } else {
             difference = Some("its run, drawn again, gives another picture".to_owned());
         }
     }
     Ok(Some((difference, notes)))
+}
+
+/// Returns whether two PNG files show the same; `None` where one of them cannot be read.
+fn have_same_pixels(there: &[u8], drawn: &[u8]) -> Option<bool> {
+    let of_drawn = pixels(drawn, MOST_PIXELS)?;
+    Some(pixels(there, of_drawn.1.len())? == of_drawn)
 }
 
 fn format(figure: &FigureFile, source: &FigureSource) -> PageFormat {

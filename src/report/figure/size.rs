@@ -25,14 +25,14 @@ pub(super) fn axis(runs: &[FigureRun], name: &str) -> ChartAxis {
 /// where none is known.
 fn of_run(scenario: &Scenario, name: &str) -> f64 {
     let (body, state) = (&scenario.body.mechanics, &scenario.start);
-    let rate = || observables::angular_velocity(body, state).norm();
+    let rate = observables::angular_velocity(body, state).norm();
     match name {
         "x_m" | "y_m" | "z_m" => scenario.arm_m(),
         "tilt_deg" | "azimuth_deg" => 1.0_f64.to_degrees(),
         "Lx_Js" | "Ly_Js" | "Lz_Js" | "L_axle_Js" => state.momentum.norm(),
         "wx_rad_per_s" | "wy_rad_per_s" | "wz_rad_per_s" | "w1_rad_per_s" | "w2_rad_per_s"
-        | "w3_rad_per_s" => rate(),
-        "spin_rpm" => start::rpm(rate()),
+        | "w3_rad_per_s" => rate,
+        "spin_rpm" => start::rpm(rate),
         "energy_J" => {
             let weight = scenario.motion.gravity * body.first_moment().norm();
             observables::kinetic_energy(body, state) + weight.abs()

@@ -109,7 +109,7 @@ impl FigureSource {
     }
 
     /// What the figure of that `origin` shows. A file that was too large to travel is sought in `folder`.
-    pub fn of(origin: &Origin, folder: &Path) -> Result<Self, Problems> {
+    pub fn from_origin(origin: &Origin, folder: &Path) -> Result<Self, Problems> {
         let spec: Result<FigureSpec, _> = origin.figure.clone().try_into();
         let mut source = Self {
             spec: spec.map_err(|error| refused(error.message()))?,
@@ -146,7 +146,7 @@ fn of_table(table: &TableSource, spec: &FigureSpec) -> Result<DrawnFigure, Strin
     let mut chart = of_table::chart(table, &columns, spec.page_width_pt())?;
     let without_point = of_table::warning(table, &chart);
     let hidden = spec.labels.apply(&mut chart)?;
-    let mut figure = DrawnFigure::of(chart.scene());
+    let mut figure = DrawnFigure::without_remarks(chart.scene());
     spec.labels.write_title(&mut figure.scene);
     figure
         .warnings
@@ -163,8 +163,7 @@ fn content(file: &File, folder: &Path) -> Result<String, Problems> {
     let Some(sum) = &file.sha256 else {
         return Ok(file.text.clone());
     };
-    let name = Path::new(&file.name).file_name().unwrap_or_default();
-    let path = folder.join(name);
+    let path = folder.join(Path::new(&file.name).file_name().unwrap_or_default());
     let text = path.is_file().then(|| csv::text(&path).ok()).flatten();
     let text = text.filter(|text| sha256(text.as_bytes()) == *sum);
     text.ok_or_else(|| {

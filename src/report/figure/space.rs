@@ -57,25 +57,29 @@ pub(super) fn scene(
         .map(|drawn| chords::as_drawn(drawn, &drawn.course.path))
         .unzip();
     let mut above = curve::Above::default();
-    for (drawn, style) in drawn.iter().zip(&mut styles) {
-        let lines = drawn.course.path.lines(|at| space.place(&space.boxed(at)));
+    for (run, style) in drawn.iter().zip(&mut styles) {
+        let lines = run.course.path.lines(|at| space.place(&space.boxed(at)));
         above.add(&lines, style);
     }
     let series = names.iter().map(String::as_str).zip(&styles);
     let legend = Legend::new(series, space.stretched());
     let mut items = space.draw(drawn, &styles);
     let (left, top, right, bottom) = extent(&items);
-    let above = legend.height_above(width_pt) + PAGE_EDGE;
-    let shift = at(0.5 * (width_pt - left - right), above - top);
+    let top_edge = legend.height_above(width_pt) + PAGE_EDGE;
+    let shift = at(0.5 * (width_pt - left - right), top_edge - top);
     for item in &mut items.items {
         *item = item.clone().mapped(|p| at(p.x + shift.x, p.y + shift.y));
     }
     items.title = job.title();
     items.width_pt = width_pt;
-    items.height_pt = above + bottom - top + PAGE_EDGE;
+    items.height_pt = top_edge + bottom - top + PAGE_EDGE;
     legend.draw_above(width_pt, PAGE_EDGE, &mut items);
-    let place = |at: &[f64; 3]| space.place(&space.boxed(at));
-    let dense = dense::of_paths(drawn, job.spec, |course| &course.path, place);
+    let dense = dense::of_paths(
+        drawn,
+        job.spec,
+        |course| &course.path,
+        |at| space.place(&space.boxed(at)),
+    );
     (items, dense)
 }
 
@@ -98,23 +102,20 @@ fn ranges(drawn: &[SampledRunNumbers], size: &ChartAxis) -> [(f64, f64); 3] {
         size.range_of(paths.map(|point| point[index]))
     });
     let half = 0.5 * (x.1 - x.0).max(y.1 - y.0);
-    let square = |(low, high): (f64, f64)| (0.5 * (low + high) - half, 0.5 * (low + high) + half);
-    [square(x), square(y), z]
+    let [x, y] = [x, y].map(|(low, high)| {
+        let middle = 0.5 * (low + high);
+        (middle - half, middle + half)
+    });
+    [x, y, z]
 }
 
 /// Left, upper, right and lower end of what is drawn, pt.
 fn extent(scene: &PageScene) -> (f64, f64, f64, f64) {
-    let ends = |of: fn(Point) -> f64| {
-        crate::plot::extent(
-            scene
-                .items
-                .iter()
-                .flat_map(|item| item.path.points())
-                .map(of),
-        )
-        .unwrap_or_default()
-    };
-    let ((left, right), (top, bottom)) = (ends(|p| p.x), ends(|p| p.y));
+    let sides: [fn(Point) -> f64; 2] = [|p| p.x, |p| p.y];
+    let [(left, right), (top, bottom)] = sides.map(|side| {
+        let points = scene.items.iter().flat_map(|item| item.path.points());
+        crate::plot::extent(points.map(side)).unwrap_or_default()
+    });
     (left, top, right, bottom)
 }
 
@@ -219,22 +220,25 @@ impl Space {
         /// Between two labels, beside and above each other, pt.
         const LABEL_DISTANCE: (f64, f64) = (6.0, 6.5);
         let (low, high) = self.ranges[axis];
-        let place = |tick: &Tick| self.place(&Self::along(edge, self.share(axis, tick.at)));
         let height = ink::height(LABEL_PT);
-        let fits = |ticks: &[Tick]| {
+        let mut ticks = Ticks::linear(low, high, |ticks| {
             ticks.len() <= 6
-                && ticks.windows(2).all(|pair| {
-                    let (a, b) = (place(&pair[0]), place(&pair[1]));
-                    let half = |tick: &Tick| 0.5 * ink::width(&tick.label, LABEL_PT);
-                    let wide = half(&pair[0]) + half(&pair[1]) + LABEL_DISTANCE.0;
-                    (a.x - b.x).abs() >= wide || (a.y - b.y).abs() >= height + LABEL_DISTANCE.1
+                && ticks.array_windows().all(|[a, b]| {
+                    let [at_a, at_b] =
+                        [a, b].map(|it| self.place(&Self::along(edge, self.share(axis, it.at))));
+                    let wide = a.half_width() + b.half_width() + LABEL_DISTANCE.0;
+                    (at_a.x - at_b.x).abs() >= wide
+                        || (at_a.y - at_b.y).abs() >= height + LABEL_DISTANCE.1
                 })
-        };
-        let mut ticks = Ticks::linear(low, high, fits);
+        });
         // Labels at a corner would stand beside those of another axis.
-        let is_inside = |tick: &Tick| (0.03..=0.97).contains(&self.share(axis, tick.at));
-        if ticks.major.iter().filter(|tick| is_inside(tick)).count() >= 2 {
-            ticks.major.retain(is_inside);
+        let (inside, _): (Vec<Tick>, Vec<Tick>) = ticks
+            .major
+            .iter()
+            .cloned()
+            .partition(|tick| (0.03..=0.97).contains(&self.share(axis, tick.at)));
+        if inside.len() >= 2 {
+            ticks.major = inside;
         }
         ticks
     }
@@ -244,29 +248,27 @@ impl Space {
         /// Along which sides the grid of each axis runs.
         const ALONG: [[usize; 2]; 3] = [[1, 2], [0, 2], [1, 0]];
         let far = Vector3::new(-self.near(0), -self.near(1), -0.5 * TALL);
-        let opposite = |mut place: Vector3<f64>, axis: usize| {
-            place[axis] = -place[axis];
-            place
-        };
-        let mut line = |ends: [Vector3<f64>; 2], width: f64, level: u8| {
-            scene.line(ends.map(|end| self.place(&end)), width, grey(level));
-        };
-        for (axis, ticks) in ticks.iter().enumerate() {
-            for tick in &ticks.major {
+        for (axis, along_axis) in ticks.iter().enumerate() {
+            for tick in &along_axis.major {
                 for along in ALONG[axis] {
                     let mut from = far;
                     from[axis] = SIZES[axis] * (self.share(axis, tick.at) - 0.5);
                     from[along] = -0.5 * SIZES[along];
-                    line([from, opposite(from, along)], 0.35, 215);
+                    let ends = [from, opposite(from, along)].map(|end| self.place(&end));
+                    scene.line(ends, 0.35, grey(215));
                 }
             }
         }
+        let mut edges = Vec::new();
         for corner in [far, opposite(far, 2)] {
-            line([corner, opposite(corner, 0)], 0.4, 140);
-            line([corner, opposite(corner, 1)], 0.4, 140);
+            edges.push([corner, opposite(corner, 0)]);
+            edges.push([corner, opposite(corner, 1)]);
         }
         for foot in [far, opposite(far, 0), opposite(far, 1)] {
-            line([foot, opposite(foot, 2)], 0.4, 140);
+            edges.push([foot, opposite(foot, 2)]);
+        }
+        for edge in edges {
+            scene.line(edge.map(|end| self.place(&end)), 0.4, grey(140));
         }
     }
 
@@ -279,12 +281,13 @@ impl Space {
         let mut reach: f64 = 0.0;
         for tick in &ticks.major {
             let foot = self.place(&Self::along(edge, self.share(axis, tick.at)));
-            let to = |length: f64| at(foot.x + out.x * length, foot.y + out.y * length);
-            scene.line([foot, to(SPACE_TICK_LENGTH)], 0.5, BLACK);
+
             // As far out as the label needs to be clear of the tick.
             let half = at(0.5 * ink::width(&tick.label, LABEL_PT), 0.5 * height);
             let clear = SPACE_TICK_LENGTH + TICK_GAP + half.x * out.x.abs() + half.y * out.y.abs();
-            let middle = to(clear);
+            let [end, middle] = [SPACE_TICK_LENGTH, clear]
+                .map(|length| at(foot.x + out.x * length, foot.y + out.y * length));
+            scene.line([foot, end], 0.5, BLACK);
             reach = reach.max(clear + half.x * out.x.abs() + half.y * out.y.abs());
             let base = at(middle.x, middle.y + half.y);
             scene.write(&tick.label, LABEL_PT, base, 0.5);
@@ -320,6 +323,12 @@ impl Space {
         let length = libm::hypot(b.x - a.x, b.y - a.y).max(1e-9);
         at((b.x - a.x) / length, (b.y - a.y) / length)
     }
+}
+
+/// Returns the place across the box from `place` along one axis.
+fn opposite(mut place: Vector3<f64>, axis: usize) -> Vector3<f64> {
+    place[axis] = -place[axis];
+    place
 }
 
 fn round_pen(width_pt: f64, color: Color) -> StrokeStyle {

@@ -101,7 +101,7 @@ pub fn figures(
     let figures = planned.into_iter().zip(drawn);
     Ok(Some(
         figures
-            .map(|(planned, drawn)| planned.drawn(drawn, exact))
+            .map(|(plan, figure)| plan.drawn(figure, exact))
             .collect(),
     ))
 }

@@ -58,8 +58,8 @@ impl MeasuredComparison {
             return Ok(false);
         };
         let traced = scenario.body.mechanics.points()[scenario.trace].at;
-        let series = self.measured.series().map_err(|e| e.to_string())?;
-        self.compared = Compared::new(series, &values, end_s, &traced);
+        let whole = self.measured.series().map_err(|e| e.to_string())?;
+        self.compared = Compared::new(whole, &values, end_s, &traced);
         self.said = values;
         Ok(true)
     }
@@ -95,8 +95,8 @@ impl MeasuredComparison {
             "| what | compared | chi^2 | with uncertainty | largest, in uncertainties | without uncertainty off by (rms) |"
         )?;
         writeln!(page, "| --- | --- | --- | --- | --- | --- |")?;
-        for (name, own) in self.rows() {
-            write_row(page, name, own)?;
+        for (column, own) in self.rows() {
+            write_row(page, column, own)?;
         }
         if sum.weighed > 0 {
             writeln!(
@@ -116,14 +116,14 @@ impl MeasuredComparison {
     /// The same for programs.
     pub(super) fn json(&self) -> Value {
         let columns = self.rows().map(|(name, sum)| {
-            let mut column = of(sum);
+            let mut column = sum_as_json(sum);
             column["name"] = json!(name);
             column["unit"] = json!(RunQuantity::find(name).map_or("", RunQuantity::unit));
             column["rms_without_uncertainty"] =
                 json!(sum.scatter.first().map(|(_, scatter)| scatter));
             column
         });
-        let mut all = of(&self.compared.sum);
+        let mut all = sum_as_json(&self.compared.sum);
         all["file"] = json!(self.name());
         all["columns"] = json!(columns.collect::<Vec<_>>());
         all
@@ -149,7 +149,7 @@ fn write_row(page: &mut String, name: &str, own: &Sum) -> fmt::Result {
 }
 
 /// The numbers of `sum`; null where there is none.
-fn of(sum: &Sum) -> Value {
+fn sum_as_json(sum: &Sum) -> Value {
     json!({
         "points": sum.points, "points_in_run": sum.compared, "points_with_uncertainty": sum.weighed,
         "chi_squared": (sum.weighed > 0).then_some(sum.chi_squared),

@@ -75,26 +75,36 @@ pub fn page(writeup: &Writeup) -> Result<String, fmt::Error> {
 /// The table of what was run: body, start, scheme and length. Forces and edits stand in the run file.
 fn write_setup(page: &mut String, writeup: &Writeup) -> fmt::Result {
     let scenario = &writeup.scenario;
-    let mut row = |name: &str, text: &str| writeln!(page, "| {name} | {} |", escaped(text));
-    row("", "")?;
-    row("---", "---")?;
     let body = &scenario.body.mechanics;
     let mass = significant(body.mass(), 6);
     let centre = significant(body.first_moment().norm() / body.mass(), 6);
-    let whole = format!("{mass} kg; centre of mass {centre} m from the pivot");
-    row("body", &whole)?;
-    row("moments of inertia about the pivot", &moments(scenario))?;
-    let name = scenario.traced_name();
+    let traced = scenario.traced_name();
     let from_pivot = significant(body.points()[scenario.trace].at.norm(), 6);
-    let traced = format!("{name}, {from_pivot} m from the pivot");
-    row("traced point", &traced)?;
-    row("start", &start(scenario))?;
     let gravity = shortest(scenario.motion.gravity);
-    row("gravity", &format!("{gravity} m/s^2"))?;
     let SchemeInfo { name, about, .. } = scenario.motion.scheme;
-    row("scheme", &format!("{name}: {about}"))?;
-    let steps = steps_in_words(scenario, writeup.readouts.sample.step);
-    row("time steps", &steps)?;
+    let rows = [
+        ("", String::new()),
+        ("---", "---".to_owned()),
+        (
+            "body",
+            format!("{mass} kg; centre of mass {centre} m from the pivot"),
+        ),
+        ("moments of inertia about the pivot", moments(scenario)),
+        (
+            "traced point",
+            format!("{traced}, {from_pivot} m from the pivot"),
+        ),
+        ("start", start(scenario)),
+        ("gravity", format!("{gravity} m/s^2")),
+        ("scheme", format!("{name}: {about}")),
+        (
+            "time steps",
+            steps_in_words(scenario, writeup.readouts.sample.step),
+        ),
+    ];
+    for (label, text) in rows {
+        writeln!(page, "| {label} | {} |", escaped(&text))?;
+    }
     writeln!(
         page,
         "\nIts parts, pushes, friction and edits stand in the run file, `{RUN_FILE}`."
@@ -124,11 +134,10 @@ fn start(scenario: &Scenario) -> String {
     let momentum = &scenario.start.momentum;
     // What is left of a zero by the turn from the body frame is rounding.
     let rounding = MOMENTUM_ROUNDING * momentum.norm();
-    let part = |axis: usize| match momentum[axis] {
-        part if part.abs() < rounding => 0.0,
-        part => part,
-    };
-    let [x, y, z] = [0, 1, 2].map(|axis| significant(part(axis), 9));
+    let [x, y, z] = [0, 1, 2].map(|axis| match momentum[axis] {
+        part if part.abs() < rounding => significant(0.0, 9),
+        part => significant(part, 9),
+    });
     format!(
         "axle tilted by {} degrees, L = ({x}, {y}, {z}) J s in the world frame",
         fixed(tilt_deg, 4)

@@ -82,30 +82,29 @@ fn row(
         .zip(error)
         .and_then(|(it, error)| uncertain(it, error));
     let both = measured.zip(predicted).filter(|_| !is_strobed);
-    let difference = both.map(|(measured, predicted)| measured - predicted);
+    let difference = both.map(|(own, of_theory)| own - of_theory);
     // What the theory of the mean moment leaves out is no error of reading.
     let is_exact = readouts.theory.is_none_or(|theory| theory.asymmetry == 0.0);
     let in_errors = difference
         .zip(error.filter(|error| *error > 0.0 && is_exact))
         .map(|(difference, error)| difference / error);
     let (label, meaning) = words(readout, is_strobed, since_s);
-    let none = || NOT_AVAILABLE.to_owned();
-    let plain = |number: Option<f64>| number.map_or_else(none, |number| fixed(number, DECIMALS));
     let to_its_digit = stated.as_ref().zip(predicted);
     Some(QuantityRow {
         cells: [
-            label,
+            Some(label),
             stated
                 .as_ref()
-                .map_or_else(|| plain(measured), ToString::to_string),
-            to_its_digit.map_or_else(
-                || plain(predicted),
-                |(it, value)| it.to_the_same_digit(value),
-            ),
-            difference.map_or_else(none, |it| with_sign(it, &significant(it.abs(), 2))),
-            in_errors.map_or_else(none, |it| with_sign(it, &short(it.abs()))),
-            readout.unit.to_owned(),
-        ],
+                .map(ToString::to_string)
+                .or_else(|| Some(fixed(measured?, DECIMALS))),
+            to_its_digit
+                .map(|(it, value)| it.to_the_same_digit(value))
+                .or_else(|| Some(fixed(predicted?, DECIMALS))),
+            difference.map(|it| with_sign(it, &significant(it.abs(), 2))),
+            in_errors.map(|it| with_sign(it, &short(it.abs()))),
+            Some(readout.unit.to_owned()),
+        ]
+        .map(|cell| cell.unwrap_or_else(|| NOT_AVAILABLE.to_owned())),
         meaning,
         readout: readout.name,
     })

@@ -217,10 +217,13 @@ fn of_part(free: &[Free], part: usize, scenario: &Scenario) -> [Row; 3] {
         .map_or(own, PlacedSolid::moments);
     let shift = own - about_center; // 0, unless the file gives the moments about the pivot
     [0, 1, 2].map(|axis| {
-        let is_it = |key: &Free| key.keys.iter().any(|key| moment(key) == Some((part, axis)));
-        let is_free = free.iter().any(is_it);
+        let slopes = DVector::from_fn(free.len(), |row, _| {
+            let mut keys = free[row].keys.iter();
+            f64::from(u8::from(keys.any(|key| moment(key) == Some((part, axis)))))
+        });
+        let is_free = slopes.iter().any(|slope| *slope > 0.0);
         Row {
-            slopes: DVector::from_fn(free.len(), |row, _| f64::from(u8::from(is_it(&free[row])))),
+            slopes,
             at_zero: if is_free { 0.0 } else { own[axis] } - shift[axis],
         }
     })

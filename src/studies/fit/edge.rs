@@ -68,14 +68,13 @@ impl Edge {
     /// What is to be known of it, in words.
     pub fn remark(&self, keys: &[Fitted]) -> String {
         let key = |place: usize| (&keys[place].free.key, significant(keys[place].value, 6));
-        let drawn = |place: usize| {
-            let (key, value) = key(place);
-            format!(
-                "{key} stands at its bound {value}: the fit would be better beyond it, and it has no uncertainty. Begun at another value by --set, the search may find a better fit within."
-            )
-        };
         match (self.rule, self.most) {
-            (Rule::Least(place) | Rule::Greatest(place), None) => drawn(place),
+            (Rule::Least(place) | Rule::Greatest(place), None) => {
+                let (key, value) = key(place);
+                format!(
+                    "{key} stands at its bound {value}: the fit would be better beyond it, and it has no uncertainty. Begun at another value by --set, the search may find a better fit within."
+                )
+            }
             (Rule::Least(place) | Rule::Greatest(place), Some(Most { at_68, at_95 })) => {
                 let (key, value) = key(place);
                 let [at_68, at_95] =
@@ -199,19 +198,19 @@ impl Inside {
             _ => 1.0,
         });
         let units = DVector::from_iterator(slopes.ncols(), units);
-        let scaled = |index: usize| chart.limits[index].normal.component_mul(&units);
+
         let others: Vec<DVector<f64>> = minimum
             .held
             .iter()
             .filter(|other| **other != place)
-            .map(|&other| scaled(other))
+            .map(|&other| chart.limits[other].normal.component_mul(&units))
             .collect();
         let free = complement(others.iter(), slopes.ncols());
         let columns = slopes * nalgebra::DMatrix::from_diagonal(&units) * &free;
         let svd = columns.svd(true, true);
         let (u, v_t) = (svd.u?, svd.v_t?);
         let least = SINGULAR * svd.singular_values.amax();
-        let normal = scaled(place);
+        let normal = chart.limits[place].normal.component_mul(&units);
         let (mut mean, mut square) = (0.0, 0.0);
         let mut moves = DVector::zeros(slopes.ncols());
         for (k, &singular) in svd.singular_values.iter().enumerate() {
@@ -234,11 +233,9 @@ impl Inside {
 
     fn most(&self, variance: f64) -> Option<Most> {
         let sigma = self.sigma * variance.sqrt();
-        let at = |level| sigma * sigmas_to_most(-self.mean / sigma, level);
-        let most = Most {
-            at_68: at(LEVEL_68),
-            at_95: at(LEVEL_95),
-        };
+        let [at_68, at_95] =
+            [LEVEL_68, LEVEL_95].map(|level| sigma * sigmas_to_most(-self.mean / sigma, level));
+        let most = Most { at_68, at_95 };
         (most.at_68 > 0.0 && most.at_95.is_finite()).then_some(most)
     }
 }

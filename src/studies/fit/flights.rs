@@ -281,9 +281,10 @@ impl Recording {
             let growth = squares.growth();
             let offset = (squares.rates - growth.component_mul(&squares.sums)) / squares.count;
             let askew = SHARE * squares.speed / squares.count;
-            let is_off = |end: Range<usize>| {
+            let first = rows.start;
+            let both_ends = [first..first + block, rows.end - block..rows.end];
+            let [starts, ends] = both_ends.map(|end| {
                 let count = end.len() as f64;
-                let first = rows.start;
                 let mean = end
                     .map(|row| {
                         let sums = self.sums[row] - self.sums[first];
@@ -292,9 +293,7 @@ impl Recording {
                     .sum::<Vector3<f64>>()
                     / count;
                 mean.amax() > most * self.noise / count.sqrt() + askew
-            };
-            let starts = is_off(rows.start..rows.start + block);
-            let ends = is_off(rows.end - block..rows.end);
+            });
             if !starts && !ends {
                 break;
             }

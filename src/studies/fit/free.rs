@@ -148,15 +148,8 @@ fn not_a_number(key: &str, kind: ValueKind) -> String {
 fn ends(bounds: &str) -> Result<(f64, f64), String> {
     const WRONG: &str = "bounds must be FROM..TO, two numbers of which either may be left out, such as 0.1..0.5 or 0..";
     let (from, to) = bounds.split_once("..").ok_or(WRONG)?;
-    let number = |text: &str, absent: f64| match text.trim() {
-        "" => Ok(absent),
-        text => text
-            .parse()
-            .ok()
-            .filter(|number: &f64| number.is_finite())
-            .ok_or(WRONG.to_owned()),
-    };
-    let (from, to) = (number(from, f64::NEG_INFINITY)?, number(to, f64::INFINITY)?);
+    let from = end(from, f64::NEG_INFINITY).ok_or(WRONG)?;
+    let to = end(to, f64::INFINITY).ok_or(WRONG)?;
     if from < to {
         Ok((from, to))
     } else {
@@ -165,6 +158,17 @@ fn ends(bounds: &str) -> Result<(f64, f64), String> {
             shown(from),
             shown(to)
         ))
+    }
+}
+
+/// Returns the number in `text`, or the `absent` one where it is empty; `None` where it is no finite number.
+fn end(text: &str, absent: f64) -> Option<f64> {
+    match text.trim() {
+        "" => Some(absent),
+        number => number
+            .parse()
+            .ok()
+            .filter(|number: &f64| number.is_finite()),
     }
 }
 

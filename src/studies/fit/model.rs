@@ -172,21 +172,19 @@ impl Model {
             .collect::<BTreeSet<usize>>()
             .into_iter()
             .collect();
-        let of_row = |&row: &usize| {
-            let impossible = |why| Stop::Impossible(format!("in {}: {why}", self.row(row)));
-            let document = with_settings(&document, table, row, changed);
-            let scenario = document
-                .and_then(|document| Ok(document.scenario()?))
-                .map_err(impossible)?;
-            self.runs.fetch_add(1, Ordering::Relaxed);
-            let read = readouts::at_end(scenario, &wanted, &|| go_on())
-                .map_err(impossible)?
-                .ok_or(Stop::Interrupted)?;
-            let values = read.iter().map(readouts::ReadoutValue::number);
-            Ok((row, values.collect()))
-        };
         let of_rows: HashMap<usize, Vec<Option<f64>>> =
-            cores::map::<_, _, Result<_, Stop>>(&rows, of_row)?;
+            cores::map::<_, _, Result<_, Stop>>(&rows, |&row| {
+                let read = with_settings(&document, table, row, changed)
+                    .and_then(|document| Ok(document.scenario()?))
+                    .and_then(|scenario| {
+                        self.runs.fetch_add(1, Ordering::Relaxed);
+                        readouts::at_end(scenario, &wanted, &|| go_on())
+                    })
+                    .map_err(|why| Stop::Impossible(format!("in {}: {why}", self.row(row))))?
+                    .ok_or(Stop::Interrupted)?;
+                let values = read.iter().map(readouts::ReadoutValue::number);
+                Ok((row, values.collect()))
+            })?;
         self.data
             .iter()
             .map(|datum| self.finite(datum, of_rows[&datum.point.row][datum.column]))
@@ -226,25 +224,29 @@ impl Model {
 
 /// The columns that were measured, and every value in them.
 fn listed(data: &DataKind) -> (Vec<Measurand>, Vec<Datum>) {
-    let (mut columns, mut all) = (Vec::new(), Vec::new());
-    let mut add = |readout, quantity, points: &[MeasuredPoint]| {
-        let column = columns.len();
-        columns.push(Measurand { readout, quantity });
-        all.extend(points.iter().map(|&point| Datum { column, point }));
+    let measured: Vec<(Measurand, &[MeasuredPoint])> = match data {
+        DataKind::Series(series) => series
+            .curves
+            .iter()
+            .filter_map(|curve| {
+                let readout = curve.quantity.readout()?;
+                let quantity = Some(curve.quantity);
+                Some((Measurand { readout, quantity }, &curve.points[..]))
+            })
+            .collect(),
+        DataKind::Table(table) => table
+            .readouts
+            .iter()
+            .map(|column| {
+                let (readout, quantity) = (column.readout, None);
+                (Measurand { readout, quantity }, &column.points[..])
+            })
+            .collect(),
     };
-    match data {
-        DataKind::Series(series) => {
-            for curve in &series.curves {
-                if let Some(readout) = curve.quantity.readout() {
-                    add(readout, Some(curve.quantity), &curve.points);
-                }
-            }
-        }
-        DataKind::Table(table) => {
-            for column in &table.readouts {
-                add(column.readout, None, &column.points);
-            }
-        }
+    let (mut columns, mut all) = (Vec::new(), Vec::new());
+    for (column, (measurand, points)) in measured.into_iter().enumerate() {
+        columns.push(measurand);
+        all.extend(points.iter().map(|&point| Datum { column, point }));
     }
     (columns, all)
 }

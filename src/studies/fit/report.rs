@@ -170,13 +170,11 @@ impl FitReport<'_> {
     fn json(&self) -> Value {
         let (fit, quality) = (self.fit, self.fit.quality);
         let keys = fit.keys.iter().map(Fitted::json);
-        let each = 0..fit.keys.len();
-        let matrix = |cell: &dyn Fn(usize, usize) -> Option<f64>| -> Vec<Vec<Option<f64>>> {
-            each.clone()
-                .map(|i| each.clone().map(|j| cell(i, j)).collect())
-                .collect()
-        };
-        let covariance = matrix(&|i, j| Some(fit.solution.covariance[i][j]? * fit.variance?));
+        let count = fit.keys.len();
+        let covariance = matrix(count, |i, j| {
+            Some(fit.solution.covariance[i][j]? * fit.variance?)
+        });
+        let correlation = matrix(count, |i, j| fit.solution.correlation(i, j));
         let alike = fit.solution.alike.iter().map(|alike| {
             let parts = alike.iter().map(|(index, part)| {
                 json!({ "key": fit.keys[*index].free.key, "relative_change": part })
@@ -202,7 +200,7 @@ impl FitReport<'_> {
         json!({
             "measured": self.model.measured.origin, "scenario": self.model.title, "scheme": self.model.scheme,
             "keys": keys.collect::<Vec<_>>(),
-            "correlation": matrix(&|i, j| fit.solution.correlation(i, j)), "covariance": covariance,
+            "correlation": correlation, "covariance": covariance,
             "chi_squared": quality.chi_squared, "degrees_of_freedom": freedom,
             "chi_squared_per_degree_of_freedom": quality.chi_squared.filter(|_| freedom > 0).map(|sum| sum / freedom as f64),
             "probability": quality.probability, "scatter": quality.scatter,
@@ -213,6 +211,13 @@ impl FitReport<'_> {
             "residuals": residuals.collect::<Vec<_>>(), "steps": fit.steps,
         })
     }
+}
+
+/// Returns the square matrix of `count` rows with these cells.
+fn matrix(count: usize, cell: impl Fn(usize, usize) -> Option<f64>) -> Vec<Vec<Option<f64>>> {
+    (0..count)
+        .map(|i| (0..count).map(|j| cell(i, j)).collect())
+        .collect()
 }
 
 impl fmt::Display for FitReport<'_> {

@@ -370,22 +370,16 @@ impl Weighed<'_> {
 
     /// The same by this change, and how far apart the two values of the parameter were.
     fn slope_by(&self, p: &[f64], index: usize, change: f64) -> Result<(Vec<f64>, f64), Stop> {
-        let (from, to) = self.ends(p, index);
-        let at = |value: f64| {
-            let mut there = p.to_vec();
-            there[index] = value.max(from).min(to);
-            Ok((there[index], self.values(&there)?))
-        };
-        let (high, low) = (at(p[index] + change), at(p[index] - change));
-        let why = match (&high, &low) {
-            (Err(Stop::Impossible(why)), _) | (_, Err(Stop::Impossible(why))) => why.clone(),
+        let ends = [change, -change].map(|by| self.values_at(p, index, p[index] + by));
+        let why = match &ends {
+            [Err(Stop::Impossible(why)), _] | [_, Err(Stop::Impossible(why))] => why.clone(),
             _ => "the data depend on digits of it beyond its last one".to_owned(),
         };
-        let either = |side: Result<_, Stop>| match side {
-            Err(Stop::Impossible(_)) => at(p[index]),
+        let [upper, lower] = ends.map(|side| match side {
+            Err(Stop::Impossible(_)) => self.values_at(p, index, p[index]),
             side => side,
-        };
-        let ((high, above), (low, below)) = (either(high)?, either(low)?);
+        });
+        let ((high, above), (low, below)) = (upper?, lower?);
         let width = high - low;
         if width == 0.0 {
             return Err(Stop::Impossible(format!(
@@ -397,6 +391,14 @@ impl Weighed<'_> {
         let pairs = above.iter().zip(&below);
         let slope = pairs.map(|(up, down)| (up - down) / width);
         Ok((slope.collect(), width))
+    }
+
+    /// Computes the values where parameter `index` is as near to `value` as its bounds allow; returns that too.
+    fn values_at(&self, p: &[f64], index: usize, value: f64) -> Result<(f64, Vec<f64>), Stop> {
+        let (from, to) = self.ends(p, index);
+        let mut there = p.to_vec();
+        there[index] = value.max(from).min(to);
+        Ok((there[index], self.values(&there)?))
     }
 }
 

@@ -79,10 +79,11 @@ impl FitSolution {
         let slopes = &minimum.slopes * &chart.matrix;
         let keys = chart.keys(&minimum.p);
         let norms: Vec<f64> = slopes.column_iter().map(|column| column.norm()).collect();
-        let size = |index: usize| free[index].size(keys[index]);
-        let is_silent = |index: usize| norms[index] * size(index) <= SILENT_KEY;
-        let silent: Vec<usize> = (0..free.len()).filter(|&index| is_silent(index)).collect();
-        let heard: Vec<usize> = (0..free.len()).filter(|index| !is_silent(*index)).collect();
+        let all_units: Vec<f64> = (0..free.len())
+            .map(|index| norms[index] * free[index].size(keys[index]))
+            .collect();
+        let (silent, heard): (Vec<usize>, Vec<usize>) =
+            (0..free.len()).partition(|index| all_units[*index] <= SILENT_KEY);
         let mut solution = Self {
             covariance: vec![vec![None; free.len()]; free.len()],
             rank: 0,
@@ -111,10 +112,7 @@ impl FitSolution {
         let (seen, unseen): (Vec<&Way>, Vec<&Way>) =
             (ways.iter()).partition(|way| way.singular > SINGULAR * largest);
         solution.rank = seen.len();
-        let units: Vec<f64> = heard
-            .iter()
-            .map(|&index| norms[index] * size(index))
-            .collect();
+        let units: Vec<f64> = heard.iter().map(|&index| all_units[index]).collect();
         let alike = unseen.iter().map(|way| alike(&way.parts, &heard, &units));
         solution.alike = alike.collect();
         for (place, &index) in heard.iter().enumerate() {

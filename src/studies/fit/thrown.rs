@@ -81,8 +81,8 @@ fn start(
     if held.is_empty() {
         held = vec![0, 1, 2];
     }
-    let sum = |of: &Vector3<f64>| held.iter().map(|axis| of[*axis]).sum::<f64>();
-    let factor = sum(own) / sum(moments);
+    let [own_sum, sum] = [own, moments].map(|of| held.iter().map(|axis| of[*axis]).sum::<f64>());
+    let factor = own_sum / sum;
     let rates = sums.rates_at_start(moments);
     model
         .free
@@ -125,14 +125,11 @@ pub(super) fn flies(scenario: &Scenario) -> bool {
 
 /// The times, s, with the three rates, rad/s.
 pub(super) fn recorded(series: &TimeSeries) -> Option<Vec<(f64, Vector3<f64>)>> {
-    let points = |name| {
+    let [x, y, z] = RATES.map(|name| {
         let mut curves = series.curves.iter();
-        let curve = curves.find(|curve| curve.quantity.name == name)?;
-        Some(curve.points.iter())
-    };
-    let rows = points(RATES[0])?
-        .zip(points(RATES[1])?)
-        .zip(points(RATES[2])?);
+        curves.find(|curve| curve.quantity.name == name)
+    });
+    let rows = x?.points.iter().zip(&y?.points).zip(&z?.points);
     let whole = rows.filter(|((a, b), c)| a.row == b.row && b.row == c.row);
     let rates = whole.map(|((a, b), c)| {
         let rates = Vector3::new(a.value, b.value, c.value);

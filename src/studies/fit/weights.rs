@@ -54,12 +54,14 @@ pub fn are_stated(model: &Model) -> Result<bool, String> {
             model.row(datum.point.row)
         ));
     }
-    let unit = |column: usize| model.columns[column].readout.unit;
-    let first = model.data.first().map_or("", |datum| unit(datum.column));
-    if let Some(other) = model.data.iter().find(|datum| unit(datum.column) != first) {
+    let mut units = model
+        .data
+        .iter()
+        .map(|datum| model.columns[datum.column].readout.unit);
+    let first = units.next().unwrap_or_default();
+    if let Some(other) = units.find(|unit| *unit != first) {
         return Err(format!(
-            "the measured columns have several units ({first}, {}) and no uncertainties: without these nothing says how much one counts against the other",
-            unit(other.column)
+            "the measured columns have several units ({first}, {other}) and no uncertainties: without these nothing says how much one counts against the other"
         ));
     }
     Ok(false)
@@ -122,10 +124,9 @@ impl Weights {
         let squares = model.data.iter().map(|datum| datum.point.value.powi(2));
         let size = (squares.sum::<f64>() / model.data.len() as f64).sqrt();
         let size = if size > 0.0 { size } else { 1.0 };
-        let of_all = |part: f64| vec![part * size; model.data.len()];
         Self {
-            sigma: of_all(UNWEIGHTED_UNIT),
-            resolution: of_all(RESIDUAL_CHANGE),
+            sigma: vec![UNWEIGHTED_UNIT * size; model.data.len()],
+            resolution: vec![RESIDUAL_CHANGE * size; model.data.len()],
             are_stated: false,
             count_settings: false,
             together: Vec::new(),

@@ -244,18 +244,18 @@ impl Search<'_> {
     /// changes nothing.
     pub fn in_pairs(&self, alone: &[Explanation]) -> SearchOutcome {
         let has_own_step = self.rows.times.own_s.is_some();
-        let all_alone = || {
-            alone
-                .iter()
-                .flat_map(|it| it.alternatives.iter().chain([&it.variants]))
-        };
         let mut variants = Variant::all(self.plan, self.rows);
         variants.retain(|it| match it.change {
             SlipChange::Of(_) => true,
             SlipChange::TimeStep(..) => has_own_step,
             SlipChange::Start(_, is_one) => is_one,
         });
-        variants.retain(|it| !all_alone().any(|known| known[0].place == it.place));
+        variants.retain(|it| {
+            let mut all_alone = alone
+                .iter()
+                .flat_map(|known| known.alternatives.iter().chain([&known.variants]));
+            !all_alone.any(|known| known[0].place == it.place)
+        });
         let mut pairs = Vec::new();
         for (place, one) in variants.iter().enumerate() {
             for other in &variants[place + 1..] {
@@ -308,27 +308,22 @@ impl Search<'_> {
                 evidence: 0.0,
             })
         });
-        let lasts = |explanation: &Explanation| {
-            explanation
-                .followed
-                .differs
-                .map_or(0, |differs| differs.step)
-        };
         let (mut found, mut closest) = (Vec::<Explanation>::new(), None);
         let mut most = LASTS.0.max(LASTS.1 * self.first.1) - 1;
-        for mut tried in tried.into_iter().flatten() {
-            if self.is_explained_by(&tried) {
-                let known = found.iter_mut().find(|it| it.names() == tried.names());
+        for mut one in tried.into_iter().flatten() {
+            let lasts = one.followed.differs.map_or(0, |differs| differs.step);
+            if self.is_explained_by(&one) {
+                let known = found.iter_mut().find(|it| it.names() == one.names());
                 match known {
-                    Some(known) => known.alternatives.push(tried.variants),
+                    Some(known) => known.alternatives.push(one.variants),
                     None => {
-                        tried.evidence = self.evidence(&tried);
-                        found.push(tried);
+                        one.evidence = self.evidence(&one);
+                        found.push(one);
                     }
                 }
-            } else if lasts(&tried) > most {
-                most = lasts(&tried);
-                closest = Some(tried);
+            } else if lasts > most {
+                most = lasts;
+                closest = Some(one);
             }
         }
         (found, closest)

@@ -155,19 +155,14 @@ impl Plan {
         };
         let (axis, points_alone) = changes.tilt_axis.unwrap_or(([1.0, 0.0, 0.0], false));
         let is_changed = changes.tilt_axis.is_some() || changes.tilt_in_radians;
-        let about = |direction: [f64; 3]| {
+        let axis_of_momentum = if points_alone { [1.0, 0.0, 0.0] } else { axis };
+        let [turned, of_momentum] = [axis, axis_of_momentum].map(|direction| {
             if start.is_tilt && is_changed {
                 rotation::about(&Vector3::from(direction), angle)
             } else {
                 start.orientation
             }
-        };
-        let turned = about(axis);
-        let of_momentum = if points_alone {
-            about([1.0, 0.0, 0.0])
-        } else {
-            turned
-        };
+        });
         let momentum = if start.momentum_is_of_body == changes.other_frame {
             start.momentum
         } else {

@@ -27,7 +27,7 @@ const AGREEMENT_TOLERANCES: [f64; 2] = [1e-8, 1e-6];
 
 #[derive(Clone, Debug)]
 pub struct ProgramColumn {
-    /// Its place among `NAMES`.
+    /// Its place in [`ROW_COLUMN_NAMES`].
     pub place: usize,
     pub values: Vec<f64>,
     /// How many digits its values have at most: behind the point, and in all.
@@ -140,12 +140,13 @@ pub fn within(place: usize, value: f64) -> f64 {
 impl ProgramRows {
     /// Whether the program may compute in single precision: whether one of the columns holds its numbers.
     pub fn may_be_single(&self) -> bool {
-        let varying = || self.columns.iter().filter(|column| column.varies());
-        let mut telling = varying()
+        let mut varying = self.columns.iter().filter(|column| column.varies());
+        let mut telling = varying
+            .clone()
             .filter(|it| it.significant >= TELLING_DIGITS)
             .peekable();
         if telling.peek().is_none() {
-            return varying().any(|column| column.significant >= SINGLE_DIGITS);
+            return varying.any(|column| column.significant >= SINGLE_DIGITS);
         }
         telling.any(ProgramColumn::is_of_single)
     }
@@ -204,9 +205,10 @@ pub fn read(
     if columns.is_empty() {
         return Err(nothing_to_compare(&cells).into());
     }
-    let find = |name| others.iter().find(|column| column.name() == name);
-    let step = find(STEP_NAME).map(|column| &column.values[..]);
-    let time = find(TIME_NAME).map(|it| (&it.values[..], it.unit(it.values[count - 1])));
+    let [step_column, time_column] =
+        [STEP_NAME, TIME_NAME].map(|name| others.iter().find(|column| column.name() == name));
+    let step = step_column.map(|column| &column.values[..]);
+    let time = time_column.map(|it| (&it.values[..], it.unit(it.values[count - 1])));
     let steps = find_steps(count, step, time, every, time_step_s, &|row| {
         cells.rows[row].0
     })?;

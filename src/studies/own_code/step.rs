@@ -245,16 +245,16 @@ impl<T: Real> MutantStepper<T> {
 
     /// Returns the place of point `k`, or of the `other` that takes its place.
     fn at(&self, other: Option<Other>, k: usize) -> Vector3<T> {
-        let rim = || self.points[..self.rim].iter().map(|(at, _)| at);
+        let mut rim = self.points[..self.rim].iter().map(|(at, _)| at);
         let place = match other {
             None => None,
             Some(Other::OfAxle(nth)) => {
                 let mut others = (self.rim..self.rim + self.axle).filter(|place| *place != k);
                 others.nth(nth).map(|place| self.points[place].0)
             }
-            Some(Other::FirstOfRim) => rim().next().copied(),
+            Some(Other::FirstOfRim) => rim.next().copied(),
             Some(Other::CenterOfRim) if self.rim > 0 => {
-                Some(rim().sum::<Vector3<T>>() / T::from_double(self.rim as f64))
+                Some(rim.sum::<Vector3<T>>() / T::from_double(self.rim as f64))
             }
             Some(Other::CenterOfRim) => None,
         };

@@ -124,17 +124,22 @@ fn by_time(
     let (gap, off) = even.ok_or_else(|| vec![Problem::at(TIME_NAME, rule)])?;
     let stride = every.unwrap_or_else(|| ((gap / time_step_s).round() as i64).max(1));
     let is_own = is_same(gap / stride as f64, time_step_s, off / stride as f64);
-    let first = |dt: f64| (times[0] / dt).round() as i64;
+
     let counts = every.map_or(STEPS_A_ROW.to_vec(), |every| vec![every]);
     let mut others: Vec<_> = counts
         .into_iter()
         .map(|steps| {
             let own = plain(gap / steps as f64, off / steps as f64);
-            (own, RowSteps::evenly(times.len(), first(own), steps))
+            let begins = (times[0] / own).round() as i64;
+            (own, RowSteps::evenly(times.len(), begins, steps))
         })
         .collect();
     others.retain(|(own, _)| !is_same(*own, time_step_s, 0.0));
-    let begins = if is_own { first(time_step_s) } else { 0 };
+    let begins = if is_own {
+        (times[0] / time_step_s).round() as i64
+    } else {
+        0
+    };
     let own = others.first().map(|(own, _)| *own);
     let steps = RowSteps::evenly(times.len(), begins, stride);
     if is_own {

@@ -158,7 +158,7 @@ impl Sweep {
         number_of_push(key)?;
         let (entry, name) = key.rsplit_once('.')?;
         let [in_steps, in_seconds] =
-            ["steps", "for_s"].map(|name| find(self.base.table(), &join(entry, name)).is_some());
+            ["steps", "for_s"].map(|own| find(self.base.table(), &join(entry, own)).is_some());
         IN_STEPS_OR_SECONDS.into_iter().find_map(|(steps, seconds)| {
             if name == steps && in_seconds {
                 return Some(format!(

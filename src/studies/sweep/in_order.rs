@@ -5,7 +5,7 @@ use rayon::iter::{ParallelBridge, ParallelIterator};
 use std::collections::BTreeMap;
 use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::mpsc::{Receiver, channel};
 use std::thread::sleep;
 use std::time::Duration;
 
@@ -28,21 +28,22 @@ pub fn in_order<T: Send>(
         return;
     };
     let (taken, goes_on) = (AtomicU64::new(range.start), AtomicBool::new(true));
-    let work = |results: &mut Sender<(u64, T)>, index: u64| {
-        while goes_on.load(Relaxed) && index >= taken.load(Relaxed) + AHEAD {
-            sleep(LEAST_COLLECT_INTERVAL);
-        }
-        if !goes_on.load(Relaxed) {
-            return None;
-        }
-        let result = compute(index, &|| goes_on.load(Relaxed))?;
-        results.send((index, result)).ok()
-    };
     let (sender, receiver) = channel();
     pool.in_place_scope(|scope| {
         scope.spawn(|_| {
             // Each core takes the next of the range: what is missing behind a result has been begun.
-            range.par_bridge().try_for_each_with(sender, work);
+            range
+                .par_bridge()
+                .try_for_each_with(sender, |results, index| {
+                    while goes_on.load(Relaxed) && index >= taken.load(Relaxed) + AHEAD {
+                        sleep(LEAST_COLLECT_INTERVAL);
+                    }
+                    if !goes_on.load(Relaxed) {
+                        return None;
+                    }
+                    let result = compute(index, &|| goes_on.load(Relaxed))?;
+                    results.send((index, result)).ok()
+                });
         });
         hand_over(&receiver, &taken, &mut collect);
         goes_on.store(false, Relaxed);

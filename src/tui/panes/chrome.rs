@@ -290,7 +290,7 @@ fn footer(lab: &Lab, goes_on: bool) -> Vec<FooterItem> {
         Some(FooterItem { keys, word, worth })
     });
     let esc_word = match mode {
-        Mode::Lab if lab.view().filled && lab.view().sheet.is_some() => Some("to the page"),
+        Mode::Lab if lab.view().fullscreen && lab.view().sheet.is_some() => Some("to the page"),
         Mode::Lab => None,
         Mode::Help if !lab.popups().help.text.is_empty() => Some("clear"),
         Mode::Browser if !lab.popups().browser.filter.is_empty() => Some("clear"),

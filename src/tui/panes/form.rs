@@ -43,13 +43,13 @@ impl Widget for FormPane<'_> {
         } else {
             place
         };
-        for (line, place) in lines.iter().zip(inside.rows()) {
+        for (line, row) in lines.iter().zip(inside.rows()) {
             match line {
                 FormLine::Text(text, role) => {
-                    write(place, (0, 0), text, self.theme.style(*role), buf);
+                    write(row, (0, 0), text, self.theme.style(*role), buf);
                 }
                 FormLine::Field(index, field) => {
-                    self.field(*index == self.form.selected, field, place, buf);
+                    self.field(*index == self.form.selected, field, row, buf);
                 }
             }
         }
@@ -147,7 +147,7 @@ impl FormPane<'_> {
 
     /// The labels in one column, and the texts beside it.
     fn field(&self, is_selected: bool, field: &InputField, area: Rect, buf: &mut Buffer) {
-        let labels = self.form.fields.iter().map(|field| columns(&field.label));
+        let labels = self.form.fields.iter().map(|other| columns(&other.label));
         let widest = labels.max().unwrap_or(0) as u16 + 1;
         let [label, room] = split_columns(area, widest.min(area.width / 2));
         let [label, _] = split_columns(label, label.width.saturating_sub(1));

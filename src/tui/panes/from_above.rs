@@ -53,7 +53,7 @@ pub const FROM_ABOVE_ROW: PaneRow = PaneRow {
     id: Pane::Above,
     title: "from above",
     draw: |lab, area, buf| {
-        FromAbove(PlotInputs::of(lab)).render(area, buf);
+        FromAbove(PlotInputs::from_lab(lab)).render(area, buf);
     },
     keys: ZOOM_KEYS,
     arrows: None,

@@ -1,7 +1,7 @@
 //! The help: keys and words, searched by typing; Enter does the key that is selected. Keys are grouped by their
 //! purpose, and the words are those of the glossary.
 
-use super::{below_rule, popup_rule, rows, write};
+use super::{SELECTED_MARK, below_rule, popup_rule, rows, write};
 use crate::engine::text::wrap::{columns, wrapped};
 use crate::lab::action::Action;
 use crate::lab::values::list::Match;
@@ -17,7 +17,6 @@ const NAMES_COLUMN: usize = 2;
 const COLUMN_GAP: usize = 2;
 /// A text that would have fewer columns than this stands below its key, not in a column of its own.
 const LEAST_TEXT: usize = 40;
-const SELECTED: &str = "►";
 
 fn selected(lab: &Lab) -> Option<HelpEntry> {
     let found = find_entries(&lab.popups().help.text);
@@ -83,7 +82,13 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
         if line.entry == Some(selected) {
             buf.set_style(place, theme.style(Role::Selected));
             if line.is_first {
-                write(place, (0, 0), SELECTED, theme.style(Role::Heading), buf);
+                write(
+                    place,
+                    (0, 0),
+                    SELECTED_MARK,
+                    theme.style(Role::Heading),
+                    buf,
+                );
             }
         }
     }
@@ -174,10 +179,10 @@ fn heading(entry: &HelpEntry, width: usize) -> Vec<HelpLine> {
     };
     let lines = wrapped(&text, width.saturating_sub(1)).into_iter();
     lines
-        .map(|text| HelpLine {
+        .map(|line| HelpLine {
             entry: None,
             is_first: false,
-            pieces: vec![(1, text, Role::Heading)],
+            pieces: vec![(1, line, Role::Heading)],
         })
         .collect()
 }

@@ -98,9 +98,9 @@ pub fn scroll(lab: &mut Lab, direction: Direction, place: Rect) {
     let shown = inside.height as usize;
     let page = ScrolledPage::new(&sheet, inside, lab.view());
     let (first, all) = (page.first, page.lines.len());
-    let page = shown.saturating_sub(1).max(1) as isize;
+    let page_rows = shown.saturating_sub(1).max(1) as isize;
     lab.view_mut()
-        .scroll_sheet(direction.rows(page), first, shown, all);
+        .scroll_sheet(direction.rows(page_rows), first, shown, all);
 }
 
 /// Whether the page of `lab`, whose pane has the area `place`, goes on below what is shown.
@@ -236,8 +236,8 @@ fn lines_of(paragraph: &Paragraph, width: u16, theme: &Theme) -> Vec<LessonLine>
     };
     let mut letters = letters_of(paragraph).peekable();
     let mut lines = Vec::with_capacity(texts.len());
-    for (index, text) in texts.iter().enumerate() {
-        let mut pieces = styled_pieces(text, &mut letters, style, theme);
+    for (index, line) in texts.iter().enumerate() {
+        let mut pieces = styled_pieces(line, &mut letters, style, theme);
         let is_marked = index == 0 || paragraph.kind == SheetLineKind::Note;
         if is_marked && !mark.is_empty() {
             pieces.insert(0, (mark.clone(), style));

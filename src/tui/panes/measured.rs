@@ -54,8 +54,8 @@ fn fitting(beside: &DataComparison, end_s: f64, room: usize) -> (String, String,
     let mut forms = vec![(long.clone(), all), (long, in_short.clone())];
     let fewer = (0..=in_short.len()).rev();
     forms.extend(fewer.map(|count| (short.clone(), in_short[..count].to_vec())));
-    let length = |(counts, parts): &(String, Vec<String>)| {
-        let lengths = parts.iter().map(|part| columns(SEPARATOR) + columns(part));
+    let length = |(counts, shown): &(String, Vec<String>)| {
+        let lengths = shown.iter().map(|part| columns(SEPARATOR) + columns(part));
         columns(counts) + lengths.sum::<usize>()
     };
     let (whole, least) = (columns(&name), columns(&name).min(LEAST_NAME));

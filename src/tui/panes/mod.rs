@@ -40,6 +40,9 @@ use ratatui::widgets::{Clear, Widget};
 use std::borrow::Cow;
 use std::f64::consts::TAU;
 
+/// The mark of the selected line of a list.
+const SELECTED_MARK: &str = "►";
+
 /// A row of the table of panes: what the layout, the focus, the footer and the help need to know.
 #[derive(Debug)]
 pub struct PaneRow {
@@ -113,7 +116,7 @@ pub struct PlotInputs<'a> {
 }
 
 impl<'a> PlotInputs<'a> {
-    pub fn of(lab: &'a Lab) -> Self {
+    pub fn from_lab(lab: &'a Lab) -> Self {
         let (player, comparison) = (lab.player(), lab.comparison());
         Self {
             view: lab.view(),
@@ -242,8 +245,8 @@ const MOST_SHOWN_PUSHES: usize = 20;
 fn leave_one_out<T>(items: &mut Vec<T>, rank: impl Fn(&T) -> u8) -> bool {
     let ranks = items.iter().map(rank).enumerate();
     let last = ranks
-        .max_by_key(|&(_, rank)| rank)
-        .filter(|&(_, rank)| rank > 0);
+        .max_by_key(|&(_, its_rank)| its_rank)
+        .filter(|&(_, its_rank)| its_rank > 0);
     last.map(|(index, _)| items.remove(index)).is_some()
 }
 

@@ -5,7 +5,7 @@
 
 mod lines;
 
-use super::{PaneRow, leave_one_out, rule, shortened, write};
+use super::{PaneRow, SELECTED_MARK, leave_one_out, rule, shortened, write};
 use crate::engine::scenario::{Motion, Scenario};
 use crate::engine::text::printable::printable;
 use crate::engine::text::wrap::columns;
@@ -28,8 +28,7 @@ use ratatui::widgets::Widget;
 const UNIT_COLUMN: u16 = 19;
 /// How many columns of values that can be edited stand side by side at most; the readouts have one more.
 const MOST_EDITED: u16 = 6;
-/// What marks the selected line, and a list that goes on above or below.
-const SELECTED: &str = "►";
+/// The marks of a list that continues above or below.
 const MORE_ABOVE: &str = "▲";
 const MORE_BELOW: &str = "▼";
 /// From this height on there is room for the readouts to watch, below the values.
@@ -79,7 +78,7 @@ impl Widget for Parameters<'_> {
         if inside.is_empty() {
             return;
         }
-        match (list, self.view.filled) {
+        match (list, self.view.fullscreen) {
             (Some(list), true) => self.edited_and_read(list, inside, buf),
             (Some(list), false) => self.edited_above_read(list, inside, buf),
             (None, _) => self.most_important(inside, buf),
@@ -218,7 +217,7 @@ impl Parameters<'_> {
         let (shown, above, below) = around_selected(lines, room);
         self.columns(shown.chunks(height.max(1)), wide, place, buf);
         // On the frame, or in the last column of the lines, which is empty.
-        let x = if self.view.filled && area.width == count * wide {
+        let x = if self.view.fullscreen && area.width == count * wide {
             area.right() - 1
         } else {
             area.right()
@@ -271,7 +270,7 @@ impl Parameters<'_> {
         let unit = value_end + UNIT_COLUMN - VALUE_END;
         write(area, (unit, 0), &line.unit, theme.style(Role::Label), buf);
         if line.is_selected {
-            write(area, (0, 0), SELECTED, theme.style(Role::Heading), buf);
+            write(area, (0, 0), SELECTED_MARK, theme.style(Role::Heading), buf);
             buf.set_style(area, theme.style(Role::Selected));
         }
     }
@@ -419,7 +418,7 @@ fn by_group(lines: &[ParameterLine], height: usize) -> Option<Vec<&[ParameterLin
         end += group.len();
     }
     columns.push(&lines[begin..]);
-    let fits = columns.iter().all(|lines| lines.len() <= height);
+    let fits = columns.iter().all(|column| column.len() <= height);
     fits.then_some(columns)
 }
 

@@ -272,7 +272,7 @@ impl PhasePage<'_> {
         let yours = numbers.iter().find(|it| it.symbol == quantity.symbol)?;
         let mut lines = numbers::lines(yours, format, false);
         if lines == numbers::lines(quantity, format, false) {
-            lines = vec![StepPageLine::of(
+            lines = vec![StepPageLine::new(
                 numbers::SYMBOL + 1,
                 "the same",
                 Role::Measured,

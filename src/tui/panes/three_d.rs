@@ -62,7 +62,7 @@ pub const THREE_D_ROW: PaneRow = PaneRow {
     id: Pane::ThreeD,
     title: "3-D",
     draw: |lab, area, buf| {
-        ThreeD(PlotInputs::of(lab)).render(area, buf);
+        ThreeD(PlotInputs::from_lab(lab)).render(area, buf);
     },
     keys: SPACE_KEYS,
     arrows: Some(|lab, direction, times| one(lab.view().turned(direction, times))),
@@ -137,7 +137,7 @@ impl<'a> Scene<'a> {
             Some(reading) => &reading.state,
             None => run.simulation().state(),
         };
-        let shape = DrawnBody::of(run);
+        let shape = DrawnBody::new(run);
         let reach = shape.reach();
         let arm = shape.arm().max(LEAST_ARM * reach);
         let [torque, change] = torques(run, state);
@@ -159,7 +159,7 @@ impl<'a> Scene<'a> {
             arm,
             torque,
             change,
-            phase: StepArrows::of(seen.explained, seen.view),
+            phase: StepArrows::of_shown_phase(seen.explained, seen.view),
         }
     }
 

@@ -37,7 +37,7 @@ pub const TRACES_ROW: PaneRow = PaneRow {
     id: Pane::Traces,
     title: "over time",
     draw: |lab, area, buf| {
-        Traces(PlotInputs::of(lab)).render(area, buf);
+        Traces(PlotInputs::from_lab(lab)).render(area, buf);
     },
     keys: TRACES_PANE_KEYS,
     arrows: Some(|lab, direction, times| {

@@ -85,7 +85,7 @@ fn stepped(seed: u64, scheme: &str, rows: [f64; 2]) -> Option<Pair> {
     let time_step_s = quickest_s / log_between(&mut dice, rows[0], rows[1]);
     let nutations = log_between(&mut dice, lasts[0], lasts[1]);
     let steps = (nutations * truth[1] / time_step_s).max(2.0) as u64;
-    let run = |steps| measured(&again(&scenario, scheme, time_step_s, steps));
+    let run = |count| measured(&again(&scenario, scheme, time_step_s, count));
     Some(Pair {
         seed,
         short: run(steps)?[0],
@@ -266,10 +266,10 @@ fn a_lopsided_tops_beats_are_in_the_uncertainty() {
     let beats = include_str!("../../reference/lopsided/beats.toml");
     let short = measured(&for_times_as_long(beats, 1)).unwrap()[0];
     let long = measured(&for_times_as_long(beats, 20)).unwrap()[0];
-    for (short, long) in short.into_iter().zip(long) {
-        let (short, long) = (short.unwrap(), long.unwrap());
-        let off = (short.value - long.value).abs() / short.uncertainty;
-        assert!(off < 2.0, "{off}: {short:?}, {long:?}");
+    for (of_short, of_long) in short.into_iter().zip(long) {
+        let (stated, truth) = (of_short.unwrap(), of_long.unwrap());
+        let off = (stated.value - truth.value).abs() / stated.uncertainty;
+        assert!(off < 2.0, "{off}: {stated:?}, {truth:?}");
     }
 }
 

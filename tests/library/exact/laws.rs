@@ -180,8 +180,8 @@ fn going_on_from_a_later_state_is_the_same_motion() {
 fn degenerate_starts_are_limits_of_their_neighbours() {
     // Steady, upright, hanging, free, plane: from one part in 1e3 down to exactly there, the motion moves no farther than its start.
     let load = Vector3::new(0.0, 0.0, -49.0);
-    let at = |tilt: f64, momentum: Vector3<f64>, load: Vector3<f64>| {
-        LagrangeTop::new(6.6, 3.2, load, super::common::tilted(tilt), momentum).at(0.8)
+    let at = |tilt: f64, momentum: Vector3<f64>, pull: Vector3<f64>| {
+        LagrangeTop::new(6.6, 3.2, pull, super::common::tilted(tilt), momentum).at(0.8)
     };
     let (z, push) = (Vector3::z(), Vector3::new(0.3, -0.2, 0.1));
     let steady = super::common::tilted(30.0) * Vector3::new(0.0, 2.945_444_198_542_434_7, 60.0);

@@ -1,5 +1,6 @@
 //! Files of measured data that are refused, and in which words: file, line, column, value, rule and remedy.
 
+use crate::support::words::without_lists;
 use gyrolab::engine::data::{open, read};
 use gyrolab::engine::text::printable::is_steering;
 use std::fs;
@@ -54,7 +55,7 @@ const BROKEN: &[&str] = &[
 fn every_refusal_says_line_column_value_rule_and_remedy() {
     let told = BROKEN
         .iter()
-        .map(|text| format!("{text}{}\n\n", refusal(text)));
+        .map(|text| format!("{text}{}\n\n", without_lists(&refusal(text))));
     insta::assert_snapshot!("refusals", told.collect::<String>());
 }
 
@@ -76,7 +77,7 @@ fn files_that_are_no_text_are_refused() {
         open(name).unwrap_err().to_string(),
         format!("{name}:3: is not text in UTF-8: save the file in that encoding (\"CSV UTF-8\")")
     );
-    let of = |name: &str| open(name).unwrap_err().to_string();
+    let of = |file: &str| open(file).unwrap_err().to_string();
     let folder = folder.path().to_str().unwrap();
     assert_eq!(
         of(folder),
@@ -112,9 +113,9 @@ fn a_hostile_file_is_told_in_few_lines_that_steer_no_terminal() {
     assert!(told.ends_with("lab.csv: and 388 more"), "{told}");
     // Here each line breaks a rule of its own.
     let rows: String = (0..401).rev().map(|time| format!("{time},1\n")).collect();
-    let told = refusal(&format!("t_s,tilt_deg\n{rows}"));
-    assert_eq!(told.lines().count(), 13, "{told}");
-    assert!(told.ends_with("lab.csv: and 388 more"), "{told}");
+    let of_times = refusal(&format!("t_s,tilt_deg\n{rows}"));
+    assert_eq!(of_times.lines().count(), 13, "{of_times}");
+    assert!(of_times.ends_with("lab.csv: and 388 more"), "{of_times}");
     let names = format!("t_s,{}\n0\n", "\u{202e}x".repeat(50_000));
     assert!(refusal(&names).len() < 400);
 }

@@ -77,10 +77,10 @@ fn exact_does_not_need_the_time_step() {
         "cusps",
         &["motion.scheme=exact", "motion.time_step_s=0.01"],
     );
-    for (coarse, fine) in coarse.iter().flatten().zip(fine.iter().flatten()) {
+    for (one, other) in coarse.iter().flatten().zip(fine.iter().flatten()) {
         assert!(
-            (coarse - fine).abs() <= 1e-10 * fine.abs().max(1.0),
-            "{coarse} {fine}"
+            (one - other).abs() <= 1e-10 * other.abs().max(1.0),
+            "{one} {other}"
         );
     }
 }

@@ -125,8 +125,8 @@ fn of_several_tracks_one_is_chosen() {
     assert_eq!(chosen("2=x_m,3=y_m"), [("x_m", 5.0), ("y_m", 6.0)]);
     assert_eq!(chosen("4=x_m,5=y_m"), [("x_m", 7.0), ("y_m", 8.0)]);
     assert_eq!(chosen("2=-,3=-"), [("x_m", 7.0), ("y_m", 8.0)]);
-    let told = refusal("trk.txt", TRACKS, "x=x_m");
-    assert!(told.contains("columns 2 and 4"), "{told}");
+    let ambiguous = refusal("trk.txt", TRACKS, "x=x_m");
+    assert!(ambiguous.contains("columns 2 and 4"), "{ambiguous}");
 }
 
 #[test]
@@ -156,11 +156,11 @@ fn a_map_takes_units_and_leaves_columns_out() {
     let (time_s, _) = last(&mapped("T,theta\n0,1\n30,2\n", "T=t_min,theta=tilt_deg"));
     assert_eq!(time_s, 1800.0);
     // The unit in the column's own name counts where the map states gyrolab's.
-    let (time_s, values) = last(&mapped(
+    let (time_of_row_s, of_gyroscope) = last(&mapped(
         "when_ms,gx_dps\n500,100\n",
         "when_ms=t_s,gx_dps=w1_rad_per_s",
     ));
-    assert_eq!((time_s, values[0].1), (0.5, 1.745329252));
+    assert_eq!((time_of_row_s, of_gyroscope[0].1), (0.5, 1.745329252));
     let twice = refusal("lab.csv", euler, "theta=tilt_rad,phi=tilt_deg");
     assert!(twice.contains("is mapped to tilt_deg too"), "{twice}");
     let wrong = refusal("lab.csv", euler, "theta=tilt_kg");
@@ -202,7 +202,7 @@ fn a_file_without_uncertainties_gets_them() {
         let series = measured.series().unwrap();
         let sigmas = |curve: usize| series.curves[curve].points.iter().map(|point| point.sigma);
         assert!(
-            sigmas(0).all(|sigma| (sigma.unwrap() / of_tilt - 1.0).abs() < 1e-12),
+            sigmas(0).all(|stated| (stated.unwrap() / of_tilt - 1.0).abs() < 1e-12),
             "{sigma}"
         );
         assert_eq!(sigmas(1).collect::<Vec<_>>(), [Some(0.5), None]);
@@ -220,8 +220,8 @@ fn a_file_without_uncertainties_gets_them() {
             .contains("--sigma y_m=1: is no measured column"),
         "{wrong}"
     );
-    for wrong in ["x_m", "x_m=0", "x_m=-1", "x_m=nan", "x_m=a"] {
-        assert!(wrong.parse::<ColumnSigma>().is_err(), "{wrong}");
+    for bad in ["x_m", "x_m=0", "x_m=-1", "x_m=nan", "x_m=a"] {
+        assert!(bad.parse::<ColumnSigma>().is_err(), "{bad}");
     }
 }
 
@@ -284,9 +284,9 @@ fn the_map_that_a_refusal_prints_reads_the_file() {
         let told = refusal("lab.csv", text, map);
         let maps = maps_in(&told);
         assert!(!maps.is_empty(), "{text}{told}");
-        for map in maps {
-            let read = read_with("lab.csv", text, &options(&map, ""));
-            read.unwrap_or_else(|problems| panic!("{text}{told}\n{map}: {problems}"));
+        for printed in maps {
+            let read = read_with("lab.csv", text, &options(&printed, ""));
+            read.unwrap_or_else(|problems| panic!("{text}{told}\n{printed}: {problems}"));
         }
     }
 }
@@ -342,8 +342,11 @@ fn what_cannot_be_right_is_said_once() {
     let told = doubts_of("start.tilt_deg=30", radians);
     assert!(told.len() == 1 && told[0].contains("tilt_rad"), "{told:?}");
     // A top that begins almost upright falls.
-    let told = doubts_of("start.tilt_deg=1", "t_s,tilt_deg\n0,0.02\n0.9,1.6\n");
-    assert!(told.len() == 1 && told[0].contains("tilt_rad"), "{told:?}");
+    let of_falling = doubts_of("start.tilt_deg=1", "t_s,tilt_deg\n0,0.02\n0.9,1.6\n");
+    assert!(
+        of_falling.len() == 1 && of_falling[0].contains("tilt_rad"),
+        "{of_falling:?}"
+    );
     assert!(doubts_of("start.tilt_deg=0", radians).is_empty());
 }
 

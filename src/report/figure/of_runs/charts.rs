@@ -21,8 +21,8 @@ pub(super) fn over_time(
     let end_s = ends.fold(0.0, f64::max);
     let mut x = quantity::axis("t_s");
     x.range = (end_s > from_s).then_some((from_s, end_s));
-    let panel = |column: &&CsvColumn| {
-        let curve = |drawn: &SampledRunNumbers| {
+    let panels = columns.iter().map(|column| {
+        let curves = drawn.iter().map(|drawn| {
             let points = drawn.course.points(column);
             let mut style = drawn.style.clone();
             // Only thin lines show many swings beside each other.
@@ -30,11 +30,10 @@ pub(super) fn over_time(
                 style.width_pt *= 0.75;
             }
             ChartSeries::new(&drawn.name, points, style)
-        };
-        let y = size::axis(job.runs, column.name);
-        Panel::new(y, drawn.iter().map(curve).collect())
-    };
-    job.chart(x, columns.iter().map(panel).collect())
+        });
+        Panel::new(size::axis(job.runs, column.name), curves.collect())
+    });
+    job.chart(x, panels.collect())
 }
 
 /// The paths of the runs from above, and the places that were `measured`.
@@ -71,8 +70,12 @@ pub(super) fn path_warning(
 ) -> Option<Dense> {
     let layout = ChartLayout::new(chart, 0.0);
     let placed = layout.panels.first()?;
-    let place = |at: &[f64; 3]| placed.place(&[at[0], at[1]]);
-    dense::of_paths(drawn, spec, |course| &course.above, place)
+    dense::of_paths(
+        drawn,
+        spec,
+        |course| &course.above,
+        |at| placed.place(&[at[0], at[1]]),
+    )
 }
 
 /// The circles between which the exact motion of the traced point stays, from above; none where it is one circle, pushes or
@@ -90,8 +93,7 @@ fn limits(run: &FigureRun, pt_per_m: f64) -> Vec<ChartSeries> {
         return Vec::new();
     };
     let (low, high) = motion.tilt_range();
-    let radius = |tilt: f64| at.norm() * libm::sin(tilt);
-    let (inner, outer) = (radius(low), radius(high));
+    let [inner, outer] = [low, high].map(|tilt| at.norm() * libm::sin(tilt));
     if (outer - inner).abs() <= SAME_CURVE * outer.max(inner) {
         return Vec::new(); // the exact motion itself is the circle
     }

@@ -1,6 +1,6 @@
 //! Errors of schemes over their time steps, with their slopes.
 
-use super::{RowIndices, grouped, numbers, points};
+use super::{grouped, numbers, points};
 use crate::engine::text::number::significant;
 use crate::plot::chart::legend::longest_name;
 use crate::plot::chart::ticks;
@@ -19,23 +19,23 @@ pub(super) fn drawn(
     let steps = numbers(table, "time_step_s")?;
     let groups = grouped(&table.texts("scheme").unwrap_or_default());
     let columns = or_error(columns);
-    let panel = |name: &&str| -> Result<Panel, String> {
-        let values = numbers(table, name)?;
-        let curve = |(index, (scheme, rows)): (usize, &(String, RowIndices))| {
+    let mut panels = Vec::new();
+    for column in columns {
+        let values = numbers(table, column)?;
+        let curves = groups.iter().enumerate().map(|(index, (scheme, rows))| {
             let points = points(rows, &steps, &values);
-            let slope = slope(&points);
             let name = if points.iter().any(|point| point[1] > 0.0) {
                 // Panels beside each other share their names.
-                named(scheme, slope.filter(|_| columns.len() == 1), width_pt)
+                let slope = slope(&points).filter(|_| columns.len() == 1);
+                named(scheme, slope, width_pt)
             } else {
                 String::new()
             };
             ChartSeries::new(name, points, SeriesStyle::marked_line(index))
-        };
-        let series = groups.iter().enumerate().map(curve).collect();
-        Ok(Panel::new(logarithmic(of_comparison(name)), series))
-    };
-    let panels = columns.iter().map(panel).collect::<Result<Vec<_>, _>>()?;
+        });
+        let y = logarithmic(of_comparison(column));
+        panels.push(Panel::new(y, curves.collect()));
+    }
     Ok((logarithmic(quantity::axis("time_step_s")), panels))
 }
 
@@ -79,28 +79,33 @@ fn of_comparison(name: &str) -> ChartAxis {
 fn slope(points: &[[f64; 2]]) -> Option<f64> {
     const LEAST_DECADE_SPAN: f64 = 0.3;
     const EVEN_DECADES: f64 = 1.0 / 16.0;
-    let points: Vec<_> = points
+    let shown: Vec<&[f64; 2]> = points
         .iter()
         .filter(|point| point[0] > 0.0 && point[1] > 0.0 && point[1].is_finite())
         .collect();
-    let slope = |pair: &[&[f64; 2]]| {
-        libm::log(pair[1][1] / pair[0][1]) / libm::log(pair[1][0] / pair[0][0])
-    };
-    let slopes: Vec<f64> = points.windows(2).map(slope).collect();
+    let slopes: Vec<f64> = shown
+        .windows(2)
+        .map(|pair| slope_between(pair[0], pair[1]))
+        .collect();
     let mut first = 0;
-    let even = slopes
+    let even: Vec<_> = slopes
         .chunk_by(|a, b| (a - b).abs() <= EVEN_DECADES * a.max(*b))
         .filter_map(|even| {
             let place = first..first + even.len();
             first = place.end;
             (even.len() >= 2 && even.iter().all(|slope| *slope > LEAST_DECADE_SPAN))
                 .then_some(place)
-        });
+        })
+        .collect();
     // Of two that are as long, the one of the shorter steps, which come first.
-    let even: Vec<_> = even.collect();
     let longest = even.into_iter().rev().max_by_key(ExactSizeIterator::len)?;
-    let whole = slope(&[points[longest.start], points[longest.end]]);
+    let whole = slope_between(shown[longest.start], shown[longest.end]);
     Some((whole * 10.0).round() / 10.0)
+}
+
+/// Returns the slope of the line from one point to another on logarithmic axes.
+fn slope_between(from: &[f64; 2], to: &[f64; 2]) -> f64 {
+    libm::log(to[1] / from[1]) / libm::log(to[0] / from[0])
 }
 
 #[cfg(test)]

@@ -117,19 +117,18 @@ fn stated(found: &FittedKey) -> String {
 
 /// The column over which a fit is drawn, the one with the most different numbers, and these.
 fn along<'a>(table: &TableSource, settings: &'a [String]) -> Result<(&'a str, Vec<f64>), String> {
-    let count = |numbers: &[f64]| {
-        let mut sorted = numbers.to_vec();
-        sorted.sort_by(f64::total_cmp);
-        sorted.dedup();
-        sorted.len()
-    };
     let numbers = settings.iter().rev().filter_map(|name| {
         let numbers = table.numbers(name)?;
         let is_whole = numbers.iter().all(|number| number.is_finite());
         is_whole.then_some((name.as_str(), numbers))
     });
     // Of columns with as many, the first.
-    let most = numbers.max_by_key(|(_, numbers)| count(numbers));
+    let most = numbers.max_by_key(|(_, numbers)| {
+        let mut distinct = numbers.clone();
+        distinct.sort_by(f64::total_cmp);
+        distinct.dedup();
+        distinct.len()
+    });
     most.ok_or_else(|| "no column that says where its values were measured is a number".to_owned())
 }
 
@@ -169,21 +168,22 @@ impl FitFigure<'_> {
         let columns: Vec<(&str, Vec<&str>)> = others
             .filter_map(|name| Some((name.as_str(), self.table.texts(name)?)))
             .collect();
-        let named = |row: &usize| {
-            // What is the same in every row tells no two apart.
-            let parts = columns
+        // What is the same in every row tells no two apart.
+        let telling: Vec<_> = columns
+            .iter()
+            .filter(|(_, texts)| rows.iter().any(|&row| texts[row] != texts[rows[0]]))
+            .collect();
+        let names = rows.iter().map(|row| {
+            let (said, values): (Vec<_>, Vec<_>) = telling
                 .iter()
-                .filter(|(_, texts)| rows.iter().any(|&row| texts[row] != texts[rows[0]]));
-            let (said, values): (Vec<_>, Vec<_>) = parts
                 .map(|(key, texts)| {
                     let value = texts[*row].trim_end_matches(".0");
                     (self.said(key, &letters::escape(value)), value)
                 })
                 .unzip();
             within_room(said.join(", "), &values.join(", "), self.room_pt)
-        };
-        let names: Vec<String> = rows.iter().map(named).collect();
-        let mut groups = grouped(&names);
+        });
+        let mut groups = grouped(&names.collect::<Vec<String>>());
         if groups.len() > MOST_GROUPS {
             return vec![(String::new(), rows)];
         }
@@ -238,15 +238,15 @@ impl FitFigure<'_> {
 
     /// The panel of what is left, in units of the uncertainties where all are stated.
     fn residuals(&self, name: &str, groups: &[(String, RowIndices)]) -> Result<Panel, String> {
-        let all = || groups.iter().flat_map(|(_, rows)| rows);
+        let all_rows = groups.iter().flat_map(|(_, rows)| rows);
         let errors = numbers(self.table, "uncertainty")?;
-        let are_stated = all().all(|&row| errors[row].is_finite());
+        let are_stated = all_rows.clone().all(|&row| errors[row].is_finite());
         let (column, unit) = if are_stated {
             ("residual_sigmas", letters::escape("σ"))
         } else {
             ("residual", quantity::axis(name).unit)
         };
-        let ends = extent(all().map(|&row| self.x[row]));
+        let ends = extent(all_rows.map(|&row| self.x[row]));
         let mut series: Vec<_> = ends.map(ChartSeries::level).into_iter().collect();
         for (index, (_, rows)) in groups.iter().enumerate() {
             let mut left = self.series(column, rows)?;

@@ -40,16 +40,17 @@ pub(super) fn drawn(
     if columns.is_empty() && quantities.len() > MOST_PANELS {
         return Err(too_many(&quantities));
     }
-    let has = |role| quantities.iter().flatten().any(|part| part.role == role);
+    let roles: Vec<QuantityOwner> = quantities.iter().flatten().map(|part| part.role).collect();
+    let has_measured = roles.contains(&QuantityOwner::Measured);
     let drawing = SweepFigure {
         table,
         along: &along,
         curves: &curves,
         room_pt: longest_name(width_pt),
         width_pt,
-        has_theory: has(QuantityOwner::Theory),
-        has_measured: has(QuantityOwner::Measured),
-        has_points: has(QuantityOwner::Measured) || has(QuantityOwner::Value),
+        has_theory: roles.contains(&QuantityOwner::Theory),
+        has_measured,
+        has_points: has_measured || roles.contains(&QuantityOwner::Value),
         has_gaps: has_gaps(table, columns, varied),
     };
     let mut panels = quantities
@@ -231,12 +232,11 @@ impl SweepFigure<'_> {
             .filter(|part| part.role != QuantityOwner::Theory)
             .map(|part| numbers(self.table, &part.name))
             .collect::<Result<Vec<_>, _>>()?;
-        let has_point = |curve: &&SweepCurve| {
+        let without = self.curves.iter().filter(|curve| {
             let mut rows = curve.rows.iter();
-            columns.is_empty()
-                || rows.any(|&row| columns.iter().any(|column| column[row].is_finite()))
-        };
-        let without = self.curves.iter().filter(|curve| !has_point(curve));
+            let has_point = rows.any(|&row| columns.iter().any(|column| column[row].is_finite()));
+            !columns.is_empty() && !has_point
+        });
         let failed = without.map(|curve| {
             let markup = format!("{}: {FAILED}", self.name("", &curve.settings));
             let plain = self.name(FAILED, &curve.settings);

@@ -26,19 +26,22 @@ impl Space {
         styles: &[SeriesStyle],
         scene: &mut PageScene,
     ) {
-        for (drawn, style) in drawn.iter().zip(styles).rev() {
-            let shadow = drawn.course.above.lines(|at| {
+        for (run, style) in drawn.iter().zip(styles).rev() {
+            let shadow = run.course.above.lines(|at| {
                 let boxed = self.boxed(at);
                 self.place(&Vector3::new(boxed.x, boxed.y, -0.5 * TALL))
             });
             draw(&shadow, &round_pen(0.45, grey(198)), style, scene);
         }
-        let placed = |at: &[f64; 3]| {
-            let boxed = self.boxed(at);
-            (self.place(&boxed), self.view.depth(&boxed))
-        };
-        let paths = drawn.iter().map(|drawn| drawn.course.path.lines(placed));
-        let paths: Vec<PathPieces> = paths.collect();
+        let paths: Vec<PathPieces> = drawn
+            .iter()
+            .map(|drawn| {
+                drawn.course.path.lines(|at| {
+                    let boxed = self.boxed(at);
+                    (self.place(&boxed), self.view.depth(&boxed))
+                })
+            })
+            .collect();
         let depths = paths.iter().flatten().flatten().map(|(_, depth)| *depth);
         let (near, far) = extent(depths).unwrap_or_default();
         let share = AxisScale {
@@ -46,7 +49,7 @@ impl Space {
             is_log: false,
             places: (0.0, DEPTHS as f64),
         };
-        let by_degree: Vec<_> = paths
+        let parted: Vec<_> = paths
             .iter()
             .map(|path| {
                 by_degree(path, |depth| {
@@ -58,8 +61,8 @@ impl Space {
         let pens: [fn(&SeriesStyle) -> Option<StrokeStyle>; 2] =
             [|style| Some(style.pen()), SeriesStyle::core_pen];
         for pen in pens {
-            for (by_degree, style) in by_degree.iter().zip(styles).rev() {
-                for (nearness, pieces) in by_degree.iter().enumerate() {
+            for (parts, style) in parted.iter().zip(styles).rev() {
+                for (nearness, pieces) in parts.iter().enumerate() {
                     if let Some(pen) = pen(style) {
                         draw_at(nearness, pieces, pen, style, scene);
                     }
@@ -102,9 +105,9 @@ fn by_degree(
     degree: impl Fn(f64) -> usize,
 ) -> [Vec<Vec<Point>>; DEPTHS] {
     let mut pieces: [Vec<Vec<Point>>; DEPTHS] = Default::default();
-    for path in path {
+    for line in path {
         let mut last = None;
-        for pair in path.windows(2) {
+        for pair in line.windows(2) {
             let nearness = degree(pair[0].1);
             match pieces[nearness].last_mut() {
                 Some(piece) if last == Some(nearness) => piece.push(pair[1].0),

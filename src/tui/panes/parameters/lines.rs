@@ -353,7 +353,7 @@ fn fitted(label: &str, digits: usize, format: impl Fn(usize) -> String, number: 
     }
     let room = (VALUE_END as usize).saturating_sub(label.len() + 2);
     let decimals = (0..=digits).rev().map(format);
-    let exponents = (0..=3).rev().map(|digits| exponent(number, digits));
+    let exponents = (0..=3).rev().map(|few| exponent(number, few));
     let text = decimals.chain(exponents).find(|text| text.len() <= room);
     text.unwrap_or_else(|| exponent(number, 0))
 }
@@ -375,10 +375,13 @@ pub(super) fn fewer_digits(text: &str, room: usize) -> Cow<'_, str> {
     };
     let decimals = (1..room).rev().map(|digits| format!("{number:.digits$}"));
     let exponents = (0..room).rev().map(|digits| format!("{number:.digits$e}"));
-    let mut fitting = decimals.chain(exponents).filter(|text| text.len() <= room);
+    let mut fitting = decimals
+        .chain(exponents)
+        .filter(|shorter| shorter.len() <= room);
     fitting
-        .find(|text: &String| {
-            text.parse()
+        .find(|shorter: &String| {
+            shorter
+                .parse()
                 .is_ok_and(|told: f64| (told - number).abs() <= 1e-3 * number.abs())
         })
         .map_or(text.into(), Cow::from)

@@ -23,7 +23,7 @@ const CELL_ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// The text for such a number, which is not exactly zero.
 const ALMOST_ZERO: &str = "~0";
 /// A component that would show fewer digits than this is written with an exponent.
-const LEAST_SEEN: i32 = 3;
+const LEAST_DIGITS_SEEN: i32 = 3;
 
 const DIGITS_OF_TURNS: usize = 5;
 
@@ -81,7 +81,7 @@ impl CellFormat {
         let decimals = wanted.min(digits);
         let seen = libm::floor(libm::log10(number.abs())) as i32 + decimals + 1;
         let fits = (0..=digits + 1).contains(&wanted);
-        if fits && seen >= LEAST_SEEN {
+        if fits && seen >= LEAST_DIGITS_SEEN {
             format!("{number:.*}", decimals.unsigned_abs() as usize)
         } else {
             // As many digits as leave room for the exponent.
@@ -110,12 +110,12 @@ pub fn lines(quantity: &WorkedQuantity, format: CellFormat, is_result: bool) -> 
     }
     let mut lines: Vec<_> = cells
         .chunks(across)
-        .map(|cells| StepPageLine::of(SYMBOL, cells.concat(), role))
+        .map(|cells| StepPageLine::new(SYMBOL, cells.concat(), role))
         .collect();
     let unit = SYMBOL + across * format.cell + 1;
     let unit = (unit, unit_of(quantity), Role::Label);
     lines[0].pieces.push(unit);
-    let symbol = StepPageLine::of(0, quantity.symbol, Role::Heading);
+    let symbol = StepPageLine::new(0, quantity.symbol, Role::Heading);
     if columns(quantity.symbol) < SYMBOL {
         lines[0].pieces.extend(symbol.pieces);
     } else {
@@ -140,7 +140,7 @@ pub fn heads(rank: u8, format: CellFormat) -> StepPageSection {
     let heads = ["x", "y", "z"].map(|head| format!("{head:>0$}", format.cell));
     StepPageSection::new(
         rank,
-        vec![StepPageLine::of(SYMBOL, heads.concat(), Role::Label)],
+        vec![StepPageLine::new(SYMBOL, heads.concat(), Role::Label)],
     )
 }
 
@@ -192,7 +192,7 @@ impl TableView<'_> {
                 "Down goes through them"
             };
             let text = format!("... {left} more: {what}");
-            lines.push(StepPageLine::of(0, text, Role::Label));
+            lines.push(StepPageLine::new(0, text, Role::Label));
         }
         lines.extend(sum);
         lines
@@ -204,7 +204,7 @@ impl TableView<'_> {
     }
 
     fn rows(&self, groups: &[Range<usize>], shown: Range<usize>) -> Vec<StepPageLine> {
-        let texts: Vec<_> = groups
+        let texts_of_groups: Vec<_> = groups
             .iter()
             .map(|group| self.texts(group, &shown))
             .collect();
@@ -216,8 +216,8 @@ impl TableView<'_> {
             };
             let name = (self.name)(self.table.points[row]);
             let mut name = shortened(&name, POINT_NAME_WIDTH - 1).into_owned();
-            for (index, (group, texts)) in groups.iter().zip(&texts).enumerate() {
-                let mut line = StepPageLine::of(0, std::mem::take(&mut name), role);
+            for (index, (group, texts)) in groups.iter().zip(&texts_of_groups).enumerate() {
+                let mut line = StepPageLine::new(0, std::mem::take(&mut name), role);
                 if self.has_mass_aside(group) {
                     let mass = significant(self.table.row(row)[0], MASS_DIGITS);
                     line = line.and(POINT_NAME_WIDTH - 1, format!("{mass:>MASS$}"), role);
@@ -284,7 +284,7 @@ impl TableView<'_> {
                 .iter()
                 .map(|(symbol, _)| format!("{symbol:>cell$}"))
                 .collect::<String>();
-            let mut line = StepPageLine::of(self.begin(group), symbols, Role::Label);
+            let mut line = StepPageLine::new(self.begin(group), symbols, Role::Label);
             if self.has_mass_aside(group) {
                 let mass = self.table.columns[0].1;
                 line = line.and(POINT_NAME_WIDTH - 1, format!("{mass:>MASS$}"), Role::Label);
@@ -299,7 +299,7 @@ impl TableView<'_> {
                     .collect::<String>();
                 lines.extend([
                     line,
-                    StepPageLine::of(self.begin(group), units, Role::Label),
+                    StepPageLine::new(self.begin(group), units, Role::Label),
                 ]);
             }
         }
@@ -318,7 +318,7 @@ impl TableView<'_> {
             1 => format!("the first of {all} points gives"),
             rows => format!("the first {rows} of {all} points add up to"),
         };
-        let mut lines = vec![StepPageLine::of(0, caption, Role::Text)];
+        let mut lines = vec![StepPageLine::new(0, caption, Role::Text)];
         match groups {
             [group] if group.contains(&columns.start) => {
                 let format = self.format(group);
@@ -327,7 +327,7 @@ impl TableView<'_> {
                     .iter()
                     .map(|sum| format.aligned(&[*sum]).concat())
                     .collect();
-                let line = StepPageLine::of(0, "sum", Role::Heading);
+                let line = StepPageLine::new(0, "sum", Role::Heading);
                 lines.push(line.and(POINT_NAME_WIDTH, blank + &text, Role::Heading));
             }
             _ => lines.extend(columns.clone().step_by(FEW).flat_map(|begin| {
@@ -346,14 +346,17 @@ impl TableView<'_> {
         let heads = columns
             .iter()
             .map(|(symbol, _)| format!("{symbol:>0$}", format.cell));
-        let heads = StepPageLine::of(SYMBOL, heads.collect::<String>(), Role::Label);
+        let heads = StepPageLine::new(SYMBOL, heads.collect::<String>(), Role::Label);
         let unit = SYMBOL + group.len() * format.cell + 1;
         let both: Vec<_> = group
             .map(|column| format.aligned(&[adds[column], sums[column]]))
             .collect();
         let line = |at: usize, name, role| {
-            let line =
-                StepPageLine::of(0, name, Role::Heading).and(SYMBOL, side_by_side(&both, at), role);
+            let line = StepPageLine::new(0, name, Role::Heading).and(
+                SYMBOL,
+                side_by_side(&both, at),
+                role,
+            );
             line.and(unit, columns[0].1, Role::Label)
         };
         [

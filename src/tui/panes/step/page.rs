@@ -26,7 +26,7 @@ pub struct StepPageSection {
 }
 
 impl StepPageLine {
-    pub fn of(column: usize, text: impl Into<String>, role: Role) -> Self {
+    pub fn new(column: usize, text: impl Into<String>, role: Role) -> Self {
         Self::default().and(column, text, role)
     }
 
@@ -48,9 +48,9 @@ impl StepPageSection {
     /// `text` in as many lines of `width` columns as it takes; those after the first begin in the column `indent`.
     pub fn text(rank: u8, text: &str, width: usize, indent: usize, role: Role) -> Self {
         let lines = wrapped(text, width.saturating_sub(indent)).into_iter();
-        let indented = lines.enumerate().map(|(line, text)| {
+        let indented = lines.enumerate().map(|(line, words)| {
             let column = if line == 0 { 0 } else { indent };
-            StepPageLine::of(column, text, role)
+            StepPageLine::new(column, words, role)
         });
         Self::new(rank, indented.collect())
     }

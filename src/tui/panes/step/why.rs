@@ -28,12 +28,12 @@ const UPRIGHT_TEXT: [&str; 2] = ["L is upright:", "no side is sideways"];
 /// The fewest lines of a picture.
 const LEAST_PICTURE: u16 = 6;
 /// Lengths in the picture from above, in units of the axle as it is drawn: τ, dL, and L from the pivot.
-const TORQUE: f64 = 0.75;
+const TORQUE_ARROW_LENGTH: f64 = 0.75;
 const CHANGE_ARROW_LENGTH: f64 = 0.45;
 const BEYOND: f64 = 1.45;
 /// Arrows are at least as long as for an axle that is seen at this part of its length: from above an upright axle is a
 /// point.
-const LEAST_SEEN: f64 = 0.25;
+const LEAST_AXLE_SEEN: f64 = 0.25;
 /// A displacement shorter than this part of the arm is rounding error.
 const DISPLACEMENT_ROUNDING: f64 = 1e-12;
 
@@ -222,24 +222,26 @@ fn from_above(explained: &StepWorkings, view: &View, area: Rect, buf: &mut Buffe
     if area.height < 3 || area.width < 8 {
         return;
     }
-    let length = tip.norm().max(LEAST_SEEN * arm);
+    let length = tip.norm().max(LEAST_AXLE_SEEN * arm);
     let [torque, change] = torque_and_change(explained);
     let momentum_tip = along * (BEYOND * length);
     let origin = Vector2::zeros();
     let mut arrows = vec![(origin, momentum_tip, "L", Role::Run)];
-    arrows.extend(torque.map(|torque| (tip, torque * (TORQUE * length), "τ", Role::Run)));
+    arrows.extend(
+        torque.map(|torque| (tip, torque * (TORQUE_ARROW_LENGTH * length), "τ", Role::Run)),
+    );
     let change_arrow = change.map(|change| change * (CHANGE_ARROW_LENGTH * length));
     arrows.extend(change_arrow.map(|change| (momentum_tip, change, "dL", Role::Run)));
     let corners: Vec<_> = arrows
         .iter()
-        .map(|(from, along, ..)| from + along)
+        .map(|(from, arrow, ..)| from + arrow)
         .chain([tip])
         .collect();
     let mut picture = ArrowDiagram::new(area, view, around(&corners), |half| {
         1.3 * half + 0.05 * length
     });
-    for (from, along, name, role) in arrows {
-        picture.arrow(from, along, name, role);
+    for (from, arrow, name, role) in arrows {
+        picture.arrow(from, arrow, name, role);
         if name == "L" {
             picture.line(origin, tip, Ink::Strong(Role::Text));
         }

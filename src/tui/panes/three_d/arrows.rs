@@ -374,7 +374,7 @@ pub struct StepArrows<'a> {
 
 impl<'a> StepArrows<'a> {
     /// The phase on the page of the step pane of `view`, if that is on the screen.
-    pub fn of(explained: Option<&'a StepWorkings>, view: &View) -> Option<Self> {
+    pub fn of_shown_phase(explained: Option<&'a StepWorkings>, view: &View) -> Option<Self> {
         let shown = explained.filter(|_| view.shows(Pane::Step))?;
         let (phase, ..) = shown.phase(view.look.phase)?;
         let row = view.look.sum_to.and_then(|rows| rows.checked_sub(1));

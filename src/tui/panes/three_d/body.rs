@@ -36,7 +36,7 @@ pub struct DrawnBody {
 }
 
 impl DrawnBody {
-    pub fn of(run: &LiveRun) -> Self {
+    pub fn new(run: &LiveRun) -> Self {
         let scenario = run.scenario();
         let points = scenario.body.mechanics.points();
         let rim = scenario.file.body.rim.clone();
@@ -49,7 +49,7 @@ impl DrawnBody {
         let single = free.iter().copied().chain([traced]);
         corners.extend(single.map(|point| (point.at.xy().norm(), point.at.z)));
         let parts = scenario.body.parts.iter().take(MOST_PARTS);
-        let solids: Vec<_> = parts.map(Solid::of).collect();
+        let solids: Vec<_> = parts.map(Solid::new).collect();
         corners.extend(solids.iter().flat_map(Solid::corners));
         let heights = corners.iter().map(|(_, height)| *height);
         let axle = (
@@ -105,7 +105,7 @@ struct Solid {
 }
 
 impl Solid {
-    fn of(part: &PlacedSolid) -> Self {
+    fn new(part: &PlacedSolid) -> Self {
         let lines = outline::lines(part);
         let points = lines.iter().flat_map(|line| &line.points);
         let distances = points.map(|at| (at - part.centre).norm());

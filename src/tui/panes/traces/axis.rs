@@ -5,6 +5,7 @@ use crate::engine::text::wrap::columns;
 use crate::lab::playback::scale::{self, StripScale};
 use crate::lab::playback::strip::Strip;
 use crate::lab::view::theme::Theme;
+use crate::plot::chart::ticks::round_values;
 use crate::tui::panes::write;
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
@@ -35,7 +36,7 @@ pub fn times(strip: &Strip, width: usize) -> Vec<PlacedTick> {
     }
     let mut most = (width / COLUMNS_PER_TIME).max(2);
     loop {
-        let ticks = scale::ticks(strip.begin_s, strip.end_s(), most);
+        let ticks = round_values(strip.begin_s, strip.end_s(), most);
         let count = ticks.len();
         match round_times(strip, width, &ticks) {
             Some(placed) => return placed,
@@ -134,7 +135,7 @@ pub fn values(scale: &StripScale, rows: usize) -> Vec<ValueTick> {
         return placed;
     }
     let most = if rows < MANY_ROWS { 2 } else { 3 };
-    let ticks = scale::ticks(scale.low, scale.high, most);
+    let ticks = round_values(scale.low, scale.high, most);
     let apart = match ticks[..] {
         [first, second, ..] => second - first,
         _ => scale.high - scale.low,

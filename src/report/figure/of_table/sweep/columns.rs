@@ -21,7 +21,7 @@ pub(super) enum QuantityOwner {
 }
 
 impl QuantityOwner {
-    fn of(name: &str) -> Self {
+    fn from_name(name: &str) -> Self {
         let source = readouts::find(name).map(|readout| readout.source);
         match source {
             _ if name.starts_with(MEASURED_PREFIX) => Self::Measured,
@@ -56,26 +56,23 @@ pub(super) fn quantities(
     varied: &[String],
     columns: &[&str],
 ) -> Vec<QuantityColumns> {
-    let is_asked = |name: &str| columns.is_empty() || columns.contains(&name);
-    let is_number = |name: &str| {
-        let numbers = table.numbers(name);
-        numbers.is_some_and(|numbers| numbers.iter().any(|number| number.is_finite()))
-    };
     let names: Vec<&String> = table
         .names()
         .iter()
         .filter(|name| {
-            !varied.contains(name)
-                && is_asked(name)
-                && is_number(name)
-                && !name.contains(UNCERTAINTY_INFIX)
+            let is_asked = columns.is_empty() || columns.contains(&name.as_str());
+            !varied.contains(name) && is_asked && !name.contains(UNCERTAINTY_INFIX)
+        })
+        .filter(|name| {
+            let numbers = table.numbers(name);
+            numbers.is_some_and(|numbers| numbers.iter().any(|number| number.is_finite()))
         })
         .collect();
     let mut quantities: Vec<(&str, QuantityColumns)> = Vec::new();
     for name in &names {
         let part = QuantityColumn {
             name: (*name).clone(),
-            role: QuantityOwner::of(name),
+            role: QuantityOwner::from_name(name),
             uncertainty: uncertainty_of(table, name),
         };
         let what = what(name, &names);
@@ -95,7 +92,7 @@ pub(super) fn quantities(
 /// of the quantity that was measured beside it, `measured_precession_rad_per_s`.
 fn what<'a>(name: &'a str, names: &[&'a String]) -> &'a str {
     let own = bare(name);
-    if QuantityOwner::of(name) != QuantityOwner::Theory {
+    if QuantityOwner::from_name(name) != QuantityOwner::Theory {
         return own;
     }
     let mut measured = names
@@ -173,17 +170,24 @@ pub(super) fn theory<'a>(
     names.filter(|name| {
         let is_drawn = columns.is_empty() || columns.contains(name);
         is_drawn
-            && QuantityOwner::of(name) == QuantityOwner::Theory
+            && QuantityOwner::from_name(name) == QuantityOwner::Theory
             && !name.contains(UNCERTAINTY_INFIX)
     })
 }
 
 /// Two of the columns as an example of a choice, those that were measured before others.
 pub(super) fn example(quantities: &[QuantityColumns]) -> String {
-    let parts = || quantities.iter().flatten();
-    let is_measured = |part: &&QuantityColumn| part.role == QuantityOwner::Measured;
-    let measured = parts().filter(is_measured);
-    let others = parts().filter(|part| !is_measured(part) && Unit::from_name(&part.name).is_some());
-    let names = measured.chain(others).map(|part| part.name.as_str());
-    names.take(2).collect::<Vec<_>>().join(",")
+    let (measured, others): (Vec<_>, Vec<_>) = quantities
+        .iter()
+        .flatten()
+        .partition(|part| part.role == QuantityOwner::Measured);
+    let with_unit = others
+        .into_iter()
+        .filter(|part| Unit::from_name(&part.name).is_some());
+    let names = measured.into_iter().chain(with_unit);
+    names
+        .map(|part| part.name.as_str())
+        .take(2)
+        .collect::<Vec<_>>()
+        .join(",")
 }

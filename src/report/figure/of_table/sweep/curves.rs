@@ -43,32 +43,32 @@ pub(super) fn curves(table: &TableSource, swept: &SweepTable, along: &str) -> Ve
         .filter(|key| *key != along)
         .filter_map(|key| Some((key, table.texts(key)?)))
         .collect();
-    let values = |row: usize| {
-        let texts: Vec<_> = others.iter().map(|(_, texts)| texts[row]).collect();
-        texts.join("\n")
-    };
-    let values: Vec<String> = (0..table.count()).map(values).collect();
-    let groups = grouped(&values).into_iter().enumerate();
-    let curve = |(index, (_, rows)): (usize, (String, RowIndices))| SweepCurve {
-        index,
-        settings: others
-            .iter()
-            .map(|(key, texts)| CurveSetting::new(&swept.scenario, key, texts[rows[0]]))
-            .collect(),
-        rows,
-    };
-    groups.map(curve).collect()
+    let values: Vec<String> = (0..table.count())
+        .map(|row| {
+            let texts: Vec<_> = others.iter().map(|(_, texts)| texts[row]).collect();
+            texts.join("\n")
+        })
+        .collect();
+    grouped(&values)
+        .into_iter()
+        .enumerate()
+        .map(|(index, (_, rows))| SweepCurve {
+            index,
+            settings: others
+                .iter()
+                .map(|(key, texts)| CurveSetting::new(&swept.scenario, key, texts[rows[0]]))
+                .collect(),
+            rows,
+        })
+        .collect()
 }
 
 /// What a curve with these `settings` is called, as markup no longer than `room_pt`; `word` stands before.
 pub(super) fn name(word: &str, settings: &[CurveSetting], room_pt: f64) -> String {
-    let joined = |of: fn(&CurveSetting) -> &str| {
-        let word = Some(word).filter(|word| !word.is_empty());
-        let said = word.into_iter().chain(settings.iter().map(of));
-        said.collect::<Vec<_>>().join(", ")
-    };
-    let (markup, plain) = (joined(|it| &it.markup), joined(|it| &it.plain));
-    within_room(markup, &plain, room_pt)
+    let word = Some((word, word)).filter(|_| !word.is_empty());
+    let settings = settings.iter().map(|it| (&*it.markup, &*it.plain));
+    let (markup, plain): (Vec<&str>, Vec<&str>) = word.into_iter().chain(settings).unzip();
+    within_room(markup.join(", "), &plain.join(", "), room_pt)
 }
 
 impl CurveSetting {

@@ -40,8 +40,9 @@ pub(super) fn keep(
     files.save("what was pasted", &text, &path, false)?;
     let is_confined = files.confined().is_some();
     let whole = std::path::absolute(&path).ok().filter(|_| !is_confined);
-    let whole = whole.and_then(|path| path.to_str().map(str::to_owned));
-    let kept = whole.unwrap_or_else(|| name.clone());
+    let kept = whole
+        .and_then(|whole| whole.to_str().map(str::to_owned))
+        .unwrap_or_else(|| name.clone());
     let key = Table::from_iter([("view.measured".to_owned(), kept.into())]);
     let mut words = format!("the rows that were pasted are in {name}; u takes them back");
     if let Some(why) = unjudged {
