@@ -424,7 +424,10 @@ fn plane(picture: Rect, middle: Vector2<f64>, half: Vector2<f64>) -> Plane {
     let (marker, middle) = (Marker::Braille, (middle.x, middle.y));
     let mut plane = Plane::new(picture, marker, middle, (half.x, half.y));
     let (x, y) = plane.dot((0.0, 0.0));
-    let moved = (x.floor() + 0.5 - x, 4.0 * (y / 4.0).round() + 1.5 - y);
+    let moved = (
+        x.floor() + 0.5 - x,
+        4.0 * ((y - 1.5) / 4.0).round() + 1.5 - y,
+    );
     plane.middle.0 -= moved.0 / plane.scale.0;
     plane.middle.1 += moved.1 / plane.scale.1;
     plane
