@@ -154,6 +154,24 @@ fn a_run_that_agrees_with_the_exact_motion_shows_both() {
     assert!(exact.len() >= 15 && run.len() >= 15, "{}", picture.text());
 }
 
+/// Of a fast run the shown moment is that of the latest reading, and so is the exact motion's.
+#[test]
+fn the_exact_motion_is_marked_at_the_shown_moment() {
+    let mut stage = Stage::open(
+        "method-1",
+        &["motion.scheme=exact"],
+        Rect::new(0, 0, 120, 40),
+    );
+    stage.press("t").wait(0.3);
+    for _ in 0..20 {
+        stage.wait(0.13);
+        let picture = draw(Pane::Above, &stage, SIZES[2]);
+        let (now, exact) = (picture.label("now"), picture.label("exact"));
+        let is_near = now.0.abs_diff(exact.0) <= 10 && now.1.abs_diff(exact.1) <= 3;
+        assert!(is_near, "{}", picture.text());
+    }
+}
+
 #[test]
 fn a_run_that_covers_little_of_its_circle_shows_the_circle() {
     let mut stage = stage("method-2-slow", 10_000, "");
