@@ -19,8 +19,8 @@ const ASLANT_PITCH_DEG: f64 = 24.0;
 /// The direction to which the camera turns an axle: this angle from the picture's right towards the eye, degrees. The
 /// axle is then seen at its length, and the wheel across it shows its face.
 const ASIDE_DEG: f64 = 14.0;
-/// The apparent length of an axle that can be read, as a share of its length: a shorter one points too much at the eye.
-const READABLE_LENGTH: f64 = 0.75;
+/// The least share of an axle's lean that is seen to the side, and not towards the eye or away from it.
+const LEAST_ASIDE: f64 = 0.8;
 /// The least width of a wheel's ellipse, as a share of its length.
 const OPEN_WHEEL: f64 = 0.15;
 /// An axle nearer to the vertical than this, degrees, is seen from every side alike.
@@ -79,11 +79,10 @@ impl Camera {
     /// Returns the camera from which `axle` (a direction, world frame) is seen aslant: leaning to the right, and a little
     /// towards the eye.
     pub fn aslant(self, axle: &Vector3<f64>) -> Self {
-        let is_upright = axle.xy().norm() < libm::sin(UPRIGHT_DEG.to_radians()) * axle.norm();
         let azimuth_deg = libm::atan2(axle.y, axle.x).to_degrees();
         let yaw_deg = ((azimuth_deg + ASIDE_DEG) / NOTCH_DEG).round() * NOTCH_DEG;
         Self {
-            yaw_deg: if is_upright || yaw_deg.is_nan() {
+            yaw_deg: if is_upright(axle) || yaw_deg.is_nan() {
                 self.yaw_deg
             } else {
                 yaw_deg.rem_euclid(360.0) + 0.0 // no negative zero
@@ -92,11 +91,11 @@ impl Camera {
         }
     }
 
-    /// Returns true if `axle` is seen long enough to be read, and the wheel across it is not seen as a line.
+    /// Returns true if it is seen how far `axle` leans, and the wheel across it is not seen as a line.
     pub fn reads(&self, axle: &Vector3<f64>) -> bool {
-        let (right, up) = self.project(axle);
-        let is_long = libm::hypot(right, up) >= READABLE_LENGTH * axle.norm();
-        is_long && self.view().depth(axle).abs() >= OPEN_WHEEL * axle.norm()
+        let (right, _) = self.project(axle);
+        let leans_aside = is_upright(axle) || right.abs() >= LEAST_ASIDE * axle.xy().norm();
+        leans_aside && self.view().depth(axle).abs() >= OPEN_WHEEL * axle.norm()
     }
 
     /// Its sines and cosines: for many points in turn. The same on every machine.
@@ -115,6 +114,10 @@ impl Camera {
     pub fn project(&self, point: &Vector3<f64>) -> (f64, f64) {
         self.view().project(point)
     }
+}
+
+fn is_upright(axle: &Vector3<f64>) -> bool {
+    axle.xy().norm() < libm::sin(UPRIGHT_DEG.to_radians()) * axle.norm()
 }
 
 /// A camera whose angles are known by their sines and cosines.

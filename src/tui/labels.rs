@@ -1,7 +1,7 @@
 //! Labels of a picture. A label goes to the first place beside its mark whose cells are free, or is left out.
 
 use crate::engine::text::wrap::columns;
-use ratatui::buffer::Buffer;
+use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 
@@ -80,7 +80,7 @@ impl Labels<'_> {
         let is_blank = (x..x + width).all(|x| self.symbol((x, y)) == Some(" "));
         let is_apart = [x - 1, x + width].into_iter().all(|x| {
             let sign = self.symbol((x, y)).and_then(|sign| sign.chars().next());
-            !sign.is_some_and(|sign| sign.is_alphanumeric())
+            !sign.is_some_and(char::is_alphanumeric)
         });
         is_blank && is_apart
     }
@@ -92,6 +92,6 @@ impl Labels<'_> {
             self.buf
                 .cell((self.picture.x + x as u16, self.picture.y + y as u16))
         });
-        cell.flatten().map(|cell| cell.symbol())
+        cell.flatten().map(Cell::symbol)
     }
 }

@@ -46,8 +46,10 @@ const PAGE_ROWS: u16 = 8;
 /// The fewest and the most columns of the step pane, and its share of the screen in percent.
 const STEP_COLUMNS: (u16, u16) = (44, 84);
 const STEP_SHARE: u32 = 62;
-/// The fewest columns of what is beside a page or the step pane, and the fewest rows with which it is two panes.
+/// The fewest columns of what is beside a page or the step pane, and the fewest columns and rows with which it is two panes,
+/// one above the other.
 const COMPANION_COLUMNS: u16 = 24;
+const COMPANION_OF_TWO: u16 = 36;
 const COMPANION_ROWS: u16 = 16;
 
 /// The areas of a screen; a part without a place has an empty area.
@@ -126,8 +128,10 @@ impl ScreenLayout {
 
 fn overview_rows(height: u16, view: &View) -> u16 {
     let full = OVERVIEW_ROWS.iter().find(|(from, _)| height >= *from);
+    // Beside a page of 24 rows there is room for the scrub line only.
+    let has_room = !view.filled && (view.sheet.is_none() || height >= OVERVIEW_ROWS[1].0);
     match full {
-        Some((_, rows)) if view.window.has_overview && !view.fullscreen => *rows,
+        Some((_, rows)) if view.window.has_overview && has_room => *rows,
         _ => u16::from(height >= SCRUB_FROM),
     }
 }
@@ -267,16 +271,17 @@ fn companion(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     let (Some(first), Some(last)) = (shown.first(), shown.last()) else {
         return Vec::new();
     };
-    if first == last || area.height < COMPANION_ROWS {
+    if first == last || area.height < COMPANION_ROWS || area.width < COMPANION_OF_TWO {
+        let views = views(view);
         let focus = shown.iter().find(|pane| **pane == view.focus);
-        return vec![(*focus.unwrap_or(first), area)];
+        return vec![(*focus.or(views.first()).unwrap_or(first), area)];
     }
     let is_about_values =
         *last == Pane::Parameters && (view.focus == Pane::Parameters || views(view).is_empty());
     if !shown.contains(&Pane::Traces) && !is_about_values {
         return place_views(area, view);
     }
-    let [above, below] = split_rows(area, area.height * 2 / 5);
+    let [above, below] = split_rows(area, companion_traces_rows(area.height));
     let mut panes = if shown.contains(&Pane::Traces) {
         vec![(Pane::Traces, above)]
     } else {
@@ -290,24 +295,29 @@ fn companion(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     panes
 }
 
+/// Rows of the traces above a view of the path or the values: 7 of 19, and 14 of 31.
+fn companion_traces_rows(rows: u16) -> u16 {
+    match rows.checked_sub(19) {
+        Some(more) => 7 + more * 7 / 12,
+        None => rows * 2 / 5,
+    }
+}
+
 /// Two views of the path side by side or one above the other where there is room; else the one that was looked at last.
 fn place_views(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     let views = views(view);
     let is_chosen = views.iter().all(|pane| view.look.show.contains(pane));
-    let least = if is_chosen {
-        CHOSEN_VIEW_COLUMNS
-    } else {
-        VIEW_COLUMNS
-    };
+    let is_wide = area.width > 2 * VIEW_COLUMNS;
+    let is_high = area.height >= STACKED_FROM;
     match views[..] {
         [] => Vec::new(),
-        [_, _] if area.width > 2 * least => {
-            let [left, right] = halves(area);
-            vec![(Pane::Above, left), (Pane::ThreeD, right)]
-        }
-        [_, _] if area.height >= STACKED_FROM => {
+        [_, _] if is_high && !is_wide => {
             let [above, below] = stacked(area, ((area.height - 1) * 14 + 15) / 30);
             vec![(Pane::Above, above), (Pane::ThreeD, below)]
+        }
+        [_, _] if is_wide || is_chosen && area.width > 2 * CHOSEN_VIEW_COLUMNS => {
+            let [left, right] = halves(area);
+            vec![(Pane::Above, left), (Pane::ThreeD, right)]
         }
         [first, ..] => vec![(first, area)],
     }

@@ -14,8 +14,8 @@
 //! - [`keyboard`] takes the terminal's bytes, [`decoder`] makes keys of them; [`mouse`] says what is done where it points.
 //! - [`keymap`] is the one table of keys, [`press`](mod@press) carries out what a key means.
 //! - [`screen`] puts the panes in their places, [`panes`] draw what they borrow and change nothing; [`mod@svg`] is the picture for a
-//!   slide; [`layout`] says which places those are, [`theme`] has the styles of all roles, [`dots`] sets dots and says what
-//!   they look like, [`points`] what was measured, [`layered_dots`] lines that cross, [`labels`] their names; [`plane`] takes metres to dots and cells,
+//!   slide; [`layout`] says which places those are, [`theme`] has the styles of all roles, [`dots`] says what dots
+//!   look like, [`points`] what was measured, [`layered_dots`] lines that cross, [`labels`] their names; [`plane`] takes metres to dots and cells,
 //!   [`split`] a part of the screen to two.
 //! - [`board`] shows lines without a lab. [`job_control`] tells whether Ctrl-Z may stop the program.
 

@@ -343,23 +343,6 @@ fn advice_on_an_edited_time_step_is_for_the_whole_run() {
     assert_ne!(is_believed(&desk), Some(false));
 }
 
-/// Of a fast run the moment that is shown is that of the latest reading. The exact motion's mark stands where that was then:
-/// the exact scheme is never seen apart from it.
-#[test]
-fn the_exact_motion_is_marked_at_the_moment_that_is_shown() {
-    let mut stage = Stage::open("method-1", &["motion.scheme=exact"], SMALL);
-    stage.press("t").wait(0.3).press("p");
-    let mut together = 0;
-    for _ in 0..20 {
-        let picture = stage.wait(0.13).picture();
-        let rows = picture.lines().skip(2).take(11);
-        let above: String = rows.flat_map(|row| row.chars().skip(27).take(24)).collect();
-        assert!(!above.contains('e'), "{picture}");
-        together += above.matches('*').count();
-    }
-    assert!(together > 10, "{together}");
-}
-
 #[test]
 fn an_exact_motion_that_would_take_too_long_is_left_out_and_said() {
     let set = ["motion.time_step_s=1e6", "view.exact=true"];

@@ -53,6 +53,7 @@ mod run_until;
 mod scenes;
 mod schemes;
 mod small_screens;
+mod space;
 mod start;
 mod step_pane;
 mod sweep;

@@ -244,9 +244,9 @@ fn words_on_the_screen_are_in_the_glossary() {
         ("═", "a push, an edit"),
         ("×20", "the playback speed"),
         ("kappa", "I3/I1"),
-        ("both", "the same point of the screen"),
+        ("bright", "the path in the window"),
         ("dashes", "the exact motion beside the run"),
-        ("dotted", "from above the path"),
+        ("dotted", "the previous run"),
     ] {
         let mut stage = Stage::open("method-2", &[], LARGE);
         stage.press("?").press(word).shows(meaning);

@@ -1,4 +1,4 @@
-//! What the round pictures show of a run: from where, beside which other runs, and after a scheme broke down.
+//! From where the pictures in space are seen, and what they show after a scheme broke down.
 
 use crate::support::stage::{LARGE, SMALL, Stage};
 use gyrolab::lab::view::Pane;
@@ -54,26 +54,6 @@ fn a_moving_picture_keeps_its_direction() {
         shortest < 0.6,
         "it points at the eye on its way: {shortest}"
     );
-}
-
-/// The picture of the 3-D view, without its legend.
-fn scene(stage: &Stage) -> String {
-    let picture = stage.picture();
-    let above_legend = picture.split("L angular momentum").next();
-    above_legend.unwrap_or_default().to_owned()
-}
-
-#[test]
-fn the_pinned_run_and_the_one_before_are_drawn_in_space() {
-    let mut stage = Stage::open("method-2", &[], SMALL);
-    stage.commands("pause = true\ngo_to = '60 s'\npin = true\nset = { 'start.tilt_deg' = 30 }");
-    stage.commands("set = { 'start.tilt_deg' = 60 }");
-    stage.press("d");
-    stage.shows("pinned").shows("dotted: other");
-    let both = scene(&stage);
-    stage.commands("pin = false");
-    stage.shows_no("pinned").shows("dotted: other");
-    assert_ne!(scene(&stage), both);
 }
 
 #[test]
@@ -137,95 +117,4 @@ fn keys_and_commands_turn_the_camera_from_where_it_is() {
             ..before
         }
     );
-}
-
-/// The rows of a picture.
-fn rows(picture: &str) -> Vec<Vec<char>> {
-    picture.lines().map(|line| line.chars().collect()).collect()
-}
-
-/// The first place of `sign` below the title.
-fn place(rows: &[Vec<char>], sign: char) -> (usize, usize) {
-    let mut below = rows.iter().enumerate().skip(2);
-    let found = below.find_map(|(y, line)| Some((line.iter().position(|c| *c == sign)?, y)));
-    found.unwrap()
-}
-
-#[test]
-fn the_wheel_is_as_large_as_its_pane_allows() {
-    // The wheel is wide for its axle: arrows along the axle that were longer for that would take the room.
-    let mut stage = Stage::open("cusps", &[], Rect::new(0, 0, 120, 40));
-    stage.commands("pause = true\ngo_to = 0");
-    let layout = screen::layout(&stage.lab, true, stage.size);
-    let mut panes = layout.panes.iter();
-    let (_, place) = panes.find(|(pane, _)| *pane == Pane::ThreeD).unwrap();
-    let picture = stage.picture();
-    let rows = rows(&picture);
-    // Above the legend, whose words have the letter too.
-    let of_scene = &rows[place.y as usize + 1..place.bottom() as usize - 4];
-    let masses: Vec<_> = of_scene
-        .iter()
-        .flat_map(|row| {
-            let row = &row[place.x as usize..place.right() as usize];
-            row.iter()
-                .enumerate()
-                .filter(|(_, sign)| ['O', 'o', '·'].contains(sign))
-                .map(|(x, _)| x)
-        })
-        .collect();
-    let width = masses.iter().max().unwrap() - masses.iter().min().unwrap();
-    assert!(width >= 11, "{width} columns in\n{picture}");
-}
-
-/// Whether a post leads down from the pivot.
-fn has_stand(picture: &str) -> bool {
-    let rows = rows(picture);
-    let (x, y) = place(&rows, '+');
-    (1..=3).all(|down| ('\u{2801}'..='\u{28ff}').contains(&rows[y + down][x]))
-}
-
-#[test]
-fn the_axle_is_a_heavy_line_from_the_stand_to_its_top() {
-    let mut stage = Stage::open("method-2", &[], LARGE);
-    stage.commands("pause = true\ngo_to = 600");
-    stage.press("d").wait(0.3);
-    let picture = stage.picture();
-    assert!(has_stand(&picture), "{picture}");
-    let rows = rows(&picture);
-    let (pivot, top) = (place(&rows, '+'), place(&rows, '*'));
-    let between = |from: usize, to: usize, share: f64| {
-        (from as f64 + share * (to as f64 - from as f64)).round() as usize
-    };
-    for share in [0.7, 0.8, 0.9] {
-        let (x, y) = (
-            between(pivot.0, top.0, share),
-            between(pivot.1, top.1, share),
-        );
-        let across: u32 = (x - 2..=x + 2)
-            .map(|x| u32::from(rows[y][x]).saturating_sub(0x2800).count_ones())
-            .sum();
-        assert!(across >= 10, "{across} dots at {share}:\n{picture}");
-    }
-}
-
-#[test]
-fn a_body_without_weight_stands_on_nothing() {
-    for (name, set) in [
-        ("torque-free", &[][..]),
-        ("method-2", &["motion.gravity_m_per_s2=0"][..]),
-    ] {
-        let mut stage = Stage::open(name, set, LARGE);
-        stage.commands("pause = true");
-        stage.press("d").wait(0.3).shows("no weight");
-        assert!(!has_stand(&stage.picture()), "{}", stage.picture());
-    }
-}
-
-#[test]
-fn the_legend_names_every_sign_beside_the_exact_motion_too() {
-    let mut stage = Stage::open("method-2", &[], Rect::new(0, 0, 120, 40));
-    stage.press("t").wait(0.5);
-    for words in ["L angular momentum", "+ pivot", "* top", "dots: exact"] {
-        stage.shows(words);
-    }
 }

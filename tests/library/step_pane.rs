@@ -288,7 +288,7 @@ fn no_size_is_too_small() {
 }
 
 #[test]
-fn its_place_is_as_wide_as_its_numbers() {
+fn it_has_a_fixed_share_of_the_screen() {
     let widths = |stage: &Stage| -> Vec<(&'static str, u16)> {
         let panes = screen::layout(&stage.lab, true, stage.size).panes;
         let widths = panes.iter().map(|(pane, place)| (pane.id(), place.width));
@@ -297,14 +297,14 @@ fn its_place_is_as_wide_as_its_numbers() {
     let mut stage = Stage::open("method-2", &["view.show=['above', '3d', 'step']"], SMALL);
     stage.commands("pause = true");
     // Beside the pane in focus, or the first.
-    assert_eq!(widths(&stage), [("above", 36), ("step", 44)]);
+    assert_eq!(widths(&stage), [("step", 49), ("above", 30)]);
     stage.press("\t\t");
-    assert_eq!(widths(&stage), [("3d", 36), ("step", 44)]);
+    assert_eq!(widths(&stage), [("step", 49), ("3d", 30)]);
     for (width, panes) in [
         (60, vec![("3d", 60)]),
         (40, vec![("3d", 40)]),
-        (120, vec![("above", 36), ("3d", 36), ("step", 48)]),
-        (200, vec![("above", 38), ("3d", 38), ("step", 124)]),
+        (120, vec![("step", 74), ("above", 22), ("3d", 22)]),
+        (200, vec![("step", 84), ("above", 57), ("3d", 57)]),
     ] {
         stage.size.width = width;
         assert_eq!(widths(&stage), panes);

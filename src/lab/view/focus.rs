@@ -6,7 +6,7 @@ use crate::lab::command::Command;
 impl View {
     /// The commands that show `pane`, one that is shown on request, beside another one, or take it away.
     pub(in crate::lab) fn toggled(&self, pane: Pane) -> Vec<Command> {
-        let with_it = [Pane::ThreeD, pane];
+        let with_it = [Pane::Traces, Pane::ThreeD, pane];
         let mut commands = Vec::new();
         if self.fullscreen {
             commands.push(Command::Fill(None));

@@ -41,8 +41,7 @@ const TICK_SHARE: f64 = 0.2;
 /// Decimals of a tick's number; a finer one has an exponent.
 const MOST_TICK_DECIMALS: i64 = 4;
 
-/// The dashes of the exact path, and the dots of the circle that theory predicts.
-const EXACT_PATH_DASHES: Dashes = (4, 8);
+/// Fine dots between two dots of the circle that theory predicts.
 const CIRCLE_DOTS: f64 = 3.0;
 /// The longest line between two places of the earlier path, dots.
 const LONGEST_EARLIER_LINE: f64 = 8.0;
@@ -212,9 +211,8 @@ impl<'a> AbovePicture<'a> {
 
     /// The previous run and the pinned one, each with its dashes.
     fn ghosts(&self) -> [(Option<&'a Ghost>, &'static str, Dashes); 2] {
-        let of_previous = dots::of_run_before(Marker::Braille);
         [
-            (self.seen.ghost, "previous", of_previous),
+            (self.seen.ghost, "previous", dots::PREVIOUS_DASHES),
             (self.seen.pinned, "pinned", dots::PINNED_DASHES),
         ]
     }
@@ -257,7 +255,7 @@ impl<'a> AbovePicture<'a> {
         if let Some(overlay) = self.seen.run.overlay() {
             let places = overlay.path.dots().map(|at| self.plane.dot(at));
             let exact = ink(Role::Exact, Layer::Exact);
-            dots.path(places, Some(EXACT_PATH_DASHES), 0.0, exact);
+            dots.path(places, Some(dots::EXACT_DASHES), 0.0, exact);
         }
     }
 
@@ -424,7 +422,10 @@ fn plane(picture: Rect, middle: Vector2<f64>, half: Vector2<f64>) -> Plane {
     let (marker, middle) = (Marker::Braille, (middle.x, middle.y));
     let mut plane = Plane::new(picture, marker, middle, (half.x, half.y));
     let (x, y) = plane.dot((0.0, 0.0));
-    let moved = (x.floor() + 0.5 - x, 4.0 * (y / 4.0).round() + 1.5 - y);
+    let moved = (
+        x.floor() + 0.5 - x,
+        4.0 * ((y - 1.5) / 4.0).round() + 1.5 - y,
+    );
     plane.middle.0 -= moved.0 / plane.scale.0;
     plane.middle.1 += moved.1 / plane.scale.1;
     plane

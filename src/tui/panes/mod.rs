@@ -107,8 +107,8 @@ pub struct PlotInputs<'a> {
     /// The run that was pinned as the reference, unless it is the present one.
     pub pinned: Option<&'a Ghost>,
     pub measured: Option<&'a DataComparison>,
-    /// The latest reading of the run, if it is read at all: by it a path is recent or old. The scene in space is that of
-    /// its time: a turning wheel changes most of the picture, which would load a slow line in every frame.
+    /// The latest reading of the run, if it is read at all. Its precession says which turn is the last. The scene in space
+    /// is that of its time: a turning wheel changes most of the picture, which would load a slow line in every frame.
     pub reading: Option<&'a Reading>,
     /// The time step that the step pane takes apart: the scene in space shows what its page is about.
     pub explained: Option<&'a StepWorkings>,

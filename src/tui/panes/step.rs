@@ -357,24 +357,24 @@ pub(super) fn name_of(scenario: &Scenario, point: usize) -> String {
 #[rustfmt::skip]
 const fn words_of(phase: PhaseName) -> [&'static str; 3] {
     match phase {
-        PhaseName::Inertia => ["How the masses lie about the pivot, added up point by point.", "nothing yet; gives I", "the body before the step (°)"],
+        PhaseName::Inertia => ["How the masses lie about the pivot, added up point by point.", "nothing yet; gives I", "the body before the step (gray)"],
         PhaseName::AngularVelocity => ["The axis about which the body turns now, and how fast: L divided by the inertia.", "nothing yet; gives Ω", "the arrow Ω"],
         PhaseName::AxisAndAngle => ["The line u along Ω, and the angle about it in one time step.", "nothing yet; gives u and the angle", "the line u through the pivot"],
-        PhaseName::Rotation => ["The matrix that turns any point about u by that angle.", "nothing yet; gives R", "the body before (°) and after"],
-        PhaseName::NewPositions => ["R turns every point to its new place.", "where the points are", "the body before (°) and after"],
-        PhaseName::Torque => ["How the forces turn the body about the pivot: each where its point is now.", "nothing yet; gives τ", "the arrow τ; forces: g and F"],
+        PhaseName::Rotation => ["The matrix that turns any point about u by that angle.", "nothing yet; gives R", "the body before (gray) and after"],
+        PhaseName::NewPositions => ["R turns every point to its new place.", "where the points are", "the body before (gray) and after"],
+        PhaseName::Torque => ["How the forces turn the body about the pivot: each where its point is now.", "nothing yet; gives τ", "the arrows τ, weight and F"],
         PhaseName::NewMomentum => ["In the time dt the forces change L. The next step begins with the new L.", "L, and nothing else", "the arrow L, and dL at its tip"],
         PhaseName::Friction => ["Friction slows the spin, and the swing of the axle: it takes from L while the body stands still.", "L, and nothing else", "the arrow L"],
         PhaseName::Kick => ["The forces act for the time h: they change L while the body stands still.", "L, and nothing else", "the arrow L, and dL at its tip"],
-        PhaseName::FreeMotion => ["The body moves for the time h as if there were no forces: L stays.", "how the body stands", "the body before (°) and after"],
-        PhaseName::SpinAboutAxle => ["The body turns about its own axle, once for the whole step.", "how the body stands about its axle", "the body before (°) and after"],
+        PhaseName::FreeMotion => ["The body moves for the time h as if there were no forces: L stays.", "how the body stands", "the body before (gray) and after"],
+        PhaseName::SpinAboutAxle => ["The body turns about its own axle, once for the whole step.", "how the body stands about its axle", "the body before (gray) and after"],
         PhaseName::RoundingTakenOut => ["Rounding has bent the orientation a little: it is made a rotation again.", "how the body stands, by a rounding", ""],
-        PhaseName::NewOrientation => ["How the body stands at the end of the step.", "how the body stands", "the body before (°) and after"],
+        PhaseName::NewOrientation => ["How the body stands at the end of the step.", "how the body stands", "the body before (gray) and after"],
         PhaseName::Slope1AtBeginning => ["How fast orientation and momentum change as the step begins.", "nothing yet; four slopes make a step", "the arrow Ω"],
         PhaseName::Slope2HalfWay => ["The same after half the step, if slope 1 held so long.", "nothing yet; four slopes make a step", "the arrow Ω"],
         PhaseName::Slope3HalfWay => ["The same once more, with slope 2: better than slope 2.", "nothing yet; four slopes make a step", "the arrow Ω"],
         PhaseName::Slope4AtEnd => ["How fast they change as the step ends, if slope 3 held for all of it.", "nothing yet; four slopes make a step", "the arrow Ω"],
         PhaseName::ThetaFunctions => ["Two complex numbers that hold the orientation at the time t: exact, whatever the time step.", "nothing yet; gives α and β", ""],
-        PhaseName::TaylorSeries => ["Orientation and momentum at the time t, from a series that is exact to the last digits.", "how the body stands, and L", "the body before (°) and after"],
+        PhaseName::TaylorSeries => ["Orientation and momentum at the time t, from a series that is exact to the last digits.", "how the body stands, and L", "the body before (gray) and after"],
     }
 }

@@ -53,7 +53,6 @@ const LEGEND_WORD_GAP: u16 = 2;
 const SWINGS: f64 = 2.2;
 /// The longest line between two places of a path, of the sheet's shorter side.
 const LONGEST_LINE: f64 = 0.5;
-const EXACT_PATH_DASHES: Dashes = (4, 7);
 const FLOOR_DASHES: Dashes = (1, 3);
 const AXIS_DASHES: Dashes = (1, 2);
 const PLUMB_DASHES: Dashes = (1, 4);
@@ -288,18 +287,14 @@ impl<'a> Scene<'a> {
         if let Some(overlay) = self.seen.run.overlay() {
             let exact = self.bins(&overlay.recording).map(|at| self.dot(&at));
             let of_exact = ink(Role::Exact, Layer::Exact);
-            dots.path(exact, Some(EXACT_PATH_DASHES), longest, of_exact);
+            dots.path(exact, Some(dots::EXACT_DASHES), longest, of_exact);
         }
     }
 
     /// The paths of the previous run and of the pinned one, and a line from the pivot to each of them now.
     fn other_runs(&self, dots: &mut LayeredDots) -> Vec<SpaceLabel> {
         let others = [
-            (
-                self.seen.ghost,
-                "previous",
-                dots::of_run_before(self.seen.view.marker),
-            ),
+            (self.seen.ghost, "previous", dots::PREVIOUS_DASHES),
             (self.seen.pinned, "pinned", dots::PINNED_DASHES),
         ];
         let mut labels = Vec::new();

@@ -7,9 +7,10 @@ use crate::engine::text::wrap::wrapped;
 use crate::lab::Lab;
 use crate::lab::step_pane::StepWorkings;
 use crate::lab::view::View;
+use crate::lab::view::theme::Marker;
 use crate::physics::loads::torque;
 use crate::physics::workings::{WorkedQuantity, WorkedValue};
-use crate::tui::dots::{Dots, Ink};
+use crate::tui::layered_dots::{DotInk, Layer, LayeredDots};
 use crate::tui::plane::Plane;
 use crate::tui::split::{split_columns, split_rows};
 use crate::tui::theme::Role;
@@ -112,10 +113,13 @@ fn vectors(explained: &StepWorkings, width: usize) -> Vec<StepPageSection> {
         .collect()
 }
 
+/// Length of an arrow's head, fine dots.
+const HEAD_DOTS: f64 = 5.0;
+
 /// A picture of level directions, x to the right and y up, with arrows.
 struct ArrowDiagram {
     plane: Plane,
-    dots: Dots,
+    dots: LayeredDots,
     signs: Vec<((u16, u16), &'static str, Role)>,
 }
 
@@ -129,8 +133,13 @@ impl ArrowDiagram {
     ) -> Self {
         let (middle, half) = ((least + most) * 0.5, ((most - least) * 0.5).map(margin));
         Self {
-            plane: Plane::new(area, view.marker, (middle.x, middle.y), (half.x, half.y)),
-            dots: Dots::new(area, view.marker),
+            plane: Plane::new(
+                area,
+                Marker::Braille,
+                (middle.x, middle.y),
+                (half.x, half.y),
+            ),
+            dots: LayeredDots::new(area, view.marker),
             signs: Vec::new(),
         }
     }
@@ -139,8 +148,12 @@ impl ArrowDiagram {
         self.plane.dot((at.x, at.y))
     }
 
-    fn line(&mut self, from: Vector2<f64>, to: Vector2<f64>, ink: Ink) {
+    fn line(&mut self, from: Vector2<f64>, to: Vector2<f64>, role: Role) {
         let (from, to) = (self.dot(from), self.dot(to));
+        let ink = DotInk {
+            role,
+            layer: Layer::Shaft,
+        };
         self.dots.line(from, to, ink);
     }
 
@@ -151,15 +164,9 @@ impl ArrowDiagram {
     /// A line from one place along another, with its name at its tip.
     fn arrow(&mut self, from: Vector2<f64>, along: Vector2<f64>, name: &'static str, role: Role) {
         let tip = from + along;
-        self.line(from, tip, Ink::Strong(role));
-        // A head of two strokes.
+        let (begin, end) = (self.dot(from), self.dot(tip));
+        self.dots.arrow(begin, end, HEAD_DOTS, role);
         let plane = self.plane;
-        let head = (0.16 * along.norm()).min(0.12 * plane.size.1 as f64 / plane.scale.1);
-        let back = -along.normalize() * head;
-        for (sin, cos) in [0.5_f64, -0.5].map(libm::sincos) {
-            let stroke = Vector2::new(back.x * cos - back.y * sin, back.x * sin + back.y * cos);
-            self.line(tip, tip + stroke, Ink::Strong(role));
-        }
         let cell = plane.in_cell.0 as f64 / plane.scale.0;
         self.sign(tip + along.normalize() * (1.3 * cell), name, role);
     }
@@ -226,12 +233,10 @@ fn from_above(explained: &StepWorkings, view: &View, area: Rect, buf: &mut Buffe
     let [torque, change] = torque_and_change(explained);
     let momentum_tip = along * (BEYOND * length);
     let origin = Vector2::zeros();
-    let mut arrows = vec![(origin, momentum_tip, "L", Role::Run)];
-    arrows.extend(
-        torque.map(|torque| (tip, torque * (TORQUE_ARROW_LENGTH * length), "τ", Role::Run)),
-    );
+    let mut arrows = vec![(origin, momentum_tip, "L", Role::AngularMomentum)];
+    arrows.extend(torque.map(|torque| (tip, torque * (TORQUE * length), "τ", Role::Torque)));
     let change_arrow = change.map(|change| change * (CHANGE_ARROW_LENGTH * length));
-    arrows.extend(change_arrow.map(|change| (momentum_tip, change, "dL", Role::Run)));
+    arrows.extend(change_arrow.map(|change| (momentum_tip, change, "dL", Role::Torque)));
     let corners: Vec<_> = arrows
         .iter()
         .map(|(from, arrow, ..)| from + arrow)
@@ -243,7 +248,7 @@ fn from_above(explained: &StepWorkings, view: &View, area: Rect, buf: &mut Buffe
     for (from, arrow, name, role) in arrows {
         picture.arrow(from, arrow, name, role);
         if name == "L" {
-            picture.line(origin, tip, Ink::Strong(Role::Text));
+            picture.line(origin, tip, Role::Text);
         }
     }
     picture.sign(origin, "+", Role::Label);
@@ -283,7 +288,7 @@ fn dip(explained: &StepWorkings, is_seen: bool, view: &View, area: Rect, buf: &m
     for pair in way.windows(2) {
         // Steps that are too long for the true dip are not joined.
         let from = if is_seen { pair[0] } else { pair[1] };
-        picture.line(from, pair[1], Ink::Strong(Role::Run));
+        picture.line(from, pair[1], Role::Run);
     }
     picture.sign(Vector2::zeros(), "o", Role::Heading);
     picture.draw(place, view, buf);
