@@ -129,7 +129,7 @@ impl ScreenLayout {
 fn overview_rows(height: u16, view: &View) -> u16 {
     let full = OVERVIEW_ROWS.iter().find(|(from, _)| height >= *from);
     // Beside a page of 24 rows there is room for the scrub line only.
-    let has_room = !view.filled && (view.sheet.is_none() || height >= OVERVIEW_ROWS[1].0);
+    let has_room = !view.fullscreen && (view.sheet.is_none() || height >= OVERVIEW_ROWS[1].0);
     match full {
         Some((_, rows)) if view.window.has_overview && has_room => *rows,
         _ => u16::from(height >= SCRUB_FROM),

@@ -86,7 +86,7 @@ fn draw_view(pane: Pane, stage: &Stage, view: &View, (width, height): (u16, u16)
     let mut buf = Buffer::empty(Rect::new(0, 0, width, height));
     let inputs = PlotInputs {
         view,
-        ..PlotInputs::of(&stage.lab)
+        ..PlotInputs::from_lab(&stage.lab)
     };
     match pane {
         Pane::Above => FromAbove(inputs).render(buf.area, &mut buf),

@@ -234,7 +234,14 @@ fn from_above(explained: &StepWorkings, view: &View, area: Rect, buf: &mut Buffe
     let momentum_tip = along * (BEYOND * length);
     let origin = Vector2::zeros();
     let mut arrows = vec![(origin, momentum_tip, "L", Role::AngularMomentum)];
-    arrows.extend(torque.map(|torque| (tip, torque * (TORQUE * length), "τ", Role::Torque)));
+    arrows.extend(torque.map(|torque| {
+        (
+            tip,
+            torque * (TORQUE_ARROW_LENGTH * length),
+            "τ",
+            Role::Torque,
+        )
+    }));
     let change_arrow = change.map(|change| change * (CHANGE_ARROW_LENGTH * length));
     arrows.extend(change_arrow.map(|change| (momentum_tip, change, "dL", Role::Torque)));
     let corners: Vec<_> = arrows
