@@ -46,7 +46,7 @@ pub const TRACES_ROW: PaneRow = PaneRow {
             Direction::Left | Direction::Right => {
                 view.moved_cursor(signed(direction, times), player)
             }
-            _ => view.other_fourth_strip(signed(direction, times)),
+            _ => view.other_magnification(signed(direction, times)),
         })
     }),
 };
@@ -63,8 +63,8 @@ const TRACES_PANE_KEYS: &[Binding] = &[
     does(&[Mode::Lab], &[Key::Char(']')], |lab, count| one(lab.view().panned(repeated(count))), "later", "show later times"),
     does(&[Mode::Lab], &[Key::Char('z')], magnified, "magnify", "magnify the values, twice each time"),
     does(&[Mode::Lab], &[Key::Char('Z')], magnified_less, "", "magnify them less"),
-    row(&[Mode::Lab], &[Key::Up], Action::Move(Direction::Up, 1), "", "another fourth strip"),
-    row(&[Mode::Lab], &[Key::Down], Action::Move(Direction::Down, 1), "", "the same, the other way round"),
+    row(&[Mode::Lab], &[Key::Up], Action::Move(Direction::Up, 1), "", "magnify the values, as z does"),
+    row(&[Mode::Lab], &[Key::Down], Action::Move(Direction::Down, 1), "", "magnify them less"),
 ];
 
 /// Returns how many swings the traces can show where they are `width` columns wide.
