@@ -140,9 +140,13 @@ fn offered(advice: &Advice, player: &Player) -> Option<Offer> {
         } => (time_step_s, Some(name)),
         Advice::Holds | Advice::Nothing | Advice::BoundToItsTimeStep => return None,
     };
+    let run = player.run().scenario();
+    let own = run.motion.scheme.name;
+    let is_edited = run.edits.iter().any(|edit| edit.motion.scheme.name != own);
+    let throughout = scheme.or(is_edited.then_some(own));
     let mut set = Table::from_iter([(TIME_STEP.to_owned(), time_step_s.into())]);
-    set.extend(scheme.map(|name| (SCHEME.to_owned(), name.into())));
-    let scenario = rerun_with(player.run().scenario(), &set, player.end_s).ok()?;
+    set.extend(throughout.map(|name| (SCHEME.to_owned(), name.into())));
+    let scenario = rerun_with(run, &set, player.end_s).ok()?;
     let motion = player.motion();
     let is_in_force =
         motion.time_step_s == time_step_s && scheme.is_none_or(|name| motion.scheme.name == name);

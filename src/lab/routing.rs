@@ -379,8 +379,8 @@ impl Lab {
 
     /// Takes the run to `step` before returning, as long as `go_on` says so.
     ///
-    /// The strip of the fast motion keeps its window from one reading of the numbers to the next. They are read after 1, 2, 4
-    /// and so on steps, so that the picture does not depend on how fast the steps are taken.
+    /// The window of the traces depends on the one before. It is chosen after 1, 2, 4 and so on steps, so that the picture
+    /// does not depend on how fast the steps are taken.
     pub fn begin_at(
         &mut self,
         step: u64,

@@ -57,7 +57,7 @@ fn half_block(bits: u8) -> char {
 /// `symbol` in ASCII, for terminals whose locale is not UTF-8: a stand-in of the same width.
 pub fn ascii(symbol: &str) -> &'static str {
     match symbol {
-        "─" | "╴" => "-",
+        "─" | "╴" | "╌" => "-",
         "▕" | "▏" => "|",
         "◊" => "+",
         "↑" => "^",

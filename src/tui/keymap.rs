@@ -6,6 +6,7 @@ use crate::lab::action::{Action, Ask, Direction, FieldEdit, LessonKey, SHIFT_FAC
 use crate::lab::command::{Command, CursorTo, PushChoice, SeekTarget};
 use crate::lab::view::Pane;
 use crate::lab::{KeyCommands, Lab as TheLab, LabRequest};
+use crate::plot::camera::Camera;
 use crate::tui::panes::{self, Arrows};
 use Key::{
     BackTab, Backspace, Char, Ctrl, Delete, Down, End, Enter, Esc, Home, Left, PageDown, PageUp,
@@ -109,13 +110,36 @@ pub const PURPOSES: [&str; 7] = [
     LEAVE,
 ];
 
-/// The keys that zoom a round picture while it has the focus.
+/// The keys of the traces while they have the focus.
 #[rustfmt::skip]
-pub const ZOOM_KEYS: &[Binding] = &[
+pub const TRACES_KEYS: &[Binding] = &[
+    row(&[Lab], &[Left], Action::Move(Direction::Left, 1), "cursor", "the cursor to the left: its values are shown; Esc takes it away"),
+    row(&[Lab], &[Right], Action::Move(Direction::Right, 1), "", "the cursor to the right"),
+    row(&[Lab], &[Enter], Action::GoToCursor, "", "go to the step at the cursor; without one, to the values"),
+    row(&[Lab], &[Up], Action::Move(Direction::Up, 1), "", "magnify the values, as z does"),
+    row(&[Lab], &[Down], Action::Move(Direction::Down, 1), "", "magnify them less"),
+];
+
+/// The keys of the path from above while it has the focus.
+#[rustfmt::skip]
+pub const FROM_ABOVE_KEYS: &[Binding] = &[
     does(&[Lab], &[Char('z')], zoomed_in, "zoom", "show it larger, around what moves; 3z three notches"),
     does(&[Lab], &[Char('Z')], zoomed_out, "", "show it smaller"),
     does(&[Lab], &[Home], |lab, _| one(lab.view().zoom_to(1.0)?), "", "show the whole of it"),
 ];
+
+/// The keys of the 3-D view while it has the focus.
+#[rustfmt::skip]
+pub const THREE_D_KEYS: &[Binding] = &[
+    does(&[Lab], &[Char('z')], zoomed_in, "zoom", "show it larger, around the wheel; 3z three notches"),
+    does(&[Lab], &[Char('Z')], zoomed_out, "", "show it smaller"),
+    does(&[Lab], &[Home], |lab, _| whole_scene(lab), "", "show the whole of it, from the usual side"),
+];
+
+fn whole_scene(lab: &TheLab) -> KeyCommands {
+    let usual = Command::look("camera", Camera::default());
+    Ok(vec![lab.view().zoom_to(1.0)?, usual])
+}
 
 /// So many of the keys of the step pane, the first, go through the phases.
 pub const PHASE_KEYS: usize = 2;
@@ -258,6 +282,7 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Lab], &[Char('e')], Action::Parameters, "edit", "to the values of the scenario: Up, Down choose, Left, Right nudge").found_by("parameters dt time step scheme mass gravity friction change").to(CHANGE_GROUP).worth(FooterPriority::Useful),
     does(&[Lab], &[Char('a')], |lab, _| one(lab.adviser().followed(lab.player())?), "fix", "take the advice: rerun from the start with the time step or scheme that fixes the run"),
     does(&[Lab], &[Char('r')], restarted, "restart", "back to step 0; what was done stays").to(PLAY),
+    does(&[Lab], &[Char('j')], |lab, count| one(lab.view().other_fourth_strip(repeated(count))), "", "traces: a fourth strip: tilt, distance from the exact motion, or none").found_by("column strip tilt distance off"),
     does(&[Lab], &[Char('w')], other_window, "window", "traces: a few swings, or the whole run; 20w shows twenty swings"),
     row(&[Lab], &[Char('o')], Action::Browse, "open", "open a preset or a file").to(OPEN_GROUP).worth(FooterPriority::Useful),
     row(&[Lab], &[Char('L')], Action::Lesson(LessonKey::List), "lessons", "the list of lessons").worth(FooterPriority::Kept),
@@ -298,6 +323,10 @@ pub static BINDINGS: &[Binding] = &[
     does(&[Lab], &[Char(')')], |_, _| one(Command::Cursor(CursorTo::NextTurn)), "", "the cursor to the next turn of the tilt"),
     does(&[Lab], &[Char('|')], |_, _| one(Command::Cursor(CursorTo::Mark)), "", "mark the turn at the cursor; at another turn, count the swings between: period, mean, and theory's"),
     does(&[Lab], &[Char('W')], usual_window, "", "traces: the usual window again, at the run's time"),
+    does(&[Lab], &[Char('[')], |lab, count| one(lab.view().panned(-repeated(count))), "", "traces: show earlier times"),
+    does(&[Lab], &[Char(']')], |lab, count| one(lab.view().panned(repeated(count))), "", "traces: show later times"),
+    does(&[Lab], &[Char('z')], magnified, "", "traces: magnify the values, twice each time"),
+    does(&[Lab], &[Char('Z')], magnified_less, "", "traces: magnify the values less"),
     row(&[Browser], &[Enter], Action::Choose, "open", "open the selected row").worth(FooterPriority::Kept),
     row(&[Browser, Find, Help], &[Up, Ctrl('p')], Action::Move(Direction::Up, 1), "", "the row above"),
     row(&[Browser, Find, Help], &[Down, Ctrl('n')], Action::Move(Direction::Down, 1), "", "the row below"),

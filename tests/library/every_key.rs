@@ -102,7 +102,7 @@ fn footer_trouble(stage: &Stage, picture: &Picture) -> Option<String> {
             "pause" => "run",
             "next phase" => "next step",
             "why sideways" => "phases",
-            "take it" => "change",
+            "apply" => "change",
             "next page" => "more",
             always => always,
         };

@@ -27,7 +27,7 @@ fn the_footer_has_the_keys_of_a_pane_once_that_was_touched() {
     footer_begins(&stage, first);
     stage.key(Key::Left);
     stage.wait(6.0);
-    footer_begins(&stage, " Left cursor W zoom [ pan");
+    footer_begins(&stage, " Left cursor space run");
     has_all(&footer(&stage), ["space run", "L lessons", "? help"]);
     // From the values, back to the run.
     let mut stage = Stage::open("method-2", &[], SMALL);

@@ -61,6 +61,7 @@ mod sweep_figures;
 mod textbook;
 mod theory;
 mod thrown;
+mod traces;
 mod truth;
 mod undo;
 mod wobble;

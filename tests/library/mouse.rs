@@ -163,7 +163,7 @@ fn a_press_in_the_browser_selects_and_a_double_click_opens() {
     let selected = desk.stage.lab.popups().browser.choice().cloned().unwrap();
     assert_eq!(selected.name, "cusps");
     desk.does(Did::Press, cusps);
-    desk.stage.shows(" Cusps ");
+    desk.stage.shows("Cusps  rk4");
     assert_eq!(desk.stage.lab.popups().mode, Mode::Lab);
 }
 
@@ -188,7 +188,7 @@ fn a_click_selects_a_row_of_any_list_and_a_double_click_opens_it() {
     desk.does(Did::Press, row).stage.shows("dark");
     desk.does(Did::Press, row).stage.shows("light");
     desk.stage.press("\u{1b}?");
-    let row = desk.place("restart");
+    let row = desk.place("stop the run");
     desk.does(Did::Press, row);
     assert_eq!(desk.stage.lab.popups().mode, Mode::Help);
 }

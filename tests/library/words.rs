@@ -274,11 +274,11 @@ fn a_file_in_a_folder_is_opened_with_enter() {
 fn keys_that_play_on_are_not_offered_where_no_further_step_is_finite() {
     let mut stage = Stage::open("method-2", &["motion.scheme='rk4'"], LARGE);
     stage.commands("pause = true");
-    stage.shows("space go on").shows(". step");
+    stage.shows("space run").shows(", step");
     stage.commands("go_to = 2000");
     assert!(stage.lab.player().run().simulation().has_ended());
-    stage.shows_no("space go on").shows_no(". step");
-    stage.press(",").shows("space go on").shows(". step");
+    stage.shows_no("space run").shows_no(", step");
+    stage.press(",").shows("space run").shows(", step");
 }
 
 #[test]

@@ -339,7 +339,7 @@ fn a_notice_goes_with_time_and_at_the_next_key() {
 #[test]
 fn what_does_nothing_says_why() {
     let mut stage = Stage::open("method-2", &[], SMALL);
-    stage.press("!").shows("no key ! here; ? lists them");
+    stage.press("!").shows("no key ! here; ? lists the keys");
     stage.press("\n").shows("Enter types it");
     stage.press("/").shows("/_ 1 of").press("\u{1b}");
     stage.press("99+").shows_no("this is").press("+");

@@ -78,8 +78,9 @@ impl<'de> Deserialize<'de> for Pane {
 /// the line that says what there is to see.
 pub const HIDEABLE: [&str; 3] = ["health", "predicted", "look_at"];
 
-/// What the strip of the fast motion can show; auto: the tilt, or x where the tilt does not swing.
-pub const DETAILS: [&str; 6] = [AUTO, "none", "x", "y", "z", "tilt"];
+/// What the fourth strip of the traces can show; distance: how far the run is from the exact motion; auto: that, or the
+/// tilt, if the screen is large.
+pub const DETAILS: [&str; 7] = [AUTO, "none", "x", "y", "z", "tilt", "distance"];
 pub const AUTO: &str = "auto";
 
 /// The page of the step pane after those of the phases.

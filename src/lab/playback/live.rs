@@ -258,7 +258,7 @@ impl LiveRun {
     pub fn follow_exact(&mut self, is_over: impl FnMut() -> bool) {
         let now_s = self.now().time_s;
         if let Some(overlay) = &mut self.overlay {
-            overlay.advance_to(now_s, is_over);
+            overlay.advance_to(now_s, &self.pictures.recording, is_over);
         }
     }
 

@@ -6,7 +6,7 @@
 //!   pushes and edits; [`ghost`] is the picture of the previous run.
 //! - [`strip`], [`scale`] and [`camera`](crate::plot::camera) are the geometry of the pictures, for a screen and for a
 //!   figure alike: a curve in each column of a window of time, the values at an axis, and the position of a point in space
-//!   in a plane picture. [`detail`] is the window of time in which fast motion is seen;
+//!   in a plane picture. [`envelope`] says where swings are unresolved;
 //!   [`outline`] gives the lines by which a solid part is drawn.
 //! - [`reading`] holds the numbers on the screen; [`lookup`] computes those of any earlier step, [`loop_minimum`] how the
 //!   axle dips at first; [`background`] searches for a setting that makes the numbers reliable.

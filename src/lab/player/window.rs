@@ -12,12 +12,14 @@ use crate::lab::view::View;
 use crate::lab::view::window::TimeWindow;
 use std::time::Duration;
 
-/// A run of at most this number of swings is shown as a whole.
-const FEW_SWINGS: f64 = 16.0;
+/// A run of at most so many times the swings that the strips have room for is shown as a whole.
+const FEW_WINDOWS: f64 = 2.0;
 /// The fewest swings to which the axis of such a run is shortened while the run is short.
 const FEWEST_SWINGS: f64 = 4.0;
 /// The most times that this axis is halved.
 const MOST_HALVINGS: i32 = 3;
+/// The point swings by itself if it turns so many times as often as the tilt.
+const MORE_TURNS: f64 = 3.0;
 /// A period or a height must differ by this share before another window is chosen for it.
 const HYSTERESIS: f64 = 0.1;
 /// A swing of the traced point that is smaller than this share of its distance from the pivot is no reason for a window:
@@ -91,7 +93,7 @@ impl Player {
         let before_s = view.window.end_s - view.window.begin_s;
         match (view.look.detail_s, swing) {
             (Some(chosen_s), _) => (chosen_s < span_s).then_some(chosen_s),
-            (None, Some(swing)) if self.is_fast(swing, span_s, view.window.has_overview) => {
+            (None, Some(swing)) if self.is_fast(swing, span_s, view) => {
                 Some(kept(view.swings as f64 * swing.period_s, before_s))
             }
             (None, _) => None,
@@ -151,29 +153,39 @@ impl Player {
         end_s * libm::exp2(doublings.max(0.0))
     }
 
-    /// Returns true if a run of `span_s` (s) has more swings than its strips can show, and they can be seen. `was_fast` says
-    /// whether that was so before.
-    fn is_fast(&self, swing: Swing, span_s: f64, was_fast: bool) -> bool {
-        let ease = if was_fast { 1.0 - HYSTERESIS } else { 1.0 };
+    /// Returns true if a run of `span_s` (s) has more swings than its strips can show, and they can be seen.
+    fn is_fast(&self, swing: Swing, span_s: f64, view: &View) -> bool {
+        let ease = if view.window.has_overview {
+            1.0 - HYSTERESIS
+        } else {
+            1.0
+        };
+        let few = FEW_WINDOWS * view.swings as f64;
         let arm_m = self.run.scenario().arm_m();
-        span_s / swing.period_s > ease * FEW_SWINGS && swing.height_m > ease * LEAST_SWING * arm_m
+        span_s / swing.period_s > ease * few && swing.height_m > ease * LEAST_SWING * arm_m
     }
 
-    /// Returns the swings of the tilt, or those of the traced point if the tilt does not swing.
+    /// Returns the swings of the tilt, or those of the traced point if they are faster or the tilt does not swing.
     fn swing(&self) -> Option<Swing> {
         let arm_m = self.run.scenario().arm_m();
-        let measured = self.reading.readouts.swing_s().map(|period_s| Swing {
+        let of_point = self.swing_of_point();
+        let of_tilt = self.reading.readouts.swing_s().map(|period_s| Swing {
             period_s,
             height_m: self
                 .height_of_swing(RecordedCurve::Tilt, period_s)
                 .to_radians()
                 * arm_m,
         });
-        let is_seen = measured.is_some_and(|swing| swing.height_m > LEAST_SWING * arm_m);
-        if is_seen {
-            return measured;
-        }
-        self.swing_of_point().or(measured)
+        let (Some(tilt), Some(point)) = (of_tilt, of_point) else {
+            return of_tilt.or(of_point);
+        };
+        let is_seen = |swing: Swing| swing.height_m > LEAST_SWING * arm_m;
+        let is_of_point = tilt.period_s > MORE_TURNS * point.period_s || !is_seen(tilt);
+        Some(if is_of_point && is_seen(point) {
+            point
+        } else {
+            tilt
+        })
     }
 
     /// Returns the swings of x as they are recorded, over the latest half of the run.

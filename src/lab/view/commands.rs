@@ -220,9 +220,10 @@ impl View {
 
     /// The command that shows another fourth strip in the traces.
     pub fn other_fourth_strip(&self, times: i32) -> Command {
-        const CHOICES: [(FourthStrip, &str); 3] = [
+        const CHOICES: [(FourthStrip, &str); 4] = [
             (FourthStrip::Auto, AUTO),
             (FourthStrip::Tilt, "tilt"),
+            (FourthStrip::Distance, "distance"),
             (FourthStrip::None, "none"),
         ];
         let now = CHOICES
@@ -300,8 +301,11 @@ impl View {
 
 fn fourth_strip_in_words(strip: FourthStrip) -> &'static str {
     match strip {
-        FourthStrip::Auto => "a fourth strip shows the tilt if the screen is large",
+        FourthStrip::Auto => "a large screen has a fourth strip: tilt, or distance from exact",
         FourthStrip::Tilt => "a strip shows the tilt",
+        FourthStrip::Distance => {
+            "a strip shows the distance from the exact motion, while t shows it"
+        }
         FourthStrip::None | FourthStrip::X | FourthStrip::Y | FourthStrip::Z => {
             "the strips show x, y and z"
         }

@@ -69,7 +69,7 @@ pub struct ViewSettings {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum FourthStrip {
-    /// The tilt, if the screen is large.
+    /// The distance from the exact motion if that is shown, or else the tilt; on a large screen only.
     #[default]
     Auto,
     None,
@@ -77,6 +77,8 @@ pub enum FourthStrip {
     Y,
     Z,
     Tilt,
+    /// From the exact motion.
+    Distance,
 }
 
 /// What a value says, or `None` for a word such as "auto" or "all".

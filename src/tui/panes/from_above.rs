@@ -15,7 +15,7 @@ use crate::lab::view::theme::Marker;
 use crate::lab::view::{HideablePart, Pane};
 use crate::plot::camera::Zoom;
 use crate::tui::dots::{self, Dashes};
-use crate::tui::keymap::ZOOM_KEYS;
+use crate::tui::keymap;
 use crate::tui::labels::{AROUND_MARK, AROUND_POINT, LabelOffset, Labels};
 use crate::tui::layered_dots::{DotInk, FineDot, Layer, LayeredDots, Spot};
 use crate::tui::plane::Plane;
@@ -54,7 +54,7 @@ pub const FROM_ABOVE_ROW: PaneRow = PaneRow {
     draw: |lab, area, buf| {
         FromAbove(PlotInputs::from_lab(lab)).render(area, buf);
     },
-    keys: ZOOM_KEYS,
+    keys: keymap::FROM_ABOVE_KEYS,
     arrows: None,
 };
 

@@ -131,47 +131,48 @@ impl<'a> Overview<'a> {
         }
     }
 
-    /// Marks on the rule where pushes act, where the run was edited and where the scenario ends, with a word where there is
-    /// room.
+    /// Marks on the rule where pushes act and where the run was edited, with a word where there is room.
     fn mark_rule(&self, buf: &mut Buffer) {
         let line = Rect {
             y: self.area.y,
+            width: self
+                .sheet
+                .width
+                .saturating_sub(columns(WHOLE_RUN) as u16 + 1),
             height: 1,
             ..self.sheet
         };
         let across = self.lab.view().marker.dots().0;
-        let mut put = |x: u16, text: &str, role| {
-            write(line, (x, 0), text, self.lab.view().theme.style(role), buf)
-        };
-        let mut free_from = 0;
-        let mut named = |x: u16, word: &str, put: &mut dyn FnMut(u16, &str, Role) -> u16| {
-            let width = columns(word) as u16 + 2;
-            let is_free = x >= free_from && x + width + columns(WHOLE_RUN) as u16 + 1 <= line.width;
-            if is_free {
-                free_from = put(x, &format!(" {word} "), Role::Text);
-            }
-        };
-        let limit = line.width.saturating_sub(columns(WHOLE_RUN) as u16 + 1);
+        let theme = &self.lab.view().theme;
+        let mut words = Vec::new();
         for &(begin_s, end_s) in &self.marks.pushes {
             let shown = self.span.shown(begin_s, end_s);
-            let end = (shown.end.div_ceil(across) as u16).min(limit);
-            for x in (shown.start / across) as u16..end {
-                put(x, PUSH_BAR, Role::Push);
-            }
-            if !shown.is_empty() {
-                named(end, PUSH_WORD, &mut put);
+            let cells = (shown.start / across) as u16..shown.end.div_ceil(across) as u16;
+            words.extend((!cells.is_empty()).then_some((cells.end, PUSH_WORD)));
+            for x in cells {
+                write(line, (x, 0), PUSH_BAR, theme.style(Role::Push), buf);
             }
         }
-        for edit_s in self
-            .marks
-            .edits
-            .iter()
-            .filter(|edit_s| **edit_s <= self.span.end_s())
-        {
-            let x = self.cell(*edit_s);
-            put(x, EDIT_MARK, Role::Push);
-            named(x + 1, EDIT_WORD, &mut put);
+        for edit_s in self.shown_edits() {
+            let x = self.cell(edit_s);
+            words.push((x + 1, EDIT_WORD));
+            write(line, (x, 0), EDIT_MARK, theme.style(Role::Push), buf);
         }
+        words.sort_unstable();
+        for (index, (x, word)) in words.iter().enumerate() {
+            let text = format!(" {word} ");
+            let end = x + columns(&text) as u16;
+            let next = words.get(index + 1).map_or(line.width, |(next, _)| *next);
+            if end <= next.min(line.width) {
+                write(line, (*x, 0), &text, theme.style(Role::Text), buf);
+            }
+        }
+    }
+
+    /// Returns the times of the edits in the time of the overview, s.
+    fn shown_edits(&self) -> impl Iterator<Item = f64> + '_ {
+        let edits = self.marks.edits.iter().copied();
+        edits.filter(|edit_s| (self.span.begin_s..=self.span.end_s()).contains(edit_s))
     }
 
     fn draw_curve(&self, buf: &mut Buffer) {
@@ -249,13 +250,8 @@ impl<'a> Overview<'a> {
         if self.span.end_s() > self.lab.player().end_s {
             put(self.cell(self.lab.player().end_s), END_MARK, Role::Text);
         }
-        for edit_s in self
-            .marks
-            .edits
-            .iter()
-            .filter(|edit_s| **edit_s <= self.span.end_s())
-        {
-            put(self.cell(*edit_s), EDIT_MARK, Role::Push);
+        for edit_s in self.shown_edits() {
+            put(self.cell(edit_s), EDIT_MARK, Role::Push);
         }
         if let Some(pinned_s) = self.lab.comparison().pinned_end_s(run) {
             put(self.cell(pinned_s), PINNED_MARK, Role::Previous);

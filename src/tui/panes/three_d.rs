@@ -10,15 +10,13 @@ mod fit;
 
 use super::{PaneRow, PlotInputs, round_title, rule};
 use crate::engine::recording::Recording;
-use crate::lab::command::Command;
 use crate::lab::playback::live::LiveRun;
 use crate::lab::view::Pane;
-use crate::lab::{KeyCommands, Lab};
 use crate::physics::friction::Damping;
 use crate::physics::{State, loads, observables};
-use crate::plot::camera::{Camera, CameraView};
+use crate::plot::camera::CameraView;
 use crate::tui::dots::{self, Dashes};
-use crate::tui::keymap::{Binding, Key, Mode, does, one, zoomed_in, zoomed_out};
+use crate::tui::keymap::{self, one};
 use crate::tui::labels::{AROUND_POINT, Labels};
 use crate::tui::layered_dots::{DotInk, FineDot, Layer, LayeredDots, Spot};
 use crate::tui::plane::Plane;
@@ -63,22 +61,9 @@ pub const THREE_D_ROW: PaneRow = PaneRow {
     draw: |lab, area, buf| {
         ThreeD(PlotInputs::from_lab(lab)).render(area, buf);
     },
-    keys: SPACE_KEYS,
+    keys: keymap::THREE_D_KEYS,
     arrows: Some(|lab, direction, times| one(lab.view().turned(direction, times))),
 };
-
-/// The keys of the 3-D view while it has the focus.
-#[rustfmt::skip]
-const SPACE_KEYS: &[Binding] = &[
-    does(&[Mode::Lab], &[Key::Char('z')], zoomed_in, "zoom", "show it larger, around the wheel; 3z three notches"),
-    does(&[Mode::Lab], &[Key::Char('Z')], zoomed_out, "", "show it smaller"),
-    does(&[Mode::Lab], &[Key::Home], |lab, _| whole_scene(lab), "", "show the whole of it, from the usual side"),
-];
-
-fn whole_scene(lab: &Lab) -> KeyCommands {
-    let usual = Command::look("camera", Camera::default());
-    Ok(vec![lab.view().zoom_to(1.0)?, usual])
-}
 
 pub struct ThreeD<'a>(pub PlotInputs<'a>);
 

@@ -8,15 +8,13 @@ mod curves;
 mod strip;
 
 use super::{PaneRow, PlotInputs, write};
-use crate::lab::action::{Action, Direction, repeated, signed};
+use crate::lab::action::{Direction, signed};
 use crate::lab::playback::marks::Marks;
 use crate::lab::playback::scale::StripScale;
 use crate::lab::playback::strip::Strip;
 use crate::lab::view::theme::Marker;
 use crate::lab::view::{Pane, USUAL_SWINGS};
-use crate::tui::keymap::{
-    Binding, Key, Mode, does, magnified, magnified_less, one, other_window, row, usual_window,
-};
+use crate::tui::keymap::{self, one};
 use crate::tui::split::split_rows;
 use crate::tui::theme::Role;
 pub(super) use axis::{Gutter, times};
@@ -39,33 +37,17 @@ pub const TRACES_ROW: PaneRow = PaneRow {
     draw: |lab, area, buf| {
         Traces(PlotInputs::from_lab(lab)).render(area, buf);
     },
-    keys: TRACES_PANE_KEYS,
+    keys: keymap::TRACES_KEYS,
     arrows: Some(|lab, direction, times| {
         let (view, player) = (lab.view(), lab.player());
         one(match direction {
             Direction::Left | Direction::Right => {
                 view.moved_cursor(signed(direction, times), player)
             }
-            _ => view.other_fourth_strip(signed(direction, times)),
+            _ => view.other_magnification(signed(direction, times)),
         })
     }),
 };
-
-/// The keys that mean something here while the pane has the focus.
-#[rustfmt::skip]
-const TRACES_PANE_KEYS: &[Binding] = &[
-    row(&[Mode::Lab], &[Key::Left], Action::Move(Direction::Left, 1), "cursor", "the cursor to the left: its values are shown; Esc takes it away"),
-    row(&[Mode::Lab], &[Key::Right], Action::Move(Direction::Right, 1), "", "the cursor to the right"),
-    row(&[Mode::Lab], &[Key::Enter], Action::GoToCursor, "", "go to the step at the cursor; without one, to the values"),
-    does(&[Mode::Lab], &[Key::Char('w')], other_window, "window", "a few swings, or the whole run; 20w shows twenty swings"),
-    does(&[Mode::Lab], &[Key::Char('W')], usual_window, "", "the usual window again, at the run's time"),
-    does(&[Mode::Lab], &[Key::Char('[')], |lab, count| one(lab.view().panned(-repeated(count))), "earlier", "show earlier times"),
-    does(&[Mode::Lab], &[Key::Char(']')], |lab, count| one(lab.view().panned(repeated(count))), "later", "show later times"),
-    does(&[Mode::Lab], &[Key::Char('z')], magnified, "magnify", "magnify the values, twice each time"),
-    does(&[Mode::Lab], &[Key::Char('Z')], magnified_less, "", "magnify them less"),
-    row(&[Mode::Lab], &[Key::Up], Action::Move(Direction::Up, 1), "", "another fourth strip"),
-    row(&[Mode::Lab], &[Key::Down], Action::Move(Direction::Down, 1), "", "the same, the other way round"),
-];
 
 /// Returns how many swings the traces can show where they are `width` columns wide.
 pub fn swings(width: u16, marker: Marker) -> usize {

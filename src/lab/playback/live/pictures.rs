@@ -143,6 +143,8 @@ pub struct Overlay {
     time_step_s: f64,
     pub now: RecordedSample,
     pub recording: Recording,
+    /// The distance of the run's traced point from that of the exact motion, m, as its curve x.
+    pub distance: Recording,
     pub path: PathFromAbove,
     has_ended: bool,
 }
@@ -157,10 +159,12 @@ impl Overlay {
             time_step_s: scenario.motion.time_step_s,
             now,
             recording: Recording::default(),
+            distance: Recording::default(),
             path: PathFromAbove::new(traced.norm()),
             has_ended: false,
         };
         overlay.record(now);
+        overlay.distance.push_values(now.time_s, [0.0; 4]);
         overlay
     }
 
@@ -169,8 +173,8 @@ impl Overlay {
         self.truth.branch(scenario);
     }
 
-    /// Advances to `time_s` (s), or until `is_over` returns true.
-    pub fn advance_to(&mut self, time_s: f64, mut is_over: impl FnMut() -> bool) {
+    /// Advances to `time_s` (s), or until `is_over` returns true. `run` is the recording of the run up to that time.
+    pub fn advance_to(&mut self, time_s: f64, run: &Recording, mut is_over: impl FnMut() -> bool) {
         let due = (time_s - self.now.time_s) / self.time_step_s;
         let spacing_s = self.time_step_s * (due / MOST_SAMPLES).ceil().max(1.0);
         while self.is_before(time_s) {
@@ -189,6 +193,7 @@ impl Overlay {
             self.has_ended = !sample.is_finite();
             if !self.has_ended {
                 self.record(sample);
+                self.record_distance(run);
             }
             if is_over() {
                 return;
@@ -200,6 +205,18 @@ impl Overlay {
         self.recording.push(&sample);
         self.path.add(self.recording.samples(), &sample.position);
         self.now = sample;
+    }
+
+    /// Records how far the run is from the present sample, if the run's sample at that time is known.
+    fn record_distance(&mut self, run: &Recording) {
+        let now_s = self.now.time_s;
+        let half_s = 0.5 * self.time_step_s;
+        let nearest = run.between(now_s - half_s, now_s + half_s).last();
+        if let Some(bin) = nearest.filter(|bin| bin.samples() == 1) {
+            let distance_m = (bin.end() - self.now.position).norm();
+            self.distance
+                .push_values(now_s, [distance_m, 0.0, 0.0, 0.0]);
+        }
     }
 
     /// Returns true if it can go on from a run that is at `time_s` (s): it has not come further, nor ended.

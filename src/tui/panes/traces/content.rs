@@ -13,6 +13,8 @@ const ROWS_OF_CHOSEN: u16 = 4;
 const ROWS_OF_FOURTH: u16 = 9;
 /// The least range of measured quantities, as a share of their size.
 const SHARE_LEAST: f64 = 1e-3;
+/// The least range of the distance from the exact motion, as a share of the distance between pivot and traced point.
+const DISTANCE_LEAST: f64 = 1e-9;
 /// The least range of residuals, where nothing has been compared yet.
 const RESIDUAL_LEAST: f64 = 1e-9;
 
@@ -21,6 +23,8 @@ pub(super) enum StripContent {
     Curve(RecordedCurve),
     /// The quantity of this index among the measured ones, if it is none of those curves.
     Measured(usize),
+    /// The distance from the exact motion.
+    Distance,
 }
 
 impl Traces<'_> {
@@ -49,7 +53,14 @@ impl Traces<'_> {
         let [x, y, z, tilt] = RecordedCurve::ALL.map(StripContent::Curve);
         let (fourth, is_chosen) = match self.0.view.look.detail_of {
             FourthStrip::None => (None, false),
+            FourthStrip::Auto if self.0.run.overlay().is_some() => {
+                (Some(StripContent::Distance), false)
+            }
             FourthStrip::Auto => (Some(tilt), false),
+            FourthStrip::Distance if self.0.run.overlay().is_some() => {
+                (Some(StripContent::Distance), true)
+            }
+            FourthStrip::Distance => (None, false),
             FourthStrip::Tilt => (Some(tilt), true),
             FourthStrip::X | FourthStrip::Y | FourthStrip::Z => (None, false),
         };
@@ -86,6 +97,7 @@ impl Traces<'_> {
     fn index(&self, content: StripContent) -> Option<usize> {
         match content {
             StripContent::Measured(index) => Some(index),
+            StripContent::Distance => None,
             StripContent::Curve(curve) => {
                 let mut quantities = self.0.measured?.quantities();
                 quantities.position(|quantity| quantity.name == curve.column())
@@ -105,6 +117,7 @@ impl Traces<'_> {
         match content {
             StripContent::Curve(RecordedCurve::Tilt) => ("tilt".to_owned(), "°"),
             StripContent::Curve(curve) => (curve.name().to_owned(), curve.unit()),
+            StripContent::Distance => ("off exact".to_owned(), "m"),
             StripContent::Measured(index) => {
                 let quantities = self.0.measured.map(DataComparison::quantities);
                 let quantity = quantities.and_then(|mut quantities| quantities.nth(index));
@@ -143,16 +156,17 @@ impl Traces<'_> {
                 }
             })
             .reduce(Extent::and);
-        let (curve, least) = match content {
-            StripContent::Curve(curve) => (Some(window.range(curve)), 0.0),
-            StripContent::Measured(_) => (self.recorded_extent(content), f64::MIN_POSITIVE),
+        let curve = match content {
+            StripContent::Curve(curve) => Some(window.range(curve)),
+            StripContent::Measured(_) | StripContent::Distance => self.recorded_extent(content),
         };
         let all = [curve, points].into_iter().flatten().reduce(Extent::and);
         let extent = all.unwrap_or(Extent::single(0.0));
         let size = extent.max.abs().max(extent.min.abs());
         let least = match content {
-            StripContent::Curve(_) => least,
-            StripContent::Measured(_) => least.max(SHARE_LEAST * size),
+            StripContent::Curve(_) => 0.0,
+            StripContent::Measured(_) => f64::max(SHARE_LEAST * size, f64::MIN_POSITIVE),
+            StripContent::Distance => DISTANCE_LEAST * self.0.run.scenario().arm_m(),
         };
         StripScale::of(extent, least)
     }
@@ -162,7 +176,9 @@ impl Traces<'_> {
         match (self.0.cursor, content) {
             (Some(cursor), StripContent::Curve(curve)) => curve.at(cursor),
             (None, StripContent::Curve(curve)) => now.value(curve),
-            (_, StripContent::Measured(_)) => self.value_at(content, now.time_s).unwrap_or(0.0),
+            (_, StripContent::Measured(_) | StripContent::Distance) => {
+                self.value_at(content, now.time_s).unwrap_or(0.0)
+            }
         }
     }
 }

@@ -16,6 +16,9 @@ const PINNED_CELLS: (usize, usize) = (7, 5);
 /// Columns of dots after which the dots of the previous run repeat.
 const PREVIOUS_DOTS: usize = 3;
 
+/// A value on the edge between two dots counts as below it: a constant would else go up and down with its rounding.
+const DOT_ROUNDING: f64 = 1e-4;
+
 /// Whose curve it is, in the order in which they are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum CurveOwner {
@@ -98,6 +101,9 @@ impl Traces<'_> {
         match (owner, content) {
             (CurveOwner::Run, StripContent::Curve(curve)) => Some((self.0.run.recording(), curve)),
             (CurveOwner::Run, StripContent::Measured(index)) => self.0.measured?.recorded(index),
+            (CurveOwner::Run, StripContent::Distance) => {
+                Some((&self.0.run.overlay()?.distance, RecordedCurve::X))
+            }
             (CurveOwner::Previous, StripContent::Curve(curve)) => {
                 Some((&self.0.ghost?.recording, curve))
             }
@@ -110,7 +116,11 @@ impl Traces<'_> {
             (CurveOwner::Exact, StripContent::Curve(curve)) => {
                 Some((&self.0.run.overlay()?.recording, curve))
             }
-            (CurveOwner::Pinned | CurveOwner::Exact, StripContent::Measured(_)) => None,
+            (CurveOwner::Previous, StripContent::Distance)
+            | (
+                CurveOwner::Pinned | CurveOwner::Exact,
+                StripContent::Measured(_) | StripContent::Distance,
+            ) => None,
         }
     }
 
@@ -148,7 +158,7 @@ impl Traces<'_> {
 /// Returns the rows of `extents` on a canvas of `height` rows of dots, in each column. They may be outside of it.
 pub fn rows(extents: &[Option<Extent>], scale: &StripScale, height: usize) -> Vec<Option<Rows>> {
     let last = height.saturating_sub(1) as f64;
-    let row = |value: f64| (scale.from_top(value) * last).round();
+    let row = |value: f64| (scale.from_top(value) * last + DOT_ROUNDING).round();
     let rows = |extent: Extent| (row(extent.max), row(extent.min));
     extents.iter().map(|extent| extent.map(rows)).collect()
 }

@@ -110,7 +110,9 @@ impl Traces<'_> {
         let now = self.0.run.now();
         let value = match plot.content {
             StripContent::Curve(curve) => Some(now.value(curve)),
-            StripContent::Measured(_) => self.value_at(plot.content, now.time_s),
+            StripContent::Measured(_) | StripContent::Distance => {
+                self.value_at(plot.content, now.time_s)
+            }
         };
         let (Some(column), Some(value)) = (plot.strip.column(now.time_s), value) else {
             return;
@@ -251,7 +253,9 @@ impl Traces<'_> {
         cursor_line(x, plot.sheet, style, buf);
         let value = match plot.content {
             StripContent::Curve(curve) => Some(curve.at(cursor)),
-            StripContent::Measured(_) => self.value_at(plot.content, cursor.time_s),
+            StripContent::Measured(_) | StripContent::Distance => {
+                self.value_at(plot.content, cursor.time_s)
+            }
         };
         let digits = plot.scale.decimals();
         let model = value.map(|value| signed(&fixed(value, digits)));
