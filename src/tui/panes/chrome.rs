@@ -19,7 +19,7 @@ use ratatui::layout::Rect;
 /// A title of up to this many columns is written whole before scheme and time step have room.
 const LEAST_TITLE: usize = 32;
 /// The speed of playback is written in this many columns, so that the time before it does not move.
-const PACE_COLUMNS: usize = 11;
+const PACE_COLUMNS: usize = 12;
 /// The fewest columns between the scheme and the time.
 const HEADER_GAP: usize = 6;
 /// From this width on, phrases and keys are three columns apart, else two.
@@ -149,8 +149,8 @@ enum PhraseKind {
     Cure,
 }
 
-/// The phrases of `verdict` and `cure` in at most `room` columns: all at length, or in short, without the hint, and with as
-/// many reasons as fit.
+/// The phrases of `verdict` and `cure` in at most `room` columns: all at length, else without the hint, then in short, then
+/// with as many reasons as fit.
 fn fitting_phrases(
     verdict: &Verdict,
     cure: Option<&Phrase>,
@@ -167,11 +167,14 @@ fn fitting_phrases(
             .map(|(phrase, _)| columns(if is_long { &phrase.long } else { &phrase.short }) + gap);
         all.sum::<usize>().saturating_sub(gap)
     };
+    if length(&phrases, true) > room {
+        phrases.retain(|(_, kind)| *kind != PhraseKind::Hint);
+    }
     while length(&phrases, true) > room && length(&phrases, false) > room {
-        let others = phrases
+        let reason = phrases
             .iter()
             .rposition(|(_, kind)| *kind != PhraseKind::Cure);
-        match others {
+        match reason {
             Some(last) => phrases.remove(last),
             None => break,
         };
@@ -271,16 +274,21 @@ fn fitted(mut items: Vec<FooterItem>, width: u16) -> (Vec<FooterItem>, u16) {
 fn footer(lab: &Lab, goes_on: bool) -> Vec<FooterItem> {
     let mode = lab.mode();
     let of_pane = super::keys_of(lab);
-    let of_mode = of_pane.clone().filter(|row| row.modes.contains(&mode));
     // The keys of a page and of a pane that was asked for differ in meaning from those of the run, touched or not.
     let focus = lab.view().focus;
     let always = focus == Pane::Lesson || focus.is_on_request();
-    let of_touched = of_pane.filter(|_| lab.view().is_touched || always);
+    let of_touched = of_pane
+        .filter(|row| row.modes.contains(&mode))
+        .filter(|_| lab.view().is_touched || always);
     let of_lab = BINDINGS
         .iter()
-        .filter(|row| of_mode.clone().all(|other| other.keys[0] != row.keys[0]))
+        .filter(|row| {
+            let mut own = of_touched.clone();
+            own.all(|other| other.keys[0] != row.keys[0])
+        })
         .map(|row| (row, row.worth));
     let rows = of_touched
+        .clone()
         .map(|row| (row, FooterPriority::Own))
         .chain(of_lab)
         .filter(|(row, _)| row.modes.contains(&mode) && !row.footer.is_empty());
