@@ -120,6 +120,7 @@ impl Dialog {
         };
         let about = match &value.source {
             ValueSource::Scenario(parameter) => about(parameter),
+            ValueSource::Derived(derived, _) => vec![derived.about().to_owned()],
             ValueSource::NextPush(field) => vec![
                 field.about().to_owned(),
                 "it acts when p gives the push".to_owned(),
@@ -312,6 +313,11 @@ impl Dialog {
             form,
             asked_to_replace: None,
         }
+    }
+
+    /// Returns whether a value is typed, in its row of the values pane.
+    pub fn is_of_value(&self) -> bool {
+        matches!(self.question, DialogKind::Value(_))
     }
 
     pub fn is_of_settings(&self) -> bool {

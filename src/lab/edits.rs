@@ -13,7 +13,6 @@ use crate::engine::run::pushes::acts_s;
 use crate::engine::scenario::Scenario;
 use crate::engine::scenario::file::PushFile;
 use crate::engine::scenario::keys::Effect;
-use crate::engine::scenario::problem::nearest;
 use std::sync::Arc;
 use std::time::Duration;
 use toml::Table;
@@ -153,16 +152,8 @@ impl Edits {
         player: &Player,
         now: Duration,
     ) -> Edited {
-        let Some(parameter) = self.values.parameter(key) else {
-            let listed = self.values.list.values.iter();
-            let near = nearest(key, listed.filter_map(|value| value.key.as_deref()));
-            return Err(format!("{key} is no value of this scenario: {near}").into());
-        };
-        let value = parameter
-            .nudged(times)
-            .map_err(|reason| format!("{} {reason}", parameter.label))?;
+        let table = self.values.nudged(key, times, player.run().scenario())?;
         let coalesces = self.values.coalesces_with_last_nudge(key, rerun, now);
-        let table = Table::from_iter([(key.to_owned(), value)]);
         let edited = if rerun {
             self.rerun(&table, coalesces, player)?
         } else {

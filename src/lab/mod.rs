@@ -32,7 +32,7 @@ mod answer;
 pub mod browser;
 pub mod command;
 pub mod comparison;
-mod dialog;
+pub mod dialog;
 mod dispatch;
 mod edits;
 mod files;

@@ -5,11 +5,12 @@ pub mod list;
 
 use super::command::{Command, Force, PushChoice};
 use crate::engine::journal::next_push::{NextPush, PushField, Toward};
-use crate::engine::journal::parameters::{self, Parameter, parameters};
+use crate::engine::journal::parameters::{self, parameters};
 use crate::engine::journal::{Journal, number_of_push};
-use crate::engine::scenario::Scenario;
+use crate::engine::scenario::problem::nearest;
+use crate::engine::scenario::{Scenario, ScenarioFile};
 use crate::lab::playback::live::LiveRun;
-use list::{ListedValue, NEXT_PUSH_HEADING, ValueList, ValueSource};
+use list::{ListedValue, MAIN_GROUPS, NEXT_PUSH_HEADING, ValueList, ValueSource, main_values};
 use nalgebra::Vector3;
 use std::time::Duration;
 use toml::Table;
@@ -17,12 +18,13 @@ use toml::Table;
 /// Nudges of the same value with shorter pauses than this between them are one act: one undo takes back all of them.
 const NUDGE_PAUSE: Duration = Duration::from_secs(3);
 
-/// The order of the groups in the list. The scenario's pushes come after the start, its points after the body.
-const GROUP_ORDER: [&str; 6] = [
-    "motion",
-    "start",
+/// The order of the groups in the list. The scenario's pushes come after the next push, its points after its motion.
+const GROUP_ORDER: [&str; 7] = [
+    MAIN_GROUPS[0],
+    MAIN_GROUPS[1],
     NEXT_PUSH_HEADING,
-    "body",
+    "start",
+    "motion",
     "view",
     "scenario",
 ];
@@ -33,6 +35,8 @@ pub struct Values {
     pub list: ValueList,
     /// The push to come; the list shows another one once it is listed again.
     pub next_push: NextPush,
+    /// The scenario's file when the list was made, with its edits up to then.
+    file: ScenarioFile,
     /// How many entries of the journal were in force when the list was made.
     entries_listed: usize,
     /// The key that was nudged last, whether the run began anew with it, and when; `None` if something else was done since.
@@ -45,6 +49,7 @@ impl Values {
         Self {
             list: ValueList::default(),
             next_push: NextPush::suggested_for(scenario),
+            file: ScenarioFile::default(),
             entries_listed: 0,
             last_nudged: None,
         }
@@ -64,7 +69,9 @@ impl Values {
             number_of_push(&parameter.key)
                 .is_none_or(|number| number < pushes || number >= first_added)
         });
-        let mut values: Vec<_> = listed.into_iter().map(ListedValue::from).collect();
+        self.file = parameters::file_at(scenario, step);
+        let mut values = main_values(&mut listed, &self.file, scenario);
+        values.extend(listed.into_iter().map(ListedValue::from));
         values.extend(ListedValue::all_of(&self.next_push));
         values.sort_by_key(|value| rank(&value.group)); // stable: within a group nothing moves
         self.list.set(values);
@@ -81,15 +88,24 @@ impl Values {
             .select(NEXT_PUSH_HEADING, PushField::Size.label().0);
     }
 
-    /// Returns the listed value of the scenario with the dotted `key`.
-    pub(super) fn parameter(&self, key: &str) -> Option<&Parameter> {
-        self.list
-            .values
-            .iter()
-            .find_map(|value| match &value.source {
-                ValueSource::Scenario(parameter) if parameter.key == key => Some(&**parameter),
-                _ => None,
-            })
+    /// Returns the keys to set so that the listed value with this `key` is nudged `times` times.
+    ///
+    /// # Errors
+    /// If there is no such value, or it cannot be nudged so.
+    pub(super) fn nudged(
+        &self,
+        key: &str,
+        times: i32,
+        scenario: &Scenario,
+    ) -> Result<Table, String> {
+        let listed = &self.list.values;
+        let is_meant = |value: &&ListedValue| value.key.as_deref() == Some(key);
+        let Some(value) = listed.iter().find(is_meant) else {
+            let near = nearest(key, listed.iter().filter_map(|value| value.key.as_deref()));
+            return Err(format!("{key} is no value of this scenario: {near}"));
+        };
+        let nudged = value.nudged(times, &self.file, scenario);
+        nudged.map_err(|reason| format!("{} {reason}", value.label))
     }
 
     /// Returns the value of `key` with its label and unit; the key alone where it is not listed.
@@ -154,17 +170,19 @@ impl Values {
         times: i32,
         scenario: &Scenario,
     ) -> Result<Option<Command>, String> {
-        Ok(match self.list.selected().map(|value| &value.source) {
-            Some(ValueSource::Scenario(parameter)) if times != 0 => {
-                let key = parameter.key.clone();
-                let rerun = true;
-                Some(Command::Nudge { key, times, rerun })
-            }
-            Some(ValueSource::NextPush(field)) if times != 0 => {
+        let Some(value) = self.list.selected().filter(|_| times != 0) else {
+            return Ok(None);
+        };
+        Ok(match (&value.source, &value.key) {
+            (ValueSource::NextPush(field), _) => {
                 let next = self.next_push.nudged(*field, times, scenario)?;
                 Some(Command::NextPush(PushChoice::field(*field, &next)))
             }
-            _ => None,
+            (_, key) => key.clone().map(|key| Command::Nudge {
+                key,
+                times,
+                rerun: true,
+            }),
         })
     }
 
@@ -177,29 +195,22 @@ impl Values {
         scenario: &Scenario,
         time_step_s: f64,
     ) -> Result<Option<Command>, String> {
-        match self.list.selected().map(|value| &value.source) {
-            None => Ok(None),
-            Some(ValueSource::Scenario(parameter)) => {
-                let value = parameter
-                    .typed(text)
-                    .map_err(|reason| format!("{} {reason}", parameter.label))?;
-                let mut edits = scenario.file.edit.iter();
-                let is_edited = edits.any(|edit| edit.set.contains_key(&parameter.key));
-                let is_new =
-                    value != parameter.value || parameter.is_default || (is_edited && !from_now_on);
-                let table = Table::from_iter([(parameter.key.clone(), value)]);
-                Ok(is_new.then_some(if from_now_on {
-                    Command::Set(table)
-                } else {
-                    Command::Rerun(table)
-                }))
-            }
-            Some(ValueSource::NextPush(field)) => {
-                let next = self.next_push.typed(*field, text, scenario, time_step_s)?;
-                let choice = PushChoice::field(*field, &next);
-                Ok(Some(Command::NextPush(choice)))
-            }
+        let Some(value) = self.list.selected() else {
+            return Ok(None);
+        };
+        if let ValueSource::NextPush(field) = value.source {
+            let next = self.next_push.typed(field, text, scenario, time_step_s)?;
+            return Ok(Some(Command::NextPush(PushChoice::field(field, &next))));
         }
+        let typed = value.typed(text, &self.file, scenario);
+        let (set, is_new) = typed.map_err(|reason| format!("{} {reason}", value.label))?;
+        let mut edits = scenario.file.edit.iter();
+        let is_edited = edits.any(|edit| set.keys().any(|key| edit.set.contains_key(key)));
+        Ok(if from_now_on {
+            is_new.then_some(Command::Set(set))
+        } else {
+            (is_new || is_edited).then_some(Command::Rerun(set))
+        })
     }
 }
 
@@ -223,8 +234,8 @@ fn rank(group: &str) -> usize {
     let place = |of: &str| GROUP_ORDER.iter().position(|known| *known == of);
     let (before, offset) = match place(group) {
         Some(place) => (Some(place), 0),
-        None if group.starts_with("push") => (place("start"), 1),
-        None => (place("body"), 1),
+        None if group.starts_with("push") => (place(NEXT_PUSH_HEADING), 1),
+        None => (place("motion"), 1),
     };
     2 * before.unwrap_or(0) + offset
 }

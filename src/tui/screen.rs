@@ -87,7 +87,7 @@ pub fn draw(lab: &Lab, keys: bool, area: Rect, buf: &mut Buffer) {
         hint::draw(lab, keys && places.is_cramped, place, buf);
     }
     chrome::keys(lab, places.keys, buf);
-    draw_popup(lab, popup_place(lab, &places), buf);
+    draw_popup(lab, &places, buf);
     if lab.view().marker == Marker::Ascii {
         to_ascii(area, buf);
     }
@@ -107,12 +107,16 @@ pub fn draw_pane(lab: &Lab, pane: Pane, area: Rect, buf: &mut Buffer) {
     (panes::row(pane).draw)(lab, area, buf);
 }
 
-fn draw_popup(lab: &Lab, area: Rect, buf: &mut Buffer) {
+fn draw_popup(lab: &Lab, places: &ScreenLayout, buf: &mut Buffer) {
+    let area = popup_place(lab, places);
     let theme = &lab.view().theme;
     match lab.popups().mode {
         Mode::Lab | Mode::Lessons | Mode::Find => {}
         Mode::Dialog => {
-            if let Some(dialog) = lab.popups().dialog() {
+            let on_screen = places.place_of(Pane::Parameters).is_some();
+            // A value is typed in its row of the values pane.
+            let dialog = lab.popups().dialog();
+            if let Some(dialog) = dialog.filter(|dialog| !(dialog.is_of_value() && on_screen)) {
                 let form = &dialog.form;
                 FormPane { form, theme }.render(area, buf);
             }

@@ -64,6 +64,7 @@ mod thrown;
 mod traces;
 mod truth;
 mod undo;
+mod values;
 mod wobble;
 mod words;
 mod workbench;

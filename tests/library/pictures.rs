@@ -1,8 +1,6 @@
-//! Pictures of single panes: the previous run, pushes, edits, parameters and forms.
+//! Pictures of single panes: the previous run, pushes, edits and forms.
 
-use crate::support::scenarios::{preset, view as seen};
-use crate::support::words::has_all;
-use gyrolab::engine::journal::parameters::{parameters, table_of};
+use crate::support::scenarios::view as seen;
 use gyrolab::engine::scenario::{Document, presets};
 use gyrolab::lab::action::FieldEdit;
 use gyrolab::lab::form::{InputField, InputForm};
@@ -10,18 +8,14 @@ use gyrolab::lab::playback::ghost::Ghost;
 use gyrolab::lab::playback::live::LiveRun;
 use gyrolab::lab::playback::pace::Pace;
 use gyrolab::lab::playback::reading::Reading;
-use gyrolab::lab::values::list::ListedValue;
-use gyrolab::lab::values::list::ValueList;
+use gyrolab::lab::view::View;
 use gyrolab::lab::view::theme::Marker;
 use gyrolab::lab::view::theme::{Background, Palette, Theme};
-use gyrolab::lab::view::{Pane, View};
 use gyrolab::tui::panes::PlotInputs;
 use gyrolab::tui::panes::form::FormPane;
 use gyrolab::tui::panes::from_above::FromAbove;
-use gyrolab::tui::panes::parameters::Parameters;
 use gyrolab::tui::panes::three_d::ThreeD;
 use gyrolab::tui::panes::traces::Traces;
-use gyrolab::tui::theme::Role;
 use proptest::prelude::*;
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;
@@ -85,114 +79,6 @@ fn seen_alone<'a>(run: &'a LiveRun, view: &'a View) -> PlotInputs<'a> {
 
 const EDITS: &str = "[[edit]]\nstep = 150\nset = { 'motion.time_step_s' = 0.05 }\n\
                      [[edit]]\nstep = 450\nset = { 'motion.gravity_m_per_s2' = 5 }";
-
-/// Some values of wobble-push, with texts of many lengths: the key, the text, and whether it is a default.
-const VALUES: [(&str, &str, bool); 22] = [
-    ("title", "Method 2, as the report has it", false),
-    ("trace", "top", true),
-    ("body.rim.points", "10", false),
-    ("body.rim.radius_m", "0.8", false),
-    ("body.rim.height_m", "0.565685424949238", false),
-    ("body.rim.point_mass_kg", "0.5", false),
-    ("body.point.0.name", "top", false),
-    ("body.point.0.at_m.2", "1.131370849898476", false),
-    ("body.point.0.mass_kg", "0.0", true),
-    ("start.tilt_deg", "45.0", false),
-    ("start.momentum_Js.0", "0.0", false),
-    ("start.momentum_Js.1", "0.0", false),
-    ("start.momentum_Js.2", "1000.0", false),
-    ("start.momentum_frame", "body", false),
-    ("motion.gravity_m_per_s2", "9.8", true),
-    ("motion.scheme", "report", true),
-    ("motion.time_step_s", "0.1", false),
-    ("motion.steps", "2300", false),
-    ("push.0.point", "top", false),
-    ("push.0.force_N.2", "-100.0", false),
-    ("view.speed", "20.0", false),
-    ("view.look_at", "the path: almost a circle", false),
-];
-
-/// The list of these values, that of `key` selected.
-fn list(key: &str) -> ValueList {
-    let scenario = preset("wobble-push", &[]);
-    let parameters = parameters(&table_of(&scenario.file), &scenario);
-    let listed = |&(name, text, is_default): &(&str, &str, bool)| {
-        let mut own = parameters.iter();
-        let mut parameter = own.find(|own| own.key == name).unwrap().clone();
-        (parameter.value, parameter.is_default) = (text.into(), is_default);
-        parameter.frame = None;
-        ListedValue::from(parameter)
-    };
-    let mut list = ValueList::default();
-    list.set(VALUES.iter().map(listed).collect());
-    list.shift(VALUES.iter().position(|value| value.0 == key).unwrap() as isize);
-    assert_eq!(list.selected().unwrap().key.as_deref(), Some(key));
-    list
-}
-
-/// The parameters pane with `list`, drawn at this size, with or without the focus, filling the screen or not.
-fn drawn_parameters(list: &ValueList, (focus, filled): (bool, bool), size: (u16, u16)) -> Buffer {
-    let mut now = run("wobble-push", &[], "", 500);
-    let reading = &Reading::new(&mut now, &Pace::new(1.0, false));
-    let mut view = view(&now, Marker::Braille);
-    view.fullscreen = filled;
-    view.focus = [Pane::Traces, Pane::Parameters][usize::from(focus)];
-    let mut buf = Buffer::empty(Rect::new(0, 0, size.0, size.1));
-    Parameters {
-        scenario: now.scenario(),
-        motion: now.simulation().motion(),
-        reading,
-        list,
-        is_searched: false,
-        view: &view,
-    }
-    .render(buf.area, &mut buf);
-    buf
-}
-
-#[test]
-fn the_parameters_are_an_editor_when_in_focus() {
-    let size = (26, 19);
-    let dt = list("motion.time_step_s");
-    let shown = |list, how, area| text(&drawn_parameters(list, how, area));
-    insta::assert_snapshot!("editor_small", shown(&dt, (true, false), size));
-    insta::assert_snapshot!("editor_tall", shown(&dt, (true, false), (26, 45)));
-    insta::assert_snapshot!("editor_fills_80", shown(&dt, (true, true), (80, 19)));
-    insta::assert_snapshot!("editor_fills_200", shown(&dt, (true, true), (200, 45)));
-    let first = list("title");
-    insta::assert_snapshot!("editor_first", shown(&first, (true, false), size));
-    let last = list("view.look_at");
-    insta::assert_snapshot!("editor_last", shown(&last, (true, false), size));
-    // Without the focus it is the plain list.
-    let away = shown(&dt, (false, false), size);
-    has_all(&away, ["precession", "all values: e, then f"]);
-}
-
-#[test]
-fn the_selected_line_is_seen_at_every_place_and_size() {
-    let narrow = [3, 4, 5, 9, 19].map(|height| (26, height));
-    let wide = [(30, 10), (52, 12), (80, 19), (120, 40)];
-    for size in narrow.into_iter().chain(wide) {
-        for (key, ..) in VALUES {
-            for filled in [false, true] {
-                let list = list(key);
-                let label = &list.selected().unwrap().label;
-                let buf = drawn_parameters(&list, (true, filled), size);
-                let shown = text(&buf);
-                let marked: Vec<_> = shown.split('►').skip(1).collect();
-                assert_eq!(marked.len(), 1, "{key} at {size:?}\n{shown}");
-                assert!(marked[0].starts_with(label), "{key}\n{shown}");
-                let reversed = COLOURS.style(Role::Selected).add_modifier;
-                let count = buf
-                    .content
-                    .iter()
-                    .filter(|cell| cell.modifier.contains(reversed))
-                    .count();
-                assert!(count >= 20, "{shown}");
-            }
-        }
-    }
-}
 
 fn question() -> InputForm {
     let fields = [("time step", "0.05 s"), ("steps", "4600")]
@@ -274,8 +160,8 @@ proptest! {
     }
 
     #[test]
-    fn forms_and_editors_stay_inside(
-        width in 0u16..100, height in 0u16..30, selected in 0..30isize, filled: bool, typed in "\\PC{0,40}", left in 0..20,
+    fn forms_stay_inside(
+        width in 0u16..100, height in 0u16..30, typed in "\\PC{0,40}", left in 0..20,
         complaint in prop::option::of("[a-z ]{0,90}"), fields in 0usize..5, infos in 0usize..5,
     ) {
         let around = Rect::new(0, 0, width + 6, height + 6);
@@ -285,22 +171,7 @@ proptest! {
         (0..left).for_each(|_| form.edit_field(FieldEdit::Left));
         (form.complaint, form.info) = (complaint, vec![typed.clone(); infos]);
         let theme = &Theme::PLAIN;
-        let mut values = list("motion.time_step_s");
-        values.shift(selected - 16);
-        let mut now = run("wobble-push", &[], "", 3);
-        let reading = &Reading::new(&mut now, &Pace::new(1.0, false));
-        let mut view = view(&now, Marker::Ascii);
-        (view.fullscreen, view.focus) = (filled, Pane::Parameters);
-        let pane = Parameters {
-            scenario: now.scenario(),
-            motion: now.simulation().motion(),
-            reading,
-            list: &values,
-            is_searched: false,
-            view: &view,
-        };
         let mut buf = Buffer::filled(around, Cell::new("#"));
-        pane.render(inside, &mut buf);
         FormPane { form: &form, theme }.render(inside, &mut buf);
         for position in around.positions().filter(|position| !inside.contains(*position)) {
             prop_assert_eq!(buf[position].symbol(), "#", "{:?}", position);

@@ -5,8 +5,10 @@
 //! cannot be stated honestly is [`ReadoutValue::Nothing`], null in JSON: no number of it is ever NaN or infinite.
 
 mod table;
+mod value_row;
 
-pub use table::{InPane, PaneGroup, READOUTS, Readout, ReadoutSource, find, names, nearest};
+pub use table::{READOUTS, Readout, ReadoutSource, find, names, nearest};
+pub use value_row::{ShownValue, ValueGroup, ValueRow, four_digits, value_rows};
 
 use super::health::{Advice, advise};
 use super::report_theory::ReportTheory;

@@ -1,6 +1,5 @@
 //! The summary of a finished run, as text for a reader and as JSON for a program.
 
-use crate::analysis::readouts::{InPane, READOUTS};
 use crate::analysis::theory::{AxlePath, Theory, TheoryAxis};
 use crate::analysis::{MeasuredNumber, Readouts, WithoutNutation, remarks};
 use crate::scenario::Scenario;
@@ -266,28 +265,12 @@ impl RunSummary {
         format!("{along} with L.axle above {limit} J s; with {spin} {sleeps}")
     }
 
-    /// The lines that the table of readouts asks for.
-    fn labelled(&self) -> Vec<SummaryLine> {
-        let in_pane = READOUTS.iter().filter_map(|row| Some((row, row.in_pane?)));
-        in_pane
-            .filter(|(_, line)| line.is_in_summary)
-            .map(|(row, InPane { label, .. })| {
-                let number = row.read_from(&self.readouts).number();
-                let text = number.map_or(NOT_AVAILABLE.to_owned(), |number| fixed(number, 6));
-                let unit = if row.unit == "deg" {
-                    "degrees"
-                } else {
-                    row.unit
-                };
-                (label, format!("{text} {unit}"))
-            })
-            .collect()
-    }
-
     fn health(&self) -> Vec<SummaryLine> {
         let readouts = &self.readouts;
         let health = &readouts.health;
-        let mut lines = self.labelled();
+        let azimuth = readouts.number("azimuth_deg");
+        let azimuth_text = azimuth.map_or(NOT_AVAILABLE.to_owned(), |number| fixed(number, 6));
+        let mut lines = vec![("azimuth", azimuth_text + " degrees")];
         lines.push(("a time step", remarks::step_in_full(health)));
         lines.push(("lag", remarks::lag_in_full(health)));
         lines.extend(remarks::constants_in_full(health).map(|constants| ("L", constants)));

@@ -12,6 +12,7 @@
 //!   how a scenario differs from its file.
 
 pub mod changed;
+pub mod derived;
 pub mod expression;
 pub mod next_push;
 pub mod parameters;

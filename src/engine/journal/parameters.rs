@@ -14,7 +14,7 @@ use crate::text::printable::brief;
 use nalgebra::Vector3;
 use toml::{Table, Value};
 
-const MOST_LISTED: usize = 50;
+pub(super) const MOST_LISTED: usize = 50;
 
 const START_MOMENTUM_KEY: &str = "start.momentum_Js";
 
@@ -92,6 +92,12 @@ pub fn table_at(scenario: &Scenario, step: u64) -> Table {
         let _ = set_key(&mut table, key, value.clone()); // checked when the scenario was read
     }
     table
+}
+
+/// As [`table_at`], as a file.
+pub fn file_at(scenario: &Scenario, step: u64) -> ScenarioFile {
+    let file = table_at(scenario, step).try_into();
+    file.unwrap_or_else(|_: toml::de::Error| scenario.file.clone())
 }
 
 /// Returns the checked scenario of `file` with the values of `set`, as `--set key=value` gives them. Where the file

@@ -1,8 +1,13 @@
 //! The list of the values that can be edited, with the selected one.
 
+use crate::engine::journal::derived::DerivedValue;
 use crate::engine::journal::next_push::{NextPush, PushField};
 use crate::engine::journal::parameters::Parameter;
+use crate::engine::scenario::{Scenario, ScenarioFile, nudge};
+use toml::{Table, Value};
 
+/// The headings over the values that are always shown.
+pub const MAIN_GROUPS: [&str; 2] = ["start and motion", "body"];
 /// The heading over the values of the push to come.
 pub(super) const NEXT_PUSH_HEADING: &str = "next push (p)";
 
@@ -110,6 +115,10 @@ pub struct ListedValue {
     pub text: String,
     /// Whether the scenario's file does not contain it: the value is the default.
     pub is_default: bool,
+    pub is_settable: bool,
+    /// Of the values that are always shown, those of the highest rank are left out first if there is no room; `None`: it is
+    /// shown in the whole list only.
+    pub rank: Option<u8>,
     pub(in crate::lab) source: ValueSource,
 }
 
@@ -117,7 +126,61 @@ pub struct ListedValue {
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::lab) enum ValueSource {
     Scenario(Box<Parameter>),
+    /// A value that follows from several keys, and its number.
+    Derived(DerivedValue, Option<f64>),
     NextPush(PushField),
+}
+
+/// The values that are always shown, in order, with their ranks.
+const MAIN_VALUES: [(MainValue, u8); 12] = [
+    (MainValue::Key("start.tilt_deg"), 0),
+    (MainValue::Derived(DerivedValue::MomentumSize), 0),
+    (MainValue::Derived(DerivedValue::MomentumTilt), 3),
+    (MainValue::Key("motion.time_step_s"), 0),
+    (MainValue::Key("motion.scheme"), 1),
+    (MainValue::Key("motion.gravity_m_per_s2"), 4),
+    (MainValue::Derived(DerivedValue::PushSize), 2),
+    (MainValue::Derived(DerivedValue::PushEnd), 5),
+    (MainValue::Derived(DerivedValue::Mass), 0),
+    (MainValue::Derived(DerivedValue::Arm), 0),
+    (MainValue::Key("body.rim.radius_m"), 1),
+    (MainValue::Key("body.rim.points"), 2),
+];
+
+enum MainValue {
+    Key(&'static str),
+    Derived(DerivedValue),
+}
+
+/// Takes the values that are always shown out of `parameters`, and adds those that follow from several keys of `file`, the
+/// file of `scenario` with its edits.
+pub(super) fn main_values(
+    parameters: &mut Vec<Parameter>,
+    file: &ScenarioFile,
+    scenario: &Scenario,
+) -> Vec<ListedValue> {
+    let mut values = Vec::with_capacity(MAIN_VALUES.len());
+    for (main, rank) in MAIN_VALUES {
+        let value = match main {
+            MainValue::Key(key) => {
+                let place = parameters.iter().position(|parameter| parameter.key == key);
+                place.map(|place| ListedValue::from(parameters.remove(place)))
+            }
+            MainValue::Derived(derived) => ListedValue::of_derived(derived, file, scenario),
+        };
+        let is_of_body = |key: &str| key.starts_with("body.");
+        values.extend(value.map(|value| ListedValue {
+            group:
+                MAIN_GROUPS[usize::from(value.key.as_deref().is_some_and(is_of_body))].to_owned(),
+            rank: Some(rank),
+            ..value
+        }));
+    }
+    values
+}
+
+fn of_key(parameter: &Parameter, value: Value) -> Table {
+    Table::from_iter([(parameter.key.clone(), value)])
 }
 
 impl From<Parameter> for ListedValue {
@@ -131,6 +194,8 @@ impl From<Parameter> for ListedValue {
             unit: parameter.unit(),
             text: parameter.shown(),
             is_default: parameter.is_default,
+            is_settable: true,
+            rank: None,
             source: ValueSource::Scenario(Box::new(parameter)),
         }
     }
@@ -145,8 +210,91 @@ impl ListedValue {
             unit: field.label().1,
             text: push.shown(field),
             is_default: false,
+            is_settable: true,
+            rank: None,
             source: ValueSource::NextPush(field),
         })
+    }
+
+    /// Returns `derived` in `scenario`, whose file is `file` with its edits; `None` if this run can have no such value.
+    fn of_derived(derived: DerivedValue, file: &ScenarioFile, scenario: &Scenario) -> Option<Self> {
+        let number = derived.number(file, scenario);
+        let is_listed = match derived {
+            DerivedValue::PushSize => file.push.len() <= 1,
+            _ => number.is_some(),
+        };
+        is_listed.then(|| Self {
+            key: Some(derived.key().to_owned()),
+            group: String::new(),
+            label: derived.label().to_owned(),
+            unit: derived.unit(),
+            text: derived.shown(number),
+            is_default: false,
+            is_settable: derived.is_settable(file, scenario),
+            rank: None,
+            source: ValueSource::Derived(derived, number),
+        })
+    }
+
+    /// Returns the keys to set so that it is nudged up `times` times, or down if `times` is negative; empty for the push to
+    /// come, which no key holds.
+    ///
+    /// # Errors
+    /// Why it cannot be nudged so.
+    pub(in crate::lab) fn nudged(
+        &self,
+        times: i32,
+        file: &ScenarioFile,
+        scenario: &Scenario,
+    ) -> Result<Table, String> {
+        match &self.source {
+            ValueSource::Scenario(parameter) => Ok(of_key(parameter, parameter.nudged(times)?)),
+            ValueSource::Derived(derived, number) => {
+                let nudged = derived.nudged(number.unwrap_or(0.0), times);
+                derived.set(nudged, file, scenario)
+            }
+            ValueSource::NextPush(_) => Ok(Table::new()),
+        }
+    }
+
+    /// Returns the keys to set so that it has the value that `text` says, and whether it has another one now. No key holds
+    /// the push to come.
+    ///
+    /// # Errors
+    /// Why it cannot have that value.
+    pub(in crate::lab) fn typed(
+        &self,
+        text: &str,
+        file: &ScenarioFile,
+        scenario: &Scenario,
+    ) -> Result<(Table, bool), String> {
+        match &self.source {
+            ValueSource::Scenario(parameter) => {
+                let value = parameter.typed(text)?;
+                let is_new = value != parameter.value || parameter.is_default;
+                Ok((of_key(parameter, value), is_new))
+            }
+            ValueSource::Derived(derived, number) => {
+                let typed = nudge::typed(text, derived.unit())?;
+                Ok((derived.set(typed, file, scenario)?, *number != Some(typed)))
+            }
+            ValueSource::NextPush(_) => Ok((Table::new(), false)),
+        }
+    }
+
+    /// Returns its key in the scenario's file; `None` if it follows from several, or is of the push to come.
+    pub fn file_key(&self) -> Option<&str> {
+        let is_of_file = matches!(self.source, ValueSource::Scenario(_));
+        self.key.as_deref().filter(|_| is_of_file)
+    }
+
+    /// Returns its meaning and its unit, in one line.
+    pub fn about(&self) -> &'static str {
+        match &self.source {
+            ValueSource::Scenario(parameter) => parameter.spec.about,
+            ValueSource::Derived(derived, _) => derived.about(),
+            ValueSource::NextPush(field) => field.about(),
+        }
     }
 
     /// Returns how its group, label and key answer the search for `name`.

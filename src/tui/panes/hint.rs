@@ -3,6 +3,8 @@
 use super::chrome::SEPARATOR;
 use super::{wrapped_to, write};
 use crate::engine::text::wrap::wrapped;
+use crate::lab::dialog::Dialog;
+use crate::lab::view::Pane;
 use crate::lab::{Lab, MOST_COUNTED};
 use crate::tui::layout::{FULL_LAB, ScreenLayout};
 use crate::tui::theme::Role;
@@ -92,7 +94,8 @@ pub fn draw(lab: &Lab, is_cramped: bool, area: Rect, buf: &mut Buffer) {
 /// Whether there is something to be said now, besides what there is to see.
 pub fn has_message(lab: &Lab) -> bool {
     let (popups, messages) = (lab.popups(), lab.messages());
-    popups.count.is_some() || lab.notice().is_some() || messages.trouble().is_some()
+    let types_value = popups.dialog().is_some_and(Dialog::is_of_value);
+    types_value || popups.count.is_some() || lab.notice().is_some() || messages.trouble().is_some()
 }
 
 const NOT_KEPT: &str = "session not kept";
@@ -100,6 +103,9 @@ const NOT_KEPT: &str = "session not kept";
 /// The text of the note on a screen of this width. That the session is not saved is said as long as it is so.
 fn said(lab: &Lab, width: u16) -> (String, Role) {
     let (popups, messages) = (lab.popups(), lab.messages());
+    if let Some(typed) = popups.dialog().and_then(value_typed) {
+        return typed;
+    }
     let message = match popups.count {
         Some(MOST_COUNTED) => Some(format!(
             "{MOST_COUNTED} is the most that is counted: now the key; Esc forgets it"
@@ -113,6 +119,34 @@ fn said(lab: &Lab, width: u16) -> (String, Role) {
         (Some(text), Some(_)) => (format!("{NOT_KEPT}{SEPARATOR}{text}"), Role::Text),
         (Some(text), None) => (text, Role::Text),
         (None, Some(trouble)) => (trouble.to_owned(), Role::Off),
-        (None, None) => (whole_sentences(&lab.note(), width).to_owned(), Role::Label),
+        (None, None) => {
+            let note = about_selected(lab)
+                .unwrap_or_else(|| whole_sentences(&lab.note(), width).to_owned());
+            (note, Role::Label)
+        }
     }
+}
+
+/// The value that is typed and the keys that end it, or why it was refused; `None` in any other dialog.
+fn value_typed(dialog: &Dialog) -> Option<(String, Role)> {
+    let form = &dialog.form;
+    let field = form.fields.first().filter(|_| dialog.is_of_value())?;
+    Some(match &form.complaint {
+        Some(complaint) => (complaint.clone(), Role::Off),
+        None => {
+            let (label, unit) = field.label.split_once(", ").unwrap_or((&field.label, ""));
+            let value = format!("{label} = {} {unit}", field.text());
+            (format!("{}   {}", value.trim_end(), form.keys), Role::Text)
+        }
+    })
+}
+
+/// The key, the value with all its digits and the meaning of the selected value while the values have the focus.
+fn about_selected(lab: &Lab) -> Option<String> {
+    let view = lab.view();
+    let selected = lab.values().list.selected()?;
+    (view.marks_focus_of(Pane::Parameters) && view.sheet.is_none()).then(|| {
+        let key = selected.file_key().unwrap_or(&selected.label);
+        format!("{key}={}   {}", selected.text, selected.about())
+    })
 }

@@ -1,10 +1,12 @@
 //! The table: a row for every readout, with its name, unit, source, meaning and formula.
 
+use super::value_row::{Tolerance, ValueRow, now, passes_through_vertical, so_far};
 use super::{ReadoutValue, Readouts};
 use crate::analysis::theory::AxlePath;
 use crate::analysis::{MeasuredNumber, Theory};
 use crate::physics::SchemeInfo;
 use crate::scenario::{problem, start};
+use std::f64::consts::PI;
 use std::time::Duration;
 
 #[derive(Debug)]
@@ -20,69 +22,12 @@ pub struct Readout {
     kind: ValueKind,
     /// Its symbol in figures, as their markup; empty where it has none.
     pub symbol: &'static str,
-    /// How the lab's pane of numbers shows it; `None` where it does not, or shows it in a line of its own.
-    pub in_pane: Option<InPane>,
+    /// Its row in the lab's values pane; `None` if it has none.
+    pub row: Option<ValueRow>,
     get: fn(&Readouts) -> ReadoutValue,
 }
 
-/// The line of a readout in the lab's pane of numbers. Below it stands what theory predicts, where it is measured.
-#[derive(Clone, Copy, Debug)]
-pub struct InPane {
-    pub group: PaneGroup,
-    /// Its place among the lines of its group.
-    pub place: u8,
-    pub label: &'static str,
-    pub decimals: usize,
-    /// Where there is no room for all lines, those of higher rank are left out first.
-    pub rank: u8,
-    /// The unit, if it is not that of the readout.
-    pub unit: Option<&'static str>,
-    /// Whether the full summary has a line with this label too.
-    pub is_in_summary: bool,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PaneGroup {
-    /// The extremes so far.
-    SoFar,
-    /// How the wheel turns.
-    Wheel,
-}
-
-const fn so_far(place: u8, label: &'static str, decimals: usize, rank: u8) -> InPane {
-    InPane {
-        group: PaneGroup::SoFar,
-        place,
-        label,
-        decimals,
-        rank,
-        unit: None,
-        is_in_summary: false,
-    }
-}
-
-const fn wheel(place: u8, label: &'static str, decimals: usize, rank: u8) -> InPane {
-    InPane {
-        group: PaneGroup::Wheel,
-        ..so_far(place, label, decimals, rank)
-    }
-}
-
-impl InPane {
-    const fn in_unit(self, unit: &'static str) -> Self {
-        Self {
-            unit: Some(unit),
-            ..self
-        }
-    }
-
-    const fn and_summary(self) -> Self {
-        Self {
-            is_in_summary: true,
-            ..self
-        }
-    }
-}
+const DEGREES_PER_RAD: f64 = 180.0 / PI;
 
 /// In the name of a readout that is the standard error of another.
 const ERROR: &str = "_uncertainty";
@@ -272,19 +217,19 @@ const fn kind<T: IntoValue>(_: &impl Fn(&Readouts) -> T) -> ValueKind {
     T::KIND
 }
 
-macro_rules! in_pane {
+macro_rules! optional {
     () => {
         None
     };
-    ($in_pane:expr) => {
-        Some($in_pane)
+    ($row:expr) => {
+        Some($row)
     };
 }
 
 /// Makes a row of each line: name, unit, source, meaning, how it is got of the readouts `r`, the symbol where it has one,
-/// and its line in the lab's pane of numbers where it has one there.
+/// and its row in the lab's values pane if it has one.
 macro_rules! readouts {
-    ($($name:literal, $unit:literal, $source:ident, $meaning:literal, |$r:ident| $get:expr $(, $symbol:literal)? $(=> $in_pane:expr)?;)*) => {
+    ($($name:literal, $unit:literal, $source:ident, $meaning:literal, |$r:ident| $get:expr $(, $symbol:literal)? $(=> $row:expr)?;)*) => {
         pub const READOUTS: &[Readout] = &[
             $(Readout {
                 name: $name,
@@ -294,7 +239,7 @@ macro_rules! readouts {
                 is_text: matches!(kind(&|$r: &Readouts| $get), ValueKind::Text),
                 kind: kind(&|$r: &Readouts| $get),
                 symbol: concat!($($symbol)?),
-                in_pane: in_pane!($($in_pane)?),
+                row: optional!($($row)?),
                 get: |$r| $get.value(),
             }),*
         ];
@@ -308,35 +253,36 @@ readouts! {
     "steps", "", State, "time steps taken", |r| r.sample.step;
     "time_step_s", "s", Scenario, "the time step in force", |r| r.time_step_s, "Δ*t*";
     "t_s", "s", State, "time", |r| r.sample.time_s, "*t*";
-    "x_m", "m", State, "traced point, world frame", |r| r.sample.position.x, "*x*";
-    "y_m", "m", State, "traced point, world frame", |r| r.sample.position.y, "*y*";
-    "z_m", "m", State, "traced point, world frame", |r| r.sample.position.z, "*z*";
+    "x_m", "m", State, "traced point, world frame", |r| r.sample.position.x, "*x*" => now(0, "x", "x").of_moment(|moment| Some(moment.position.x)).decimals(4).off_by(Tolerance::OfArm);
+    "y_m", "m", State, "traced point, world frame", |r| r.sample.position.y, "*y*" => now(1, "y", "y").of_moment(|moment| Some(moment.position.y)).decimals(4).off_by(Tolerance::OfArm);
+    "z_m", "m", State, "traced point, world frame", |r| r.sample.position.z, "*z*" => now(2, "z", "z").of_moment(|moment| Some(moment.position.z)).decimals(4).off_by(Tolerance::OfArm);
     "Lx_Js", "J s", State, "angular momentum about the pivot, world frame", |r| r.sample.momentum.x, "*L*_{*x*}";
     "Ly_Js", "J s", State, "angular momentum about the pivot, world frame", |r| r.sample.momentum.y, "*L*_{*y*}";
-    "Lz_Js", "J s", State, "angular momentum about the pivot, world frame", |r| r.sample.momentum.z, "*L*_{*z*}";
+    "Lz_Js", "J s", State, "angular momentum about the pivot, world frame", |r| r.sample.momentum.z, "*L*_{*z*}" => now(7, "Lz", "Lz").of_moment(|moment| Some(moment.momentum.z)).rank(2).off_by(Tolerance::OfItself);
+    "L_Js", "J s", State, "size of the angular momentum about the pivot", |r| r.sample.momentum.norm(), "|*L*|" => now(6, "|L|", "|L|").of_moment(|moment| Some(moment.momentum.norm())).rank(1).off_by(Tolerance::OfItself);
     "wx_rad_per_s", "rad/s", State, "angular velocity I^-1 L, world frame", |r| r.sample.angular_velocity.x, "*ω*_{*x*}";
     "wy_rad_per_s", "rad/s", State, "angular velocity I^-1 L, world frame", |r| r.sample.angular_velocity.y, "*ω*_{*y*}";
     "wz_rad_per_s", "rad/s", State, "angular velocity I^-1 L, world frame", |r| r.sample.angular_velocity.z, "*ω*_{*z*}";
-    "tilt_deg", "deg", State, "angle of the axle from +z", |r| r.sample.tilt_deg, "*θ*";
-    "azimuth_deg", "deg", State, "azimuth of the axle, counted on through full turns", |r| r.sample.azimuth_deg, "*φ*" => wheel(5, "azimuth", 2, 10).and_summary();
+    "tilt_deg", "deg", State, "angle of the axle from +z", |r| r.sample.tilt_deg, "*θ*" => now(3, "tilt", "tilt").of_moment(|moment| Some(moment.tilt_deg)).decimals(2).off_by(Tolerance::Of(0.5));
+    "azimuth_deg", "deg", State, "azimuth of the axle, counted on through full turns", |r| r.sample.azimuth_deg, "*φ*" => so_far(7, "azimuth").decimals(2);
     "energy_J", "J", State, "kinetic energy, and that of the weight from the pivot", |r| r.sample.energy, "*E*";
-    "energy_drift", "", State, "energy that only the scheme's error can have made, in units of M g |c|, or of the kinetic energy at the start where M g |c| is below 1e-9 of it", |r| r.health.energy_drift;
+    "energy_drift", "", State, "energy that only the scheme's error can have made, in units of M g |c|, or of the kinetic energy at the start where M g |c| is below 1e-9 of it", |r| r.health.energy_drift => now(8, "energy error", "E error").in_unit_of_energy().of_moment(|moment| moment.energy_error).off_by(Tolerance::Of(0.05));
     "friction_work_J", "J", State, "work of friction since the start, which the energy drift counts as work: of each impulse of it, the impulse times the mean of omega before and after; under exact and rk4 its power integrated", |r| r.health.slowing.map(|slowing| slowing.work);
     "segment", "", Scenario, "edits of time step, scheme or gravity before this step", |r| r.sample.segment;
-    "measured_lowest_tilt_deg", "deg", EveryStep, "least angle of the axle from +z", |r| r.extremes.tilt.lowest_deg, "*θ*_{min}" => so_far(0, "tilt from", 3, 7);
-    "measured_highest_tilt_deg", "deg", EveryStep, "greatest angle of the axle from +z", |r| r.extremes.tilt.highest_deg, "*θ*_{max}" => so_far(1, "tilt to", 3, 7);
-    "measured_lowest_z_m", "m", EveryStep, "least z of the traced point", |r| r.extremes.lowest_z_m, "*z*_{min}" => so_far(2, "z from", 4, 7);
-    "measured_highest_z_m", "m", EveryStep, "greatest z of the traced point", |r| r.extremes.highest_z_m, "*z*_{max}" => so_far(3, "z to", 4, 7);
-    "turns_per_step", "", State, "turns of the body in one time step, |Omega| dt/2 pi", |r| r.health.turns_per_step => wheel(1, "turns", 4, 9).in_unit("/step");
+    "measured_lowest_tilt_deg", "deg", EveryStep, "least angle of the axle from +z", |r| r.extremes.tilt.lowest_deg, "*θ*_{min}" => so_far(0, "tilt from").decimals(3);
+    "measured_highest_tilt_deg", "deg", EveryStep, "greatest angle of the axle from +z", |r| r.extremes.tilt.highest_deg, "*θ*_{max}" => so_far(1, "tilt to").decimals(3);
+    "measured_lowest_z_m", "m", EveryStep, "least z of the traced point", |r| r.extremes.lowest_z_m, "*z*_{min}" => so_far(2, "z from").decimals(4);
+    "measured_highest_z_m", "m", EveryStep, "greatest z of the traced point", |r| r.extremes.highest_z_m, "*z*_{max}" => so_far(3, "z to").decimals(4);
+    "turns_per_step", "", State, "turns of the body in one time step, |Omega| dt/2 pi", |r| r.health.turns_per_step => now(9, "turns per step", "turns/st").rank(3).in_unit("< 0.5", 1.0).off_by(Tolerance::UnlessReliable(0.5));
     "nutation_multiplier", "", Scheme, "the report's scheme alone: its factor on a nutation's size each step; the truth is 1", |r| r.health.nutation.map(|nutation| nutation.multiplier);
-    "lag_deg", "deg", State, "angle between axle and L", |r| r.health.lag_deg => wheel(2, "axle to L", 3, 9);
+    "lag_deg", "deg", State, "angle between axle and L", |r| r.health.lag_deg => so_far(5, "axle to L").decimals(3);
     "steady_lag_deg", "deg", Scheme, "the report's scheme alone: its angle between axle and L in slow steady precession at this tilt and spin, the true one times kappa psi/|1 - A|", |r| r.health.nutation.and_then(|nutation| nutation.scheme_lag_deg());
     "predicted_lag_deg", "deg", Scheme, "the report's scheme alone: the mean angle between axle and L, |tau| dt/(|L| |1 - A|), at the last change of the forces; null where that linear theory is off by more than about a tenth, and where the scheme feeds the nutation in the run (kappa above 1)", |r| r.report_theory.and_then(|theory| theory.lag_deg(r.sample.step.saturating_sub(r.since)));
     "predicted_tilt_swing_deg", "deg", Scheme, "the report's scheme alone: the swing of the tilt about that lag, by the same theory; null too where the scheme damps or feeds the nutation in the run", |r| r.report_theory.and_then(|theory| theory.swing_deg(r.sample.step.saturating_sub(r.since)));
     "measured_tilt_swing_deg", "deg", Measured, "greatest tilt less least tilt, as the steps show it", |r| value(r.tilt_swing);
     "measured_tilt_swing_uncertainty_deg", "deg", Measured, "how much more the tilt swings between the steps", |r| uncertainty(r.tilt_swing);
-    "true_steady_lag_deg", "deg", Theory, "that angle of the exact motion; given beside the report's scheme, null where the top spins too slowly for a steady precession", |r| r.health.nutation.and_then(|nutation| nutation.true_lag_deg) => wheel(3, "steady", 3, 9);
-    "distance_m", "m", Exact, "distance of the traced point from the exact motion's; null after predictable_until_s", |r| r.health.deviation.map(|off| off.distance_m) => wheel(6, "off exact", 4, 10);
+    "true_steady_lag_deg", "deg", Theory, "that angle of the exact motion; given beside the report's scheme, null where the top spins too slowly for a steady precession", |r| r.health.nutation.and_then(|nutation| nutation.true_lag_deg) => so_far(6, "steady").decimals(3);
+    "distance_m", "m", Exact, "distance of the traced point from the exact motion's; null after predictable_until_s", |r| r.health.deviation.map(|off| off.distance_m) => so_far(8, "off exact").decimals(4);
     "most_distance_m", "m", Exact, "the largest such distance so far, up to predictable_until_s", |r| r.health.most_distance_m;
     "predictable_until_s", "s", Exact, "the time after which no double-precision computation can predict the motion; null where the run ends before that", |r| r.health.predictability.until_s;
     "reliable", "", Exact, "whether the numbers of this step hold; false after predictable_until_s, null where that is not known", |r| r.health.is_reliable();
@@ -350,20 +296,20 @@ readouts! {
     "predicted_highest_tilt_deg", "deg", Theory, "greatest tilt of the exact motion from +z in the whole run; null once the forces have changed", |r| r.predicted_tilts_of_run().map(|range| range.1), "*θ*_{max}";
     "cusp_tilt_deg", "deg", Theory, "tilt at which the axle stands still in azimuth", |r| r.lasting_theory().and_then(|theory| theory.cusp_tilt_deg);
     "predicted_precession_rad_per_s", "rad/s", Theory, "mean precession of the exact motion about +z", |r| r.lasting_theory().and_then(|theory| theory.precession), "*Ω*_{p}";
-    "measured_precession_rad_per_s", "rad/s", Measured, "mean precession about +z; none under friction, which changes it all the time", |r| value(r.precession), "*Ω*_{p}";
+    "measured_precession_rad_per_s", "rad/s", Measured, "mean precession about +z; none under friction, which changes it all the time", |r| value(r.precession), "*Ω*_{p}" => now(4, "precession", "precess.").measured(|r| r.precession).unless(passes_through_vertical).in_unit("°/s", DEGREES_PER_RAD).off_by(Tolerance::OfItself);
     "measured_precession_uncertainty_rad_per_s", "rad/s", Measured, "one standard error of reading it off the steps; the error that the scheme and its time step make is not in it", |r| uncertainty(r.precession);
     "slow_precession_rad_per_s", "rad/s", Theory, "steady precession at this tilt, the slow one", |r| r.theory_about_z().and_then(|theory| theory.slow_precession), "*Ω*_{slow}";
     "fast_precession_rad_per_s", "rad/s", Theory, "steady precession at this tilt, the fast one", |r| r.theory_about_z().and_then(|theory| theory.fast_precession), "*Ω*_{fast}";
     "fast_top_precession_rad_per_s", "rad/s", Theory, "the fast top's precession M g h/L3", |r| r.theory_about_z().and_then(|theory| theory.fast_top_precession), "*M* *g* *h*/*L*_{3}";
     "predicted_nutation_period_s", "s", Theory, "nutation period of the exact motion", |r| r.lasting_theory().and_then(|theory| theory.nutation_period_s), "*T*_{n}";
-    "measured_nutation_period_s", "s", Measured, "mean time from one greatest tilt to the next; none under friction", |r| value(r.nutation), "*T*_{n}";
+    "measured_nutation_period_s", "s", Measured, "mean time from one greatest tilt to the next; none under friction", |r| value(r.nutation), "*T*_{n}" => now(5, "nutation", "nutation").measured(|r| r.nutation).off_by(Tolerance::OfItself);
     "measured_nutation_uncertainty_s", "s", Measured, "one standard error of reading it off the steps; the error that the scheme and its time step make is not in it", |r| uncertainty(r.nutation);
     "nutation_is_resolved", "", State, "false: the time step is too long to see the nutation, what the steps show is strobed", |r| r.nutation_is_resolved();
     "predicted_precession_period_s", "s", Theory, "time of one turn of the mean precession of the exact motion about +z", |r| r.lasting_theory().and_then(Theory::precession_period_s), "*T*_{p}";
     "predicted_body_cone_period_s", "s", Theory, "free symmetric body: time in which the instantaneous axis goes once round the axle, seen from the body, (I1/|I3 - I1|) 2 pi/omega3; null under a load, without spin, for I3 = I1, and where only a rotor spins", |r| r.theory.filter(|theory| !r.has_rotor && !theory.is_of_a_moment).and_then(|theory| theory.body_cone_period_s), "*T*_{c}";
     "fast_top_nutation_rad_per_s", "rad/s", Theory, "the fast top's nutation L3/I1", |r| r.theory.map(|theory| theory.fast_top_nutation), "*ω*_{n}";
     "fast_top_nutation_rpm", "rpm", Theory, "the same in revolutions a minute", |r| r.theory.map(|theory| start::rpm(theory.fast_top_nutation)), "*ω*_{n}";
-    "L_axle_Js", "J s", State, "L along the axle", |r| r.axle_momentum, "*L*_{3}" => wheel(0, "L on axle", 3, 9);
+    "L_axle_Js", "J s", State, "L along the axle", |r| r.axle_momentum, "*L*_{3}" => so_far(4, "L along axle");
     "spin_rpm", "rpm", State, "rate of the spin about the axle: omega along it", |r| start::rpm(r.spin_rad_per_s), "*ω*_{3}";
     "w1_rad_per_s", "rad/s", State, "angular velocity along the body's own x", |r| r.sample.omega().x, "*ω*_{1}";
     "w2_rad_per_s", "rad/s", State, "angular velocity along the body's own y", |r| r.sample.omega().y, "*ω*_{2}";

@@ -1,0 +1,310 @@
+//! The values of the scenario: those that matter most, or in focus the whole list with one of them selected.
+
+use super::{ValuesPane, with_minus};
+use crate::engine::analysis::readouts::four_digits;
+use crate::engine::text::number::shortest;
+use crate::engine::text::printable::printable;
+use crate::engine::text::wrap::columns;
+use crate::lab::form::InputField;
+use crate::lab::values::list::{ListedValue, MAIN_GROUPS, ValueList};
+use crate::tui::panes::{rule, shortened, write};
+use crate::tui::split::split_columns;
+use crate::tui::theme::Role;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use std::iter;
+
+/// Columns of a field.
+const FIELD: u16 = 7;
+/// In fewer columns a heading is short.
+const LONG_HEADING_FROM: u16 = 27;
+
+pub(super) struct Editor<'p, 'a> {
+    pub(super) pane: &'p ValuesPane<'a>,
+    /// How many lists are beside each other.
+    pub(super) columns: u16,
+    /// The column after the last digit of a value.
+    pub(super) value_end: u16,
+}
+
+/// A row of the list.
+#[derive(Clone, Copy)]
+enum EditorRow<'a> {
+    Blank,
+    Heading(&'a str),
+    Value(&'a ListedValue, bool),
+    /// No value answers the search.
+    Nothing,
+}
+
+impl EditorRow<'_> {
+    fn is_heading(&self) -> bool {
+        matches!(self, Self::Heading(_))
+    }
+
+    fn is_selected(&self) -> bool {
+        matches!(self, Self::Value(_, true))
+    }
+}
+
+/// Rows of the first group of the values that are always shown, its heading included.
+pub(super) fn main_rows(list: &ValueList) -> u16 {
+    let first = list
+        .values
+        .iter()
+        .filter(|value| value.rank.is_some() && value.group == MAIN_GROUPS[0]);
+    first.count() as u16 + 1
+}
+
+impl Editor<'_, '_> {
+    pub(super) fn render(&self, area: Rect, buf: &mut Buffer) {
+        if area.is_empty() || self.columns == 0 {
+            return;
+        }
+        let height = area.height.into();
+        let lists = if self.pane.has_focus() {
+            self.in_focus(height)
+        } else {
+            self.most_important(height)
+        };
+        let mut rest = area;
+        let width = area.width / self.columns;
+        for list in lists {
+            let [place, right] = split_columns(rest, width);
+            for (row, line) in list.iter().zip(place.rows()) {
+                self.row(row, line, buf);
+            }
+            rest = right;
+        }
+    }
+
+    /// The values that are always shown, as many as there is room for.
+    fn most_important(&self, height: usize) -> Vec<Vec<EditorRow<'_>>> {
+        let values = &self.pane.list.values;
+        let mut groups = MAIN_GROUPS.map(|group| {
+            let of_group = values
+                .iter()
+                .filter(|value| value.rank.is_some() && value.group == group);
+            of_group.collect::<Vec<_>>()
+        });
+        if self.columns > 1 {
+            return groups
+                .iter_mut()
+                .zip(MAIN_GROUPS)
+                .map(|(values, heading)| {
+                    with_heading(heading, leave_out(values, height.saturating_sub(1)))
+                })
+                .collect();
+        }
+        let [start, body] = &mut groups;
+        let mut rows = with_heading(MAIN_GROUPS[0], leave_out(start, height.saturating_sub(1)));
+        // With a blank row and its heading.
+        let left = height.saturating_sub(rows.len() + 2);
+        if left >= 2 && !body.is_empty() {
+            rows.push(EditorRow::Blank);
+            rows.extend(with_heading(MAIN_GROUPS[1], leave_out(body, left)));
+        }
+        vec![rows]
+    }
+
+    /// All values that answer the search, as many as there is room for around the selected one.
+    fn in_focus(&self, height: usize) -> Vec<Vec<EditorRow<'_>>> {
+        let list = self.pane.list;
+        let shown = list.shown();
+        let mut rows = Vec::with_capacity(2 * shown.len());
+        for group in shown.chunk_by(|(_, a), (_, b)| a.group == b.group) {
+            let heading = group
+                .first()
+                .map(|(_, value)| EditorRow::Heading(&value.group));
+            rows.extend(heading);
+            let values = group
+                .iter()
+                .map(|(index, value)| EditorRow::Value(value, *index == list.selected_index()));
+            rows.extend(values);
+        }
+        if rows.is_empty() && !list.name.is_empty() {
+            rows.push(EditorRow::Nothing);
+        }
+        if let Some(columns) = by_group(&rows, height, self.columns.into()) {
+            return columns;
+        }
+        let around = around_selected(&rows, height * usize::from(self.columns));
+        around.chunks(height.max(1)).map(<[_]>::to_vec).collect()
+    }
+
+    fn row(&self, row: &EditorRow<'_>, area: Rect, buf: &mut Buffer) {
+        let theme = &self.pane.view.theme;
+        match row {
+            EditorRow::Blank => {}
+            EditorRow::Heading(heading) => self.heading(heading, area, buf),
+            EditorRow::Value(value, is_selected) => self.value(value, *is_selected, area, buf),
+            EditorRow::Nothing => {
+                write(
+                    area,
+                    (0, 0),
+                    "no editable value matches",
+                    theme.style(Role::Label),
+                    buf,
+                );
+            }
+        }
+    }
+
+    /// A rule with `heading`; on the first one the key that edits, or in focus the place of the selected value.
+    fn heading(&self, heading: &str, area: Rect, buf: &mut Buffer) {
+        let pane = self.pane;
+        let title = match heading {
+            first if first == MAIN_GROUPS[0] && area.width < LONG_HEADING_FROM => "start",
+            other => other,
+        };
+        let is_of_selected = pane
+            .list
+            .selected()
+            .is_some_and(|value| value.group == heading);
+        let hint = match (pane.has_focus(), heading == MAIN_GROUPS[0]) {
+            (true, _) if is_of_selected => place_in_list(pane.list),
+            (false, true) => "e edit".to_owned(),
+            _ => String::new(),
+        };
+        let right = Some((hint.as_str(), Role::Label)).filter(|(hint, _)| !hint.is_empty());
+        rule(title, right, false, area, &pane.view.theme, buf);
+    }
+
+    fn value(&self, value: &ListedValue, is_selected: bool, area: Rect, buf: &mut Buffer) {
+        let pane = self.pane;
+        let theme = &pane.view.theme;
+        let end = self.value_end.min(area.width);
+        let label = on_one_line(&value.label);
+        let label_room = end
+            .saturating_sub(columns(&label) as u16 + 1)
+            .max(FIELD.min(end));
+        if let Some(field) = pane.field.filter(|_| is_selected) {
+            let width = label_room.min(2 * FIELD);
+            pane.label(&label, value.unit, end - width, area, buf);
+            let place = Rect {
+                x: area.x + end - width,
+                width,
+                ..area
+            };
+            return self.field(field, place, buf);
+        }
+        let text = with_minus(shown_text(value, label_room.into()));
+        let length = columns(&text) as u16;
+        let width = if value.is_settable {
+            length.max(FIELD.min(end))
+        } else {
+            length
+        };
+        pane.label(&label, value.unit, end.saturating_sub(width), area, buf);
+        let role = match (is_selected, value.is_settable) {
+            (true, _) => Role::Selected,
+            (false, true) => Role::Editable,
+            (false, false) => Role::Text,
+        };
+        let field = format!("{text:>width$}", width = usize::from(width));
+        write(
+            area,
+            (end.saturating_sub(width), 0),
+            &field,
+            theme.style(role),
+            buf,
+        );
+    }
+
+    /// The field in which the selected value is typed: the end of its text, with the cursor.
+    fn field(&self, field: &InputField, area: Rect, buf: &mut Buffer) {
+        let style = self.pane.view.theme.style(Role::Selected);
+        let blank = " ".repeat(area.width.into());
+        write(area, (0, 0), &blank, style, buf);
+        let before: String = field.text().chars().take(field.cursor()).collect();
+        let after: String = field.text().chars().skip(field.cursor()).collect();
+        let text = format!("{before}_{after}");
+        let room = usize::from(area.width);
+        let skipped = (columns(&before) + 1)
+            .saturating_sub(room)
+            .max(columns(&text).saturating_sub(room).min(columns(&before)));
+        let shown: String = text.chars().skip(skipped).take(room).collect();
+        let begin = area.width.saturating_sub(columns(&shown) as u16);
+        write(area, (begin, 0), &shown, style, buf);
+    }
+}
+
+/// The number of the selected value among those that are shown.
+fn place_in_list(list: &ValueList) -> String {
+    let shown = list.shown();
+    let at = shown
+        .iter()
+        .position(|(index, _)| *index == list.selected_index());
+    format!("{} of {}", at.map_or(0, |at| at + 1), shown.len())
+}
+
+fn with_heading<'a>(heading: &'a str, values: &[&'a ListedValue]) -> Vec<EditorRow<'a>> {
+    let rows = values.iter().map(|value| EditorRow::Value(value, false));
+    iter::once(EditorRow::Heading(heading))
+        .chain(rows)
+        .collect()
+}
+
+/// Leaves out values of the highest rank until there is `room` for the others.
+fn leave_out<'v, 'a>(values: &'v mut Vec<&'a ListedValue>, room: usize) -> &'v [&'a ListedValue] {
+    while values.len() > room {
+        let ranks = values.iter().map(|value| value.rank).enumerate();
+        let last = ranks.max_by_key(|(_, rank)| *rank);
+        let Some((last, _)) = last else { break };
+        values.remove(last);
+    }
+    values
+}
+
+/// `rows` in at most `most` columns of at most `height` that begin with a heading; `None` if there is no room for that.
+fn by_group<'a>(
+    rows: &[EditorRow<'a>],
+    height: usize,
+    most: usize,
+) -> Option<Vec<Vec<EditorRow<'a>>>> {
+    let mut columns: Vec<Vec<EditorRow<'a>>> = vec![Vec::new()];
+    for group in rows.chunk_by(|_, next| !next.is_heading()) {
+        let column = columns.last_mut()?;
+        if column.is_empty() || column.len() + group.len() <= height {
+            column.extend_from_slice(group);
+        } else {
+            columns.push(group.to_vec());
+        }
+    }
+    let fits = columns.len() <= most && columns.iter().all(|rows| rows.len() <= height);
+    fits.then_some(columns)
+}
+
+/// The `room` rows around the selected one, with the heading of its group.
+fn around_selected<'a>(rows: &[EditorRow<'a>], room: usize) -> Vec<EditorRow<'a>> {
+    let selected = rows.iter().position(EditorRow::is_selected).unwrap_or(0);
+    let most = rows.len().saturating_sub(room);
+    let first = selected.saturating_sub(room / 2).min(most);
+    let end = (first + room).min(rows.len());
+    let mut shown = rows[first..end].to_vec();
+    let before = rows.get(..=selected).unwrap_or(rows);
+    let heading = before.iter().rposition(EditorRow::is_heading);
+    if let (Some(top), Some(heading)) = (shown.first_mut(), heading)
+        && heading < first
+        && !top.is_selected()
+    {
+        *top = rows[heading];
+    }
+    shown
+}
+
+/// The text of `value` on at most `room` columns: all digits that were given if a field has room for them, else four.
+fn shown_text(value: &ListedValue, room: usize) -> String {
+    let text = on_one_line(&value.text);
+    let field = room.min(FIELD.into());
+    match text.parse::<f64>() {
+        Ok(number) if text.len() > field => four_digits(number, field),
+        Ok(number) if text.contains(['.', 'e']) => shortest(number),
+        _ => shortened(&text, room).into_owned(),
+    }
+}
+
+/// `text` on one line and printable.
+fn on_one_line(text: &str) -> String {
+    printable(&text.replace('\n', " ")).into_owned()
+}
