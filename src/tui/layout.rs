@@ -15,12 +15,14 @@ pub const FULL_LAB: (u16, u16) = (80, 24);
 const LARGE_LAB: (u16, u16) = (160, 44);
 /// From this width on two panes are side by side.
 const TWO_FROM: u16 = 48;
-/// From this height on there is a scrub line, and a row for the note.
-const SCRUB_FROM: u16 = 12;
+/// From this height on there is a scrub line.
+const SCRUB_FROM: u16 = 14;
+/// From this height on the note has rows of its own.
+const NOTE_FROM: u16 = 12;
 /// Rows of the overview: a rule, the curve, and a ruler; and the height of the screen from which they are.
 const OVERVIEW_ROWS: [(u16, u16); 3] = [(44, 6), (36, 5), (24, 4)];
-/// The note has two rows where it needs them and the screen is narrower than this.
-const LONG_NOTE_FROM: u16 = 120;
+/// The note has up to three rows below the first of these widths, and two below the second.
+const NOTE_COLUMNS: (u16, u16) = (60, 120);
 
 /// The fewest and the most columns of the traces, and their share of the screen at 80 and at 120 columns, per mille.
 const TRACES_COLUMNS: (u16, u16) = (28, 96);
@@ -86,8 +88,12 @@ impl ScreenLayout {
             };
         }
         let keys = cut_bottom(&mut rest, u16::from(keys && area.height >= 6));
-        let most_note_rows = if area.width < LONG_NOTE_FROM { 2 } else { 1 };
-        let note_rows = if area.height < SCRUB_FROM {
+        let most_note_rows = match area.width {
+            width if width < NOTE_COLUMNS.0 => 3,
+            width if width < NOTE_COLUMNS.1 => 2,
+            _ => 1,
+        };
+        let note_rows = if area.height < NOTE_FROM {
             0
         } else {
             note_rows.clamp(1, most_note_rows)

@@ -295,7 +295,7 @@ fn accumulating_pushes_offer_no_other_time_step() {
     stage.lab.take_advice();
     stage.wait(1.0).commands("pause = true\ngo_to = 40");
     wait_for_advice(&mut stage);
-    stage.shows_no("a takes it");
+    stage.shows_no("rerun with");
     stage.press("a").shows("no time step or scheme was found");
     let command = &crate::support::desk::commands("take_advice = true")[0];
     let refusal = stage.lab.carry_out(command).unwrap_err().to_string();
@@ -327,7 +327,7 @@ fn the_line_about_the_numbers_is_right_as_soon_as_an_edit_is_made() {
         stage.commands(edit);
         let line = verdict(&stage);
         assert!(line.contains(&turns), "{edit}: {line}");
-        assert!(!line.contains("a takes it"), "{edit}: {line}");
+        assert!(!line.contains("rerun with"), "{edit}: {line}");
     }
 }
 
@@ -347,7 +347,7 @@ fn advice_on_an_edited_time_step_is_for_the_whole_run() {
 fn an_exact_motion_that_would_take_too_long_is_left_out_and_said() {
     let set = ["motion.time_step_s=1e6", "view.exact=true"];
     let mut stage = Stage::open("wing-nut", &set, LARGE);
-    stage.commands("pause = true").shows("no exact motion");
+    stage.commands("pause = true").shows("NO EXACT MOTION");
     assert!(stage.lab.player().run().overlay().is_none());
     let words = "its exact motion must be integrated, which would take too long for 4000000000 s: it is left out";
     stage.press("tt").shows(words);

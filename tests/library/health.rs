@@ -726,7 +726,7 @@ fn the_lab_advises_where_the_nutation_does_not_hold() {
     ];
     let mut stage = Stage::open("wobble-push", &set, SMALL);
     stage.commands("pause = true\ngo_to = 3000").wait(1.0);
-    stage.press("a").shows("dt 0.002 s from the start");
+    stage.press("a").shows("dt 0.002 s");
     stage.wait(1.0);
     stage.press("a").shows("nothing to fix");
 }

@@ -23,18 +23,18 @@ fn footer_begins(stage: &Stage, words: &str) {
 fn the_footer_has_the_keys_of_a_pane_once_that_was_touched() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.commands("pause = true");
-    let first = " space run . , step p push t exact e edit o open L lessons x CSV ? help";
+    let first = " space run  . , step  p push  t exact  e edit  o open  L lessons  x CSV  ? help";
     footer_begins(&stage, first);
     stage.key(Key::Left);
     stage.wait(6.0);
-    footer_begins(&stage, " Left cursor space run");
+    footer_begins(&stage, " Left cursor");
     has_all(&footer(&stage), ["space run", "L lessons", "? help"]);
     // From the values, back to the run.
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.press("e");
     footer_begins(&stage, " / find");
     stage.key(Key::Esc);
-    footer_begins(&stage, " space pause . , step");
+    footer_begins(&stage, " space pause  . , step");
 }
 
 #[test]

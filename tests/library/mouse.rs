@@ -238,7 +238,7 @@ fn health_predictions_and_all_but_two_panes_are_hidden_in_the_settings() {
     stage.press("c↓→\u{1b}").shows_no("predicted");
     stage.press("c↓←\u{1b}").shows("predicted");
     stage.press("c↓↓\n\u{1b}").wait(6.0);
-    stage.shows("from above").shows("over time");
+    stage.shows("from above").shows("z (m)");
     stage.shows("Method 2 ");
     for words in "values,L lessons,times per step,lmost a circle,report,step 6".split(',') {
         stage.shows_no(words);

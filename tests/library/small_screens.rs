@@ -61,7 +61,7 @@ fn a_form_says_how_it_is_left() {
     for key in ["g", "S", "X", "x"] {
         let mut stage = Stage::open("cusps", &[], TEACHERS);
         stage.wait(0.3).commands("pause = true");
-        stage.press(key).shows("Enter").shows("Esc leaves it");
+        stage.press(key).shows("Enter").shows("Esc: cancel");
     }
 }
 
@@ -77,12 +77,12 @@ fn a_long_message_has_the_rows_that_it_needs() {
     );
     // Without a note there is one row for it, and that of the verdict, which comes back.
     stage.commands("hide = ['look_at']").wait(6.0);
-    stage.shows("NOT RELIABLE").press("m");
+    stage.shows("reliable:").press("m");
     let notice = stage.lab.notice().unwrap();
     assert!(
         notice.len() > 38 && said(&stage).contains(&notice),
         "{notice}"
     );
-    stage.shows_no("NOT RELIABLE").wait(6.0);
-    stage.shows("NOT RELIABLE");
+    stage.shows_no("reliable:").wait(6.0);
+    stage.shows("reliable:");
 }

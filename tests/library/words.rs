@@ -137,10 +137,10 @@ fn esc_leaves_the_values_where_they_fill_the_screen() {
 fn the_clock_has_the_digits_of_the_shortest_step() {
     let mut stage = Stage::open("cusps", &[], SMALL);
     stage.commands("pause = true\ngo_to = 1468").wait(0.5);
-    stage.shows("t    1.468 s");
+    stage.shows("t  1.468 s");
     stage.commands("set = { \"motion.time_step_s\" = 5 }");
     stage.wait(0.5);
-    stage.shows("t    1.468 s");
+    stage.shows("t  1.468 s");
 }
 
 #[test]

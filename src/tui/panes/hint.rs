@@ -22,10 +22,10 @@ pub fn lines_of_note(lab: &Lab, width: u16) -> u16 {
     lines_of(whole_sentences(&lab.note(), width), width)
 }
 
-/// As many sentences of `note` as fit in one row of a screen of this width, in two of a narrow one; all of it if not even
-/// the first fits.
+/// As many sentences of `note` as fit in one row of a screen of this width, or in three of a narrow one; all of it if not
+/// even the first fits.
 fn whole_sentences(note: &str, width: u16) -> &str {
-    let most_rows = if width < FULL_LAB.0 { 2 } else { 1 };
+    let most_rows = if width < FULL_LAB.0 { 3 } else { 1 };
     let ends = note.match_indices(". ").map(|(at, _)| &note[..=at]);
     ends.chain([note])
         .filter(|begin| lines_of(begin, width) <= most_rows)
