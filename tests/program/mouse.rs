@@ -38,12 +38,12 @@ fn what_is_pressed_is_done() {
     lab.press(&press((dot + 3, footer)));
     lab.wait_for_step(1);
     let open = cell(&lab, "o ?");
-    lab.ask(&press(open), "/ filters by name");
+    lab.ask(&press(open), "type to filter");
     let loops = cell(&lab, "loops");
     lab.ask(&press(loops), "> loops");
     lab.press(&press(loops));
     lab.wait_until("Loops", |lab| {
-        lab.screen().starts_with(" Loops") && !lab.words().contains("/ filters by name")
+        lab.screen().starts_with("Loops") && !lab.words().contains("type to filter")
     });
     // The wheel over the traces shows less time.
     lab.press(" ");
@@ -102,16 +102,14 @@ fn the_mouse_can_stay_with_the_terminal() {
 }
 
 #[test]
-fn without_a_name_the_lab_goes_on_at_the_end() {
-    let mut lab = Terminal::open("--paused --at 2290");
-    lab.wait_for("L lessons");
-    lab.press(" ");
-    lab.wait_until("a step beyond the end", |lab| lab.step() > Some(2400));
-    lab.wait_for("t draws the exact motion");
-    lab.quit();
-    let mut lab = Terminal::open("method-2 --paused --at 2290");
-    lab.wait_for("L lessons");
-    lab.ask(" ", "end of the run: space goes on");
-    lab.wait_for_step(2300);
-    lab.quit();
+fn the_lab_stops_once_at_the_end_with_and_without_a_name() {
+    for name in ["", "method-2"] {
+        let mut lab = Terminal::open(&format!("{name} --paused --at 2290"));
+        lab.wait_for("L lessons");
+        lab.ask(" ", "end of the run: space goes on");
+        lab.wait_for_step(2300);
+        lab.press(" ");
+        lab.wait_until("a step beyond the end", |lab| lab.step() > Some(2310));
+        lab.quit();
+    }
 }
