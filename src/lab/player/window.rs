@@ -34,7 +34,9 @@ const HOLD: Duration = Duration::from_secs(1);
 /// The window jumps by this share of its length where the run leaves it.
 const JUMP: f64 = 0.5;
 /// By how much a range is extended where the curve leaves it, as a share of the range.
-const EXTENSION: f64 = 0.1;
+const EXTENSION: f64 = 0.3;
+/// A range stays in the next window if that needs more than this share of it: successive pictures then match.
+const KEPT_RANGE: f64 = 0.9;
 
 /// The swings of a run as its steps show them.
 #[derive(Clone, Copy)]
@@ -225,8 +227,11 @@ impl Player {
                 self.extent(window, curve, comparison),
                 self.least_range(curve),
             );
+            let range = before.range(curve);
             if self.is_running() && is_same {
-                extended(before.range(curve), tight)
+                extended(range, tight)
+            } else if window.is_held && before.is_held && nearly_fills(tight, range) {
+                range
             } else {
                 tight
             }
@@ -316,6 +321,12 @@ fn widened(extent: Extent, least: f64) -> Extent {
         min: extent.min - 0.5 * missing,
         max: extent.max + 0.5 * missing,
     }
+}
+
+/// Returns true if `extent` is inside `range` and has most of it.
+fn nearly_fills(extent: Extent, range: Extent) -> bool {
+    let is_inside = extent.min >= range.min && extent.max <= range.max;
+    is_inside && extent.max - extent.min > KEPT_RANGE * (range.max - range.min)
 }
 
 /// Returns `range`, extended where `extent` leaves it.

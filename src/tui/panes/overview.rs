@@ -180,7 +180,12 @@ impl<'a> Overview<'a> {
         let run = self.lab.player().run();
         let mut canvas = Canvas::new(self.sheet, view.marker);
         let bins = self.span.bins(run.recording());
-        let extents = bins.columns(RecordedCurve::Z, &self.marks.edits);
+        let mut extents = bins.columns(RecordedCurve::Z, &self.marks.edits);
+        if view.window.is_held {
+            // It grows with each window: little is sent between two of them.
+            let drawn = self.span.shown(self.span.begin_s, view.window.end_s);
+            extents[drawn.end..].fill(None);
+        }
         let columns = rows(&extents, &self.scale, canvas.height());
         let shown = self.span.shown(view.window.begin_s, view.window.end_s);
         let layer = |x: usize| {

@@ -8,8 +8,7 @@ use crate::lab::playback::scale::StripScale;
 use crate::lab::view::FourthStrip;
 
 /// The fewest rows of a strip, with its rule, and the fewest with which a fourth strip joins the others by itself.
-const LEAST_ROWS: u16 = 3;
-const ROWS_OF_CHOSEN: u16 = 4;
+const LEAST_ROWS: u16 = 4;
 const ROWS_OF_FOURTH: u16 = 9;
 /// The least range of measured quantities, as a share of their size.
 const SHARE_LEAST: f64 = 1e-3;
@@ -48,7 +47,8 @@ impl Traces<'_> {
         contents
     }
 
-    /// Returns x, y and z, and a fourth strip if there is room. A chosen one takes the place of y where there is not.
+    /// Returns x, y and z, and a fourth strip if there is room. If there is not, a chosen one takes the place of y. On few
+    /// rows z is alone.
     fn curves(&self, height: u16) -> Vec<StripContent> {
         let [x, y, z, tilt] = RecordedCurve::ALL.map(StripContent::Curve);
         let (fourth, is_chosen) = match self.0.view.look.detail_of {
@@ -64,17 +64,13 @@ impl Traces<'_> {
             FourthStrip::Tilt => (Some(tilt), true),
             FourthStrip::X | FourthStrip::Y | FourthStrip::Z => (None, false),
         };
-        let count = height / LEAST_ROWS;
-        match (fourth, count) {
-            (_, 0 | 1) => vec![z],
-            (None, 2) => vec![x, z],
-            (None, _) => vec![x, y, z],
-            (Some(fourth), 2) if is_chosen => vec![z, fourth],
-            (Some(_), 2) => vec![x, z],
-            (Some(fourth), _) if height >= 4 * ROWS_OF_FOURTH => vec![x, y, z, fourth],
-            (Some(_), _) if !is_chosen => vec![x, y, z],
-            (Some(fourth), _) if height >= 4 * ROWS_OF_CHOSEN => vec![x, y, z, fourth],
-            (Some(fourth), _) => vec![x, z, fourth],
+        match fourth {
+            Some(fourth) if is_chosen && height < 3 * LEAST_ROWS => vec![z, fourth],
+            _ if height < 3 * LEAST_ROWS => vec![z],
+            Some(fourth) if height >= 4 * ROWS_OF_FOURTH => vec![x, y, z, fourth],
+            Some(fourth) if is_chosen && height >= 4 * LEAST_ROWS => vec![x, y, z, fourth],
+            Some(fourth) if is_chosen => vec![x, z, fourth],
+            _ => vec![x, y, z],
         }
     }
 
