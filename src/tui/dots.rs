@@ -54,6 +54,19 @@ fn half_block(bits: u8) -> char {
     }
 }
 
+/// The stand-in for `symbol` on the Linux console, whose fonts have the 256 characters of the old PC; `None` if they have it.
+pub fn on_console(symbol: &str) -> Option<&'static str> {
+    Some(match symbol {
+        "━" => "═",
+        "╴" | "╌" => "─",
+        "┃" | "▏" | "▕" => "│",
+        "◊" => "♦",
+        "−" => "-",
+        "³" => "3",
+        _ => return None,
+    })
+}
+
 /// `symbol` in ASCII, for terminals whose locale is not UTF-8: a stand-in of the same width.
 pub fn ascii(symbol: &str) -> &'static str {
     match symbol {
@@ -63,11 +76,11 @@ pub fn ascii(symbol: &str) -> &'static str {
         "↑" => "^",
         "↓" => "v",
         "±" => "~",
-        "█" | "▀" | "■" | "━" | "┃" | "┏" | "┓" | "┗" | "┛" => "#",
+        "█" | "▀" | "■" | "┃" | "┏" | "┓" | "┗" | "┛" => "#",
         "│" => "|",
         "┌" | "┐" | "└" | "┘" | "├" | "┤" => "+",
         "×" => "x",
-        "═" => "=",
+        "═" | "━" => "=",
         "°" => ",",
         "▲" => "^",
         "▼" => "v",

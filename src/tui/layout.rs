@@ -22,7 +22,7 @@ const NOTE_FROM: u16 = 12;
 /// Rows of the overview: a rule, the curve, and a ruler; and the height of the screen from which they are.
 const OVERVIEW_ROWS: [(u16, u16); 3] = [(44, 6), (36, 5), (24, 4)];
 /// The note has up to three rows below the first of these widths, and two below the second.
-const NOTE_COLUMNS: (u16, u16) = (60, 120);
+pub const NOTE_COLUMNS: (u16, u16) = (60, 120);
 
 /// The fewest and the most columns of the traces, and their share of the screen at 80 and at 120 columns, per mille.
 const TRACES_COLUMNS: (u16, u16) = (28, 96);

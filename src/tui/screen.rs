@@ -88,8 +88,10 @@ pub fn draw(lab: &Lab, keys: bool, area: Rect, buf: &mut Buffer) {
     }
     chrome::keys(lab, places.keys, buf);
     draw_popup(lab, &places, buf);
-    if lab.view().marker == Marker::Ascii {
-        to_ascii(area, buf);
+    match lab.view().marker {
+        Marker::Ascii => to_ascii(area, buf),
+        Marker::HalfBlock => to_console(area, buf),
+        Marker::Braille | Marker::Octant | Marker::Dot => {}
     }
 }
 
@@ -147,6 +149,17 @@ pub(super) fn popup_place(lab: &Lab, layout: &ScreenLayout) -> Rect {
         body
     } else {
         split_rows(body, message.y.saturating_sub(body.y))[0]
+    }
+}
+
+/// Nothing that the fonts of the Linux console lack.
+fn to_console(area: Rect, buf: &mut Buffer) {
+    for position in area.positions() {
+        if let Some(cell) = buf.cell_mut(position)
+            && let Some(symbol) = dots::on_console(cell.symbol())
+        {
+            cell.set_symbol(symbol);
+        }
     }
 }
 

@@ -7,6 +7,7 @@ use gyrolab::tui::app;
 use gyrolab::tui::layout::ScreenLayout;
 use gyrolab::tui::mouse::Pointer;
 use gyrolab::tui::mouse::{Did, Mouse};
+use gyrolab::tui::panes::overview::Overview;
 use gyrolab::tui::screen;
 use ratatui::layout::Rect;
 
@@ -66,22 +67,20 @@ fn a_press_on_the_traces_sets_the_cursor_and_a_drag_moves_it() {
     for size in [SMALL, LARGE] {
         let mut desk = Desk::open("method-2", size);
         let traces = desk.pane("traces");
-        let middle = |x: u16| (x, traces.bottom() - 3);
-        // The strips show 230 s, of which 40 have been; below them stands "100" at its time.
-        desk.does(Did::Press, middle(traces.x + 4));
-        let early = desk.cursor_s();
-        let is_early = early.is_some_and(|time_s| (20.0..40.0).contains(&time_s));
-        assert!(size != SMALL || is_early, "{early:?}");
-        desk.does(Did::Press, middle(traces.right() - 2));
-        let latest = desk.cursor_s();
-        assert_eq!(latest, Some(desk.stage.lab.player().run().now().time_s));
+        let at = |share: u16| (traces.x + traces.width * share / 10, traces.bottom() - 3);
+        desk.does(Did::Press, at(4));
+        let early = desk.cursor_s().unwrap();
+        desk.does(Did::Press, at(9));
+        let late = desk.cursor_s().unwrap();
+        let now_s = desk.stage.lab.player().run().now().time_s;
+        assert!(early < late && late <= now_s, "{early}, {late} of {now_s}");
         assert_eq!(desk.stage.focus(), "traces");
-        desk.does(Did::Drag, middle(traces.x + traces.width / 8));
-        let dragged = desk.cursor_s();
-        assert!(dragged < latest, "{dragged:?}");
-        desk.does(Did::Release, middle(traces.x + 1));
-        desk.does(Did::Drag, middle(traces.right() - 2));
-        assert_eq!(desk.cursor_s(), dragged, "it was released");
+        desk.does(Did::Drag, at(6));
+        let dragged = desk.cursor_s().unwrap();
+        assert!(early < dragged && dragged < late, "{dragged}");
+        desk.does(Did::Release, at(2));
+        desk.does(Did::Drag, at(9));
+        assert_eq!(desk.cursor_s(), Some(dragged), "it was released");
     }
 }
 
@@ -95,7 +94,7 @@ fn the_cursor_stands_in_the_column_that_was_pressed() {
         desk.does(Did::Press, (x, y));
         let picture = desk.stage.picture();
         let line = picture.lines().nth(y as usize).unwrap();
-        let found = line.chars().position(|sign| sign == '┃');
+        let found = line.chars().position(|sign| sign == '│');
         // A curve may hide the cursor here.
         if let Some(found) = found {
             assert!(found.abs_diff(x.into()) <= 1, "{x}: {line}");
@@ -113,15 +112,20 @@ fn a_press_selects_a_pane_goes_to_a_place_and_does_a_key() {
         desk.does(Did::Press, (pane.x + 2, pane.y));
         assert_eq!(desk.stage.focus(), id);
     }
-    let timeline = desk.layout().overview;
-    desk.does(Did::Press, (timeline.x + 1, timeline.y));
+    let overview = desk.layout().overview;
+    let has_time = |x: &u16| {
+        let drawn = Overview::new(&desk.stage.lab, overview);
+        drawn.is_some_and(|drawn| drawn.time_s(*x).is_some())
+    };
+    let first = (overview.left()..overview.right()).find(has_time).unwrap();
+    let last = (overview.left()..overview.right()).rfind(has_time).unwrap();
+    desk.does(Did::Press, (first, overview.y + 1));
     assert_eq!(desk.stage.step(), 0);
-    let end = desk.place("230 s").0;
-    desk.does(Did::Drag, (end - 2, timeline.y));
+    desk.does(Did::Drag, (last, overview.y + 1));
     // A drag goes no further than the run has been.
     assert_eq!(desk.stage.step(), 400);
-    desk.does(Did::Release, (end - 2, timeline.y));
-    desk.does(Did::Press, (end - 2, timeline.y));
+    desk.does(Did::Release, (last, overview.y + 1));
+    desk.does(Did::Press, (last, overview.y + 1));
     desk.stage.wait(1.0);
     assert_eq!(desk.stage.step(), 2300);
     let help = desk.place("? help");
@@ -136,11 +140,13 @@ fn a_press_selects_a_pane_goes_to_a_place_and_does_a_key() {
 fn the_wheel_zooms_and_a_drag_turns_the_view_in_space() {
     let mut desk = Desk::open("method-2", LARGE);
     let traces = desk.pane("traces");
-    let before = desk.stage.lab.view().look.window_s;
-    desk.does(Did::WheelUp, (traces.x + 5, traces.y + 5));
-    assert!(desk.stage.lab.view().look.window_s < before);
-    desk.does(Did::WheelDown, (traces.x + 5, traces.y + 5));
-    assert_eq!(desk.stage.lab.view().look.window_s, before);
+    let length_s = |desk: &Desk| desk.stage.lab.view().window.length_s();
+    let before = length_s(&desk);
+    let middle = (traces.x + traces.width / 2, traces.y + 5);
+    desk.does(Did::WheelUp, middle);
+    assert!(length_s(&desk) < before);
+    desk.does(Did::WheelDown, middle);
+    assert!((length_s(&desk) / before - 1.0).abs() < 1e-6);
     let scene = desk.pane("3d");
     let camera = desk.stage.lab.view().camera;
     let from = (scene.x + 10, scene.y + 5);
@@ -232,11 +238,11 @@ fn a_mouse_outside_or_one_that_is_the_terminals_does_nothing() {
 fn health_predictions_and_all_but_two_panes_are_hidden_in_the_settings() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.wait(3.0).commands("pause = true");
-    stage.shows("times per step").shows("predicted");
+    stage.shows("times per step").shows("1.588");
     stage.press("c\n\u{1b}").shows_no("times per step");
     stage.press("c\n\u{1b}").shows("times per step");
-    stage.press("c↓→\u{1b}").shows_no("predicted");
-    stage.press("c↓←\u{1b}").shows("predicted");
+    stage.press("c↓→\u{1b}").shows_no("1.588");
+    stage.press("c↓←\u{1b}").shows("1.588");
     stage.press("c↓↓\n\u{1b}").wait(6.0);
     stage.shows("from above").shows("z (m)");
     stage.shows("Method 2 ");
@@ -245,7 +251,7 @@ fn health_predictions_and_all_but_two_panes_are_hidden_in_the_settings() {
     }
     let title = format!("Method 2{:>71}", "t     60.0 s");
     assert_eq!(stage.picture().lines().next().unwrap().trim_end(), title);
-    stage.press("c↓↓\n\u{1b}").shows("parameters");
+    stage.press("c↓↓\n\u{1b}").shows("values");
     stage.shows("L lessons");
 }
 

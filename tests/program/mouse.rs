@@ -25,19 +25,20 @@ fn what_is_pressed_is_done() {
     lab.wait_for("L lessons");
     lab.wait_until("the mouse", |lab| lab.sent_text().contains(MOUSE_ON));
     // The traces: the cursor.
-    lab.ask(&press((6, 18)), "┌ step ");
-    // A pane, by its frame.
-    let pane = cell(&lab, "parameters");
-    lab.ask(&press(pane), "parameters 1 of");
-    // The timeline: its first column is the start.
-    let (_, timeline) = cell(&lab, " 230 s");
-    lab.press(&press((2, timeline)));
-    lab.wait_for_step(0);
-    // The footer: a step, and the list of presets.
-    let (dot, footer) = cell(&lab, ". step");
-    lab.press(&press((dot + 3, footer)));
-    lab.wait_for_step(1);
-    let open = cell(&lab, "o ?");
+    lab.ask(&press((20, 14)), "◊");
+    // A pane, by its rule.
+    let pane = cell(&lab, "values");
+    lab.ask(&press(pane), "/ find");
+    // The overview: near its left end is the start.
+    let (_, overview) = cell(&lab, "whole run");
+    lab.press(&press((9, overview + 1)));
+    lab.wait_until("the start", |lab| lab.step().is_some_and(|step| step < 100));
+    let before = lab.step().unwrap();
+    // The keys: a step, and the list of presets.
+    let steps = cell(&lab, ". , step");
+    lab.press(&press(steps));
+    lab.wait_for_step(before + 1);
+    let open = cell(&lab, "o open");
     lab.ask(&press(open), "type to filter");
     let loops = cell(&lab, "loops");
     lab.ask(&press(loops), "> loops");
@@ -47,9 +48,8 @@ fn what_is_pressed_is_done() {
     });
     // The wheel over the traces shows less time.
     lab.press(" ");
-    lab.ask("\u{1b}[<64;6;6M", "the traces show 5 s");
-    let end = cell(&lab, "L lessons");
-    lab.press(&press(end));
+    lab.ask("\u{1b}[<64;16;6M", "the traces show");
+    lab.press("q");
     assert_eq!(lab.wait_for_end().exit_code(), 0);
     lab.has_given_the_terminal_back();
 }

@@ -6,7 +6,7 @@ use crate::engine::text::wrap::wrapped;
 use crate::lab::dialog::Dialog;
 use crate::lab::view::Pane;
 use crate::lab::{Lab, MOST_COUNTED};
-use crate::tui::layout::{FULL_LAB, ScreenLayout};
+use crate::tui::layout::{FULL_LAB, NOTE_COLUMNS, ScreenLayout};
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -22,10 +22,14 @@ pub fn lines_of_note(lab: &Lab, width: u16) -> u16 {
     lines_of(whole_sentences(&lab.note(), width), width)
 }
 
-/// As many sentences of `note` as fit in one row of a screen of this width, or in three of a narrow one; all of it if not
+/// As many sentences of `note` as fit in one row of a screen of this width, or in two or three of a narrow one; all of it if not
 /// even the first fits.
 fn whole_sentences(note: &str, width: u16) -> &str {
-    let most_rows = if width < FULL_LAB.0 { 3 } else { 1 };
+    let most_rows = match width {
+        width if width < NOTE_COLUMNS.0 => 3,
+        width if width < FULL_LAB.0 => 2,
+        _ => 1,
+    };
     let ends = note.match_indices(". ").map(|(at, _)| &note[..=at]);
     ends.chain([note])
         .filter(|begin| lines_of(begin, width) <= most_rows)
