@@ -4,7 +4,7 @@ use crate::support::scenarios::resumed;
 use crate::support::stage::{LARGE, SMALL, Stage};
 use gyrolab::lab::lessons_in;
 use gyrolab::lab::sheet::SheetLineKind;
-use gyrolab::lab::view::HideablePart;
+use gyrolab::lab::view::{HideablePart, Pane};
 use gyrolab::lessons::predictions::Tried;
 use gyrolab::lessons::{Lessons, PredictionAnswer, reading, shipped};
 use std::fs;
@@ -272,12 +272,17 @@ fn a_file_that_could_keep_the_lab_waiting_is_refused() {
 
 /// The words of the page on the screen, in one line.
 fn page_on_screen(stage: &Stage) -> String {
+    let layout = gyrolab::tui::screen::layout(&stage.lab, true, stage.size);
+    let place = layout.place_of(Pane::Lesson).unwrap();
+    let (x, width) = (place.x.into(), place.width.into());
+    let mut text = String::new();
     let picture = stage.picture();
-    let lines = picture.lines().filter_map(|line| line.strip_prefix('│'));
-    let words = lines
-        .filter_map(|line| line.split('│').next())
-        .flat_map(str::split_whitespace);
-    words.collect::<Vec<_>>().join(" ")
+    let rows = picture.lines().skip(usize::from(place.y) + 1);
+    for line in rows.take(usize::from(place.height) - 1) {
+        text.extend(line.chars().skip(x).take(width));
+        text.push('\n');
+    }
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// What must be whole on the screen when a page opens.
@@ -440,7 +445,7 @@ fn a_long_page_begins_at_its_top_and_scrolls() {
     let text = format!("# Long\n\n## Page\n\n{long}\n\n## Two\n\nx\n\n## Three\n\nLast words.\n");
     let (mut stage, _folder, name) = with(&text);
     stage.lesson(&name, 1);
-    stage.shows("│Page").shows("PgDn: more");
+    stage.shows("\nPage").shows("PgDn: more");
     for _ in 0..20 {
         stage.key(gyrolab::tui::keymap::Key::PageDown);
     }
@@ -499,12 +504,14 @@ x
 }
 
 #[test]
-fn keys_that_fill_the_screen_lead_back_to_the_page() {
+fn the_3d_view_and_a_pane_that_fills_the_screen_lead_back_to_the_page() {
     let (mut stage, _folder, _) = taken(1);
-    stage.press("d").shows("Esc to the page").shows_no("1 of 4");
+    stage.press("d").shows("3-D").shows("1 of 4");
+    assert_eq!(stage.focus(), "3d");
     stage.press("d").shows("1 of 4");
     assert_eq!(stage.focus(), "lesson");
-    stage.press("d\u{1b}").shows("1 of 4");
+    stage.press("df").shows_no("1 of 4").press("\u{1b}");
+    stage.shows("1 of 4");
     assert_eq!(stage.focus(), "lesson");
 }
 

@@ -9,11 +9,9 @@ use std::fs;
 use std::thread;
 use std::time::{Duration, Instant};
 
-const DOWN: &str = "\u{1b}[B";
 const RIGHT: &str = "\u{1b}[C";
 const LEFT: &str = "\u{1b}[D";
 const ESC: &str = "\u{1b}";
-const TO_THE_TOP: &str = "99\u{1b}[A";
 const CTRL_Z: &str = "\u{1a}";
 /// Ctrl-U: clears the field of a dialog.
 const CLEAR: &str = "\u{15}";
@@ -41,13 +39,15 @@ fn answer(lab: &mut Terminal, text: &str) {
     lab.press(&format!("{CLEAR}{text}\r"));
 }
 
-/// Selects the `row`th value of those that can be edited: 1 gravity, 3 dt, 5 tilt.
+/// Selects the value that is found by `name`.
 #[track_caller]
-fn select(lab: &mut Terminal, row: usize) {
-    lab.press("e");
-    lab.ask(TO_THE_TOP, "parameters 1 of");
-    let down = DOWN.repeat(row - 1);
-    lab.ask(&down, &format!("parameters {row} of"));
+fn select(lab: &mut Terminal, name: &str) {
+    lab.press("/");
+    lab.ask(name, &format!("/{name}_"));
+    lab.press(ESC);
+    lab.wait_until("all values", |shown| {
+        !shown.words().contains(&format!("/{name}"))
+    });
 }
 
 /// Types `value` for the value that is selected: the run begins again with it.
@@ -117,9 +117,9 @@ fn run(ground: &Ground, name: &str) -> Vec<u8> {
 }
 
 /// Step, time and place of the axle top, as they are shown.
-fn shown(lab: &Terminal) -> [Vec<String>; 3] {
-    let shown = ["x", "y", "z"].map(|axis| lab.values(axis));
-    let is_whole = shown.iter().all(|value| !value.is_empty());
+fn shown(lab: &Terminal) -> [Option<String>; 3] {
+    let shown = ["x m", "y m", "z m"].map(|label| lab.value(label));
+    let is_whole = shown.iter().all(Option::is_some);
     assert!(is_whole, "{}", lab.screen());
     shown
 }
@@ -128,35 +128,35 @@ fn shown(lab: &Terminal) -> [Vec<String>; 3] {
 fn a_value_is_nudged_and_typed_refused_and_taken_back() {
     let ground = Ground::new();
     let mut lab = paused_at(&ground, 100);
-    select(&mut lab, 3);
-    lab.wait_for("►dt 0.1 s");
-    lab.ask(RIGHT, "►dt 0.2 s");
+    select(&mut lab, "dt");
+    lab.wait_for("dt 0.1 s");
+    lab.ask(RIGHT, "dt 0.2 s");
     set(&mut lab, "0.05");
-    lab.wait_for("►dt 0.05 s");
+    lab.wait_for("dt 0.05 s");
     for (value, why) in [("-1", "greater than zero"), ("soon", "number")] {
         set(&mut lab, value);
         lab.wait_for(why);
-        lab.wait_for(&format!("dt, s {value}_")); // it stays, to be corrected
+        lab.wait_for(&format!("{value}_")); // it stays, to be corrected
         lab.ask(ESC, "L lessons");
-        lab.wait_for("►dt 0.05 s");
+        lab.wait_for("dt 0.05 s");
     }
     set(&mut lab, "-1");
     lab.wait_for("greater than zero");
     answer(&mut lab, "0.02");
-    lab.wait_for("►dt 0.02 s");
+    lab.wait_for("dt 0.02 s");
     for dt in ["0.05", "0.2", "0.1"] {
-        lab.ask("u", &format!("►dt {dt} s"));
+        lab.ask("u", &format!("dt {dt} s"));
     }
     lab.ask("u", "nothing to undo");
     for dt in ["0.2", "0.05"] {
-        lab.ask("U", &format!("►dt {dt} s"));
+        lab.ask("U", &format!("dt {dt} s"));
     }
     lab.wait_for_step(200);
     let run = saved(&mut lab, "run.toml");
     assert_eq!(run.matches("[[edit]]").count(), 0, "{run}");
     has(&run, "\ntime_step_s = 0.05\n");
     set_from_now_on(&mut lab, "0.1");
-    lab.wait_for("►dt 0.1 s");
+    lab.wait_for("dt 0.1 s");
     steps(&mut lab, ".", 201);
     let edited = saved(&mut lab, "edited.toml");
     has(&edited, "[[edit]]\nstep = 200\n");
@@ -170,15 +170,15 @@ fn an_export_is_the_run_that_was_saved() {
     let ground = Ground::new();
     let mut lab = paused_at(&ground, 50);
     push(&mut lab);
-    select(&mut lab, 1);
+    select(&mut lab, "gravity");
     steps(&mut lab, "30.", 80);
     lab.press(RIGHT);
     steps(&mut lab, "20.", 100);
     lab.press("15,");
     lab.wait_for_step(85);
-    lab.press(&format!("{DOWN}{DOWN}"));
+    select(&mut lab, "dt");
     set_from_now_on(&mut lab, "0.025");
-    lab.wait_for("►dt 0.025 s");
+    lab.wait_for("dt 0.025 s");
     steps(&mut lab, "200.", 285);
     lab.ask("x", "286 rows, about");
     lab.ask("\t", "every 1_");
@@ -218,13 +218,13 @@ fn the_present_state_is_saved_as_a_scenario_that_runs() {
     lab.ask("S", "save the present state");
     answer(&mut lab, "here.toml");
     lab.wait_for("the scenario is in");
-    let z = shown(&lab)[2].last().cloned();
+    let z = shown(&lab)[2].clone();
     lab.quit();
     ground.stdout("check here.toml");
     assert!(run(&ground, "here.toml").starts_with(b"# "));
     let begins = ground.open("here.toml --paused");
     begins.wait_until("the z of the saved state", |begins| {
-        begins.values("z").last().cloned() == z
+        begins.value("z m") == z
     });
 }
 
@@ -354,9 +354,11 @@ fn all_of_it_at_every_size_and_back_with_resume() {
     lab.press("20.");
     lab.resize((200, 50));
     lab.wait_for_step(60);
-    select(&mut lab, 3);
+    select(&mut lab, "dt");
     lab.resize((40, 10));
-    set_from_now_on(&mut lab, "0.05");
+    lab.press("\r");
+    lab.press("\t");
+    answer(&mut lab, "0.05");
     lab.resize((1, 1));
     lab.press("40.");
     lab.press("s"); // a dialog that nobody sees
@@ -365,7 +367,7 @@ fn all_of_it_at_every_size_and_back_with_resume() {
     lab.press("small.toml\r");
     lab.resize((80, 24));
     lab.wait_for("the run is in");
-    lab.wait_for_value("dt", "0.05");
+    lab.wait_for("dt 0.05 s");
     lab.press(" ");
     lab.wait_until("a run that plays", |lab| {
         lab.step().is_some_and(|step| step > 105)
@@ -383,24 +385,24 @@ fn all_of_it_at_every_size_and_back_with_resume() {
     assert_eq!(second.step(), Some(step));
     assert_eq!(saved(&mut second, "after.toml"), before);
     second.ask("u", "undone: motion.time_step_s = 0.05, at step 60");
-    second.wait_for_value("dt", "0.1");
+    second.wait_for("dt 0.1 s");
     second.ask("u", "undone: the push on top, at step 40");
     second.wait_for_step(40);
     second.ask("u", "nothing to undo");
     second.press("U");
     second.press("U");
-    second.wait_for_value("dt", "0.05");
+    second.wait_for("dt 0.05 s");
     second.press("q");
     second.wait_for_end();
 
     // What was taken back stays so, and the other run is still there.
     let mut third = resumed(&ground);
     third.press("u");
-    third.wait_for_value("dt", "0.1");
+    third.wait_for("dt 0.1 s");
     third.quit();
     let mut fourth = resumed(&ground);
     fourth.press("U");
-    fourth.wait_for_value("dt", "0.05");
+    fourth.wait_for("dt 0.05 s");
     go_to(&mut fourth, step);
     assert_eq!(saved(&mut fourth, "again.toml"), before);
     fourth.quit();
@@ -413,7 +415,7 @@ fn a_screen_that_is_small_for_a_moment_is_drawn_again() {
     for small in [(1, 1), (79, 1), (40, 10), (1, 24)].repeat(3) {
         lab.resize(small);
         lab.resize((80, 24));
-        for words in ["Method 2", "parameters", "L lessons"] {
+        for words in ["Method 2", "values", "L lessons"] {
             lab.wait_for(words);
         }
     }
@@ -742,16 +744,16 @@ fn is_used_until_killed(lab: &mut Terminal, dice: &mut Dice, kill: usize) -> Kep
 fn changes_something(lab: &mut Terminal, dice: &mut Dice) {
     match dice.whole(0, 7) {
         0 => push(lab),
-        1 => select(lab, 1),
+        1 => select(lab, "gravity"),
         2 => lab.press(&format!("3{}", dice.pick(&[LEFT, RIGHT]))),
         3 => go_to(lab, dice.whole(1, 500)),
         4 => lab.press(dice.pick(&["u", "2u", "U", "7,"])),
         5 => {
-            select(lab, 3);
+            select(lab, "dt");
             set(lab, dice.pick(&["0.05", "0.02", "0.1"]));
         }
         6 => {
-            select(lab, 5);
+            select(lab, "tilt");
             set(lab, dice.pick(&["30", "45", "60"]));
         }
         _ => lab.press(dice.pick(&[".", "30.", "m", "w", "t"])),

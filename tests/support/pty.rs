@@ -220,18 +220,17 @@ impl Terminal {
         rest.split_whitespace().next()?.parse().ok()
     }
 
-    /// The values shown in the lines `label` of the parameters pane.
-    pub fn values(&self, label: &str) -> Vec<String> {
+    /// The value of the run in the row `label`, a name and its unit, of the values pane at the right of the screen.
+    pub fn value(&self, label: &str) -> Option<String> {
         let screen = self.screen();
-        let cells = screen.split(['│', '\n']);
-        // The strips of the traces are headed by a name and a range.
-        let cells = cells.filter(|cell| !cell.contains(" .. "));
-        cells
-            .filter_map(|cell| {
-                let mut words = cell.trim_start_matches(['►', ' ']).split_whitespace();
-                (words.next()? == label).then(|| words.next().unwrap_or_default().to_owned())
-            })
-            .collect()
+        let heading = screen.lines().find_map(|line| line.split_once("values"));
+        let column = heading?.0.chars().count().saturating_sub(1);
+        let mut rows = screen.lines().filter_map(|line| {
+            let cells: String = line.chars().skip(column).collect();
+            let rest = cells.trim_start().strip_prefix(label)?;
+            rest.split_whitespace().next().map(str::to_owned)
+        });
+        rows.next()
     }
 
     #[track_caller]
@@ -243,17 +242,6 @@ impl Terminal {
     pub fn wait_for_step(&self, step: u64) {
         self.wait_until(&format!("step {step}"), |terminal| {
             terminal.step() == Some(step)
-        });
-    }
-
-    /// Waits until the last line `label` in the pane of parameters has this `value`.
-    #[track_caller]
-    pub fn wait_for_value(&self, label: &str, value: &str) {
-        self.wait_until(&format!("{label} {value}"), |terminal| {
-            terminal
-                .values(label)
-                .last()
-                .is_some_and(|shown| shown == value)
         });
     }
 

@@ -55,15 +55,14 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
         return;
     }
     let page = ScrolledPage::new(sheet, inside, view);
-    let shown = page.lines.iter().skip(page.first).zip(0..inside.height);
-    for (line, y) in shown {
+    for (line, y) in page.shown().zip(0..) {
         let mut x = line.x;
         for (text, style) in &line.pieces {
             x = write(inside, (x, y), text, *style, buf);
         }
     }
     let quiet = view.theme.style(Role::Label);
-    let below = page.lines.len() > page.first + inside.height as usize;
+    let below = page.has_more();
     let has_focus = view.focus == LESSON_ROW.id;
     let more = match (page.first > 0, below, has_focus) {
         (_, true, true) => " PgDn: more ",
@@ -94,10 +93,8 @@ pub fn scroll(lab: &mut Lab, direction: Direction, place: Rect) {
     let Some(sheet) = lab.view().sheet.clone() else {
         return;
     };
-    let inside = below_rule(place);
-    let shown = inside.height as usize;
-    let page = ScrolledPage::new(&sheet, inside, lab.view());
-    let (first, all) = (page.first, page.lines.len());
+    let page = ScrolledPage::new(&sheet, below_rule(place), lab.view());
+    let (first, shown, all) = (page.first, page.height, page.lines.len());
     let page_rows = shown.saturating_sub(1).max(1) as isize;
     lab.view_mut()
         .scroll_sheet(direction.rows(page_rows), first, shown, all);
@@ -105,11 +102,8 @@ pub fn scroll(lab: &mut Lab, direction: Direction, place: Rect) {
 
 /// Whether the page of `lab`, whose pane has the area `place`, goes on below what is shown.
 pub fn has_more(lab: &Lab, place: Rect) -> bool {
-    let inside = below_rule(place);
-    lab.view().sheet.as_ref().is_some_and(|sheet| {
-        let page = ScrolledPage::new(sheet, inside, lab.view());
-        page.lines.len() > page.first + inside.height as usize
-    })
+    let sheet = lab.view().sheet.as_ref();
+    sheet.is_some_and(|sheet| ScrolledPage::new(sheet, below_rule(place), lab.view()).has_more())
 }
 
 /// The number of the answer, or of the entry of a list, at the cell `at` of the screen where the page of `lab` has the area
@@ -120,8 +114,8 @@ pub fn choice_at(lab: &Lab, place: Rect, at: Position) -> Option<usize> {
         return None;
     }
     let page = ScrolledPage::new(sheet, inside, lab.view());
-    let line = page.first + usize::from(at.y - inside.y);
-    let paragraph = page.lines.get(line)?.paragraph?;
+    let line = page.shown().nth(usize::from(at.y - inside.y))?;
+    let paragraph = line.paragraph?;
     let choices = sheet.paragraphs.iter().take(paragraph + 1);
     let up_to_here = choices.filter(|other| matches!(other.kind, SheetLineKind::Choice { .. }));
     let is_choice = matches!(
@@ -134,6 +128,8 @@ pub fn choice_at(lab: &Lab, place: Rect, at: Position) -> Option<usize> {
 struct ScrolledPage {
     lines: Vec<LessonLine>,
     first: usize,
+    /// So many lines are shown. The last row is kept free for what the class says, and on a longer page for its keys.
+    height: usize,
 }
 
 impl ScrolledPage {
@@ -167,11 +163,25 @@ impl ScrolledPage {
                 seen.1 = lines.len();
             }
         }
-        let shown = inside.height as usize;
+        let rows = inside.height as usize;
+        let has_last_row = lines.len() > rows || !sheet.border.is_empty();
+        let shown = rows.saturating_sub(usize::from(has_last_row));
         let last = lines.len().saturating_sub(shown);
         let usual = seen.1.saturating_sub(shown).min(seen.0);
         let first = view.sheet_scrolled.unwrap_or(usual).min(last);
-        Self { lines, first }
+        Self {
+            lines,
+            first,
+            height: shown,
+        }
+    }
+
+    fn shown(&self) -> impl Iterator<Item = &LessonLine> {
+        self.lines.iter().skip(self.first).take(self.height)
+    }
+
+    fn has_more(&self) -> bool {
+        self.lines.len() > self.first + self.height
     }
 }
 
