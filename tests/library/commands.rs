@@ -501,7 +501,7 @@ fn what_view_holds_is_what_the_commands_do() {
         ("fill", "'above'", (80, 24)),
         ("window_s", "7.0", (80, 24)),
         ("detail_s", "2.0", (80, 24)),
-        ("detail_of", "'z'", (80, 24)),
+        ("detail_of", "'tilt'", (80, 24)),
         ("exact", "true", (80, 24)),
         ("camera", "{ yaw_deg = 90.0 }", (200, 50)),
         ("zoom", "{ above = 5.0 }", (80, 24)),

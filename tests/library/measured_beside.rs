@@ -14,7 +14,6 @@ use gyrolab::lab::storage::confined::Confined;
 use gyrolab::plot::{Paint, Point, SceneItem};
 use gyrolab::report::figure::of_runs::{self, DrawnFigure, FigureRun, KnownNumbers};
 use gyrolab::report::figure::{FigureSource, FigureSpec};
-use ratatui::layout::Rect;
 use std::fmt::Write;
 use std::fs;
 use std::ops::ControlFlow;
@@ -124,26 +123,22 @@ fn points_stand_on_strips_and_from_above_and_residuals_about_zero() {
 }
 
 #[test]
-fn on_a_small_screen_nothing_is_left_out_for_a_curve_shown_twice() {
+fn strips_show_what_was_measured_over_the_whole_run() {
     let scenario = preset("cusps", &[]);
     let columns = [("x_m", 0.05), ("tilt_deg", 0.6)];
     let (_folder, path) = file(&data(&scenario, &columns, |_| 0.5));
-    let strips = |height: u16| {
-        let mut stage = Stage::open("cusps", &[], Rect::new(0, 0, 80, height));
-        stage.commands(&format!(
-            "pause = true\nmeasured = '{}'\ngo_to = 9000",
-            path.display()
-        ));
-        let picture = stage.picture();
-        let names = picture
-            .lines()
-            .filter_map(|line| line.strip_prefix('│'))
-            .filter_map(|line| line.split(' ').next().map(str::to_owned))
-            .filter(|name| ["x", "y", "z", "tilt"].contains(&name.as_str()));
-        names.collect::<Vec<_>>()
-    };
-    assert_eq!(strips(24), ["tilt", "x", "y", "z", "tilt"]);
-    assert_eq!(strips(20), ["x", "y", "z", "tilt"]);
+    let mut stage = Stage::open("cusps", &[], SMALL);
+    stage.commands(&format!(
+        "pause = true\nmeasured = '{}'\ngo_to = 9000",
+        path.display()
+    ));
+    let picture = stage.picture();
+    let names = picture.lines().filter_map(|line| line.split_once(") ─"));
+    let names: Vec<_> = names.map(|(name, _)| name).collect();
+    assert_eq!(names[..2], ["x (m", "tilt (°"], "{picture}");
+    let window = stage.lab.view().window;
+    assert_eq!((window.begin_s, window.has_overview), (0.0, false));
+    stage.press("m").shows("tilt: measured - run (°)");
 }
 
 #[test]

@@ -95,7 +95,8 @@ impl Player {
         let before_s = view.window.end_s - view.window.begin_s;
         match (view.look.detail_s, swing) {
             (Some(chosen_s), _) => (chosen_s < span_s).then_some(chosen_s),
-            (None, Some(swing)) if self.is_fast(swing, span_s, view) => {
+            // Measured points are spread over the run.
+            (None, Some(swing)) if !view.measured && self.is_fast(swing, span_s, view) => {
                 Some(kept(view.swings as f64 * swing.period_s, before_s))
             }
             (None, _) => None,
