@@ -12,6 +12,8 @@ pub const AROUND_MARK: &[LabelOffset] = &[
     LabelOffset::Right(3, 0), LabelOffset::Right(2, -1), LabelOffset::Right(2, 1), LabelOffset::Left(2, 0),
     LabelOffset::Left(2, -1), LabelOffset::Left(2, 1), LabelOffset::Right(0, -1), LabelOffset::Right(0, 1),
     LabelOffset::Right(0, -2), LabelOffset::Right(0, 2), LabelOffset::Right(3, -2), LabelOffset::Right(3, 2),
+    LabelOffset::Right(4, 1), LabelOffset::Right(5, 0), LabelOffset::Left(-2, 2), LabelOffset::Left(-2, 3),
+    LabelOffset::Right(2, 3), LabelOffset::Right(2, -3),
 ];
 
 /// The places of a letter that belongs to a point.

@@ -61,7 +61,7 @@ fn after_a_scheme_broke_down_the_last_whole_body_is_shown() {
     let set = ["motion.scheme=rk4", "motion.time_step_s=0.03"];
     let mut stage = Stage::open("method-2", &set, LARGE);
     stage.wait(2.0).shows("no longer finite at step 31");
-    stage.shows("from above at step 29: then the scheme broke down");
+    stage.shows("from above (m) at step 29: then the scheme broke down");
     stage.shows("3-D at step 29: then the scheme broke down");
     let state = stage.lab.player().reading.state;
     assert!(state.is_a_rotation() && (state.time_s - 0.87).abs() < 1e-9);
@@ -84,7 +84,7 @@ fn after_a_scheme_broke_down_the_last_whole_body_is_shown() {
     );
     // In a narrow pane the title is shorter, and whole.
     let mut small = Stage::open("method-2", &set, SMALL);
-    small.wait(2.0).shows(" from above, step 29 ");
+    small.wait(2.0).shows("from above (m), step 29 ");
 }
 
 #[test]
@@ -97,7 +97,7 @@ fn at_120_columns_the_round_pictures_share_a_column() {
     };
     let (above, space, traces) = (place(Pane::Above), place(Pane::ThreeD), place(Pane::Traces));
     assert_eq!(
-        (above.x, above.width, above.bottom()),
+        (above.x, above.width, above.bottom() + 1),
         (space.x, space.width, space.y)
     );
     assert!(traces.width > 45 && above.width > 36, "{layout:?}");

@@ -104,6 +104,9 @@ fn stage(preset: &str, step: u64, more: &str) -> Stage {
     let mut stage = Stage::open(preset, &[], Rect::new(0, 0, 120, 40));
     stage.commands(&format!("pause = true\ngo_to = {step}\n{more}"));
     stage.wait(0.5);
+    while stage.lab.player().run().overlay_is_behind() {
+        stage.wait(0.1);
+    }
     stage
 }
 
@@ -150,8 +153,10 @@ fn the_exact_path_is_dashed_and_named_with_every_marker() {
 fn a_run_that_agrees_with_the_exact_motion_shows_both() {
     let stage = stage("cusps", 4000, "exact = true");
     let picture = draw(Pane::Above, &stage, SIZES[2]);
-    let (exact, run) = (picture.dots(Role::Exact), picture.dots(Role::Run));
-    assert!(exact.len() >= 15 && run.len() >= 15, "{}", picture.text());
+    let of_run = [Role::Run, Role::RunEarlier].map(|role| picture.dots(role).len());
+    let (exact, run) = (picture.dots(Role::Exact).len(), of_run[0] + of_run[1]);
+    let text = picture.text();
+    assert!(exact >= 15 && run >= 15, "{exact} and {run}\n{text}");
 }
 
 /// Of a fast run the shown moment is that of the latest reading, and so is the exact motion's.
@@ -207,9 +212,13 @@ fn from_above_the_scale_stays_while_the_run_keeps_to_theory() {
             let picture = draw(Pane::Above, &stage, SIZES[1]);
             places.push(picture.dots(Role::Rule));
         }
+        // The axis of x is in the row that has the most of its dots.
         let rows: Vec<_> = places
             .iter()
-            .map(|cells| cells.iter().map(|at| at.1).min())
+            .map(|cells| {
+                let of_row = |row: &u16| cells.iter().filter(|at| at.1 == *row).count();
+                (1..SIZES[1].1).max_by_key(of_row)
+            })
             .collect();
         let mut distinct = rows.clone();
         distinct.dedup();
@@ -287,7 +296,7 @@ fn the_scene_fills_its_pane() {
             let (across, down) = filled_share(&picture, size.1 >= 18);
             let larger = across.max(down);
             assert!(
-                larger >= 0.8,
+                larger >= 0.75,
                 "{preset} {size:?}: {across} {down}\n{}",
                 picture.text()
             );

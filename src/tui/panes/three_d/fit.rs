@@ -16,8 +16,8 @@ use ratatui::layout::Rect;
 
 /// Tilts are rounded to multiples of this, degrees, so that the scale does not change all the time.
 const TILT_DEG: f64 = 5.0;
-/// The same for the tilt of L.
-const MOMENTUM_TILT_DEG: f64 = 15.0;
+/// A tilt this near to such a multiple, degrees, may cross it: then the next one is shown too.
+const TILT_SLACK_DEG: f64 = 1.5;
 /// The floor is this far below everything, and the circle on it at least this large, in lengths of the axle.
 const FLOOR_GAP: f64 = 0.16;
 const LEAST_FLOOR: f64 = 0.35;
@@ -124,8 +124,8 @@ fn tilts_deg(seen: &PlotInputs<'_>) -> Vec<f64> {
         (low, high) = (low.min(least), high.max(most));
     }
     let (first, last) = (
-        (low / TILT_DEG).floor() as i32,
-        (high / TILT_DEG).ceil() as i32,
+        ((low - TILT_SLACK_DEG) / TILT_DEG).floor() as i32,
+        ((high + TILT_SLACK_DEG) / TILT_DEG).ceil() as i32,
     );
     (first..=last)
         .map(|tilt| f64::from(tilt) * TILT_DEG)
@@ -141,9 +141,11 @@ fn momentum_circles(seen: &PlotInputs<'_>, arm: f64) -> Vec<(f64, f64)> {
     let Some(axis) = momentum.try_normalize(f64::MIN_POSITIVE) else {
         return Vec::new();
     };
-    let tilt = libm::acos(axis.z.clamp(-1.0, 1.0)).to_degrees() / MOMENTUM_TILT_DEG;
-    let circles = [tilt.floor(), tilt.ceil()].map(|tilt| {
-        let (sin, cos) = libm::sincos((tilt * MOMENTUM_TILT_DEG).to_radians());
+    let tilt_deg = libm::acos(axis.z.clamp(-1.0, 1.0)).to_degrees();
+    let [lower, upper] = [-TILT_SLACK_DEG, TILT_SLACK_DEG].map(|slack| tilt_deg + slack);
+    let ends = [(lower / TILT_DEG).floor(), (upper / TILT_DEG).ceil()];
+    let circles = ends.map(|tilt| {
+        let (sin, cos) = libm::sincos((tilt * TILT_DEG).to_radians());
         let length = MOMENTUM_ARROW_LENGTH * arm;
         let radius = libm::hypot(length * sin, TORQUE_ARROW_LENGTH * arm);
         (radius, length * cos)
