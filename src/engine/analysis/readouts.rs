@@ -4,9 +4,11 @@
 //! A bare name is the live value of the run's last step. `predicted_...` is theory's, `measured_...` the run's own. What
 //! cannot be stated honestly is [`ReadoutValue::Nothing`], null in JSON: no number of it is ever NaN or infinite.
 
+mod summary_row;
 mod table;
 mod value_row;
 
+pub use summary_row::{SummaryPart, SummaryRow, summary_rows};
 pub use table::{READOUTS, Readout, ReadoutSource, find, names, nearest};
 pub use value_row::{ShownValue, ValueGroup, ValueRow, four_digits, value_rows};
 

@@ -1,5 +1,7 @@
 //! The table: a row for every readout, with its name, unit, source, meaning and formula.
 
+use super::summary_row::SummaryPart::{Further, Motion, State};
+use super::summary_row::{self, SummaryRow, summary};
 use super::value_row::{Tolerance, ValueRow, now, passes_through_vertical, so_far};
 use super::{ReadoutValue, Readouts};
 use crate::analysis::theory::AxlePath;
@@ -24,6 +26,8 @@ pub struct Readout {
     pub symbol: &'static str,
     /// Its row in the lab's values pane; `None` if it has none.
     pub row: Option<ValueRow>,
+    /// Its line in the summary of a run; `None` if it has none.
+    pub summary: Option<SummaryRow>,
     get: fn(&Readouts) -> ReadoutValue,
 }
 
@@ -227,9 +231,10 @@ macro_rules! optional {
 }
 
 /// Makes a row of each line: name, unit, source, meaning, how it is got of the readouts `r`, the symbol where it has one,
-/// and its row in the lab's values pane if it has one.
+/// its row in the lab's values pane and its line in
+/// the summary if it has one.
 macro_rules! readouts {
-    ($($name:literal, $unit:literal, $source:ident, $meaning:literal, |$r:ident| $get:expr $(, $symbol:literal)? $(=> $row:expr)?;)*) => {
+    ($($name:literal, $unit:literal, $source:ident, $meaning:literal, |$r:ident| $get:expr $(, $symbol:literal)? $(=> $row:expr)? $(, summary $summary:expr)?;)*) => {
         pub const READOUTS: &[Readout] = &[
             $(Readout {
                 name: $name,
@@ -240,6 +245,7 @@ macro_rules! readouts {
                 kind: kind(&|$r: &Readouts| $get),
                 symbol: concat!($($symbol)?),
                 row: optional!($($row)?),
+                summary: optional!($($summary)?),
                 get: |$r| $get.value(),
             }),*
         ];
@@ -248,34 +254,34 @@ macro_rules! readouts {
 
 readouts! {
     "title", "", Scenario, "the scenario's title", |r| r.title.clone();
-    "scheme", "", Scenario, "the numerical scheme in force", |r| r.scheme.to_owned();
+    "scheme", "", Scenario, "the numerical scheme in force", |r| r.scheme.to_owned() , summary summary(State, 0, "scheme", summary_row::scheme);
     "scheme_kind", "", Scenario, "how the scheme went about it, where it has more than one way", |r| r.scheme_kind.clone();
-    "steps", "", State, "time steps taken", |r| r.sample.step;
+    "steps", "", State, "time steps taken", |r| r.sample.step , summary summary(State, 1, "steps", summary_row::steps);
     "time_step_s", "s", Scenario, "the time step in force", |r| r.time_step_s, "Δ*t*";
-    "t_s", "s", State, "time", |r| r.sample.time_s, "*t*";
-    "x_m", "m", State, "traced point, world frame", |r| r.sample.position.x, "*x*" => now(0, "x", "x").of_moment(|moment| Some(moment.position.x)).decimals(4).off_by(Tolerance::OfArm);
+    "t_s", "s", State, "time", |r| r.sample.time_s, "*t*" , summary summary(State, 2, "t", summary_row::time);
+    "x_m", "m", State, "traced point, world frame", |r| r.sample.position.x, "*x*" => now(0, "x", "x").of_moment(|moment| Some(moment.position.x)).decimals(4).off_by(Tolerance::OfArm) , summary summary(State, 3, "x, y, z", summary_row::position);
     "y_m", "m", State, "traced point, world frame", |r| r.sample.position.y, "*y*" => now(1, "y", "y").of_moment(|moment| Some(moment.position.y)).decimals(4).off_by(Tolerance::OfArm);
     "z_m", "m", State, "traced point, world frame", |r| r.sample.position.z, "*z*" => now(2, "z", "z").of_moment(|moment| Some(moment.position.z)).decimals(4).off_by(Tolerance::OfArm);
-    "Lx_Js", "J s", State, "angular momentum about the pivot, world frame", |r| r.sample.momentum.x, "*L*_{*x*}";
+    "Lx_Js", "J s", State, "angular momentum about the pivot, world frame", |r| r.sample.momentum.x, "*L*_{*x*}" , summary summary(State, 4, "L", summary_row::momentum);
     "Ly_Js", "J s", State, "angular momentum about the pivot, world frame", |r| r.sample.momentum.y, "*L*_{*y*}";
     "Lz_Js", "J s", State, "angular momentum about the pivot, world frame", |r| r.sample.momentum.z, "*L*_{*z*}" => now(7, "Lz", "Lz").of_moment(|moment| Some(moment.momentum.z)).rank(2).off_by(Tolerance::OfItself);
     "L_Js", "J s", State, "size of the angular momentum about the pivot", |r| r.sample.momentum.norm(), "|*L*|" => now(6, "|L|", "|L|").of_moment(|moment| Some(moment.momentum.norm())).rank(1).off_by(Tolerance::OfItself);
     "wx_rad_per_s", "rad/s", State, "angular velocity I^-1 L, world frame", |r| r.sample.angular_velocity.x, "*ω*_{*x*}";
     "wy_rad_per_s", "rad/s", State, "angular velocity I^-1 L, world frame", |r| r.sample.angular_velocity.y, "*ω*_{*y*}";
     "wz_rad_per_s", "rad/s", State, "angular velocity I^-1 L, world frame", |r| r.sample.angular_velocity.z, "*ω*_{*z*}";
-    "tilt_deg", "deg", State, "angle of the axle from +z", |r| r.sample.tilt_deg, "*θ*" => now(3, "tilt", "tilt").of_moment(|moment| Some(moment.tilt_deg)).decimals(2).off_by(Tolerance::Of(0.5));
-    "azimuth_deg", "deg", State, "azimuth of the axle, counted on through full turns", |r| r.sample.azimuth_deg, "*φ*" => so_far(7, "azimuth").decimals(2);
+    "tilt_deg", "deg", State, "angle of the axle from +z", |r| r.sample.tilt_deg, "*θ*" => now(3, "tilt", "tilt").of_moment(|moment| Some(moment.tilt_deg)).decimals(2).off_by(Tolerance::Of(0.5)) , summary summary(Motion, 0, "tilt", summary_row::tilt);
+    "azimuth_deg", "deg", State, "azimuth of the axle, counted on through full turns", |r| r.sample.azimuth_deg, "*φ*" => so_far(7, "azimuth").decimals(2) , summary summary(Further, 3, "azimuth", summary_row::azimuth);
     "energy_J", "J", State, "kinetic energy, and that of the weight from the pivot", |r| r.sample.energy, "*E*";
-    "energy_drift", "", State, "energy that only the scheme's error can have made, in units of M g |c|, or of the kinetic energy at the start where M g |c| is below 1e-9 of it", |r| r.health.energy_drift => now(8, "energy error", "E error").in_unit_of_energy().of_moment(|moment| moment.energy_error).off_by(Tolerance::Of(0.05));
-    "friction_work_J", "J", State, "work of friction since the start, which the energy drift counts as work: of each impulse of it, the impulse times the mean of omega before and after; under exact and rk4 its power integrated", |r| r.health.slowing.map(|slowing| slowing.work);
-    "segment", "", Scenario, "edits of time step, scheme or gravity before this step", |r| r.sample.segment;
+    "energy_drift", "", State, "energy that only the scheme's error can have made, in units of M g |c|, or of the kinetic energy at the start where M g |c| is below 1e-9 of it", |r| r.health.energy_drift => now(8, "energy error", "E error").in_unit_of_energy().of_moment(|moment| moment.energy_error).off_by(Tolerance::Of(0.05)) , summary summary(State, 5, "energy drift", summary_row::energy);
+    "friction_work_J", "J", State, "work of friction since the start, which the energy drift counts as work: of each impulse of it, the impulse times the mean of omega before and after; under exact and rk4 its power integrated", |r| r.health.slowing.map(|slowing| slowing.work) , summary summary(Further, 7, "friction", summary_row::friction);
+    "segment", "", Scenario, "edits of time step, scheme or gravity before this step", |r| r.sample.segment , summary summary(Further, 8, "edits", summary_row::edits);
     "measured_lowest_tilt_deg", "deg", EveryStep, "least angle of the axle from +z", |r| r.extremes.tilt.lowest_deg, "*θ*_{min}" => so_far(0, "tilt from").decimals(3);
     "measured_highest_tilt_deg", "deg", EveryStep, "greatest angle of the axle from +z", |r| r.extremes.tilt.highest_deg, "*θ*_{max}" => so_far(1, "tilt to").decimals(3);
-    "measured_lowest_z_m", "m", EveryStep, "least z of the traced point", |r| r.extremes.lowest_z_m, "*z*_{min}" => so_far(2, "z from").decimals(4);
+    "measured_lowest_z_m", "m", EveryStep, "least z of the traced point", |r| r.extremes.lowest_z_m, "*z*_{min}" => so_far(2, "z from").decimals(4) , summary summary(Motion, 1, "z", summary_row::height);
     "measured_highest_z_m", "m", EveryStep, "greatest z of the traced point", |r| r.extremes.highest_z_m, "*z*_{max}" => so_far(3, "z to").decimals(4);
-    "turns_per_step", "", State, "turns of the body in one time step, |Omega| dt/2 pi", |r| r.health.turns_per_step => now(9, "turns per step", "turns/st").rank(3).in_unit("< 0.5", 1.0).off_by(Tolerance::UnlessReliable(0.5));
+    "turns_per_step", "", State, "turns of the body in one time step, |Omega| dt/2 pi", |r| r.health.turns_per_step => now(9, "turns per step", "turns/st").rank(3).in_unit("< 0.5", 1.0).off_by(Tolerance::UnlessReliable(0.5)) , summary summary(Further, 4, "a time step", summary_row::time_step);
     "nutation_multiplier", "", Scheme, "the report's scheme alone: its factor on a nutation's size each step; the truth is 1", |r| r.health.nutation.map(|nutation| nutation.multiplier);
-    "lag_deg", "deg", State, "angle between axle and L", |r| r.health.lag_deg => so_far(5, "axle to L").decimals(3);
+    "lag_deg", "deg", State, "angle between axle and L", |r| r.health.lag_deg => so_far(5, "axle to L").decimals(3) , summary summary(Further, 5, "lag", summary_row::lag);
     "steady_lag_deg", "deg", Scheme, "the report's scheme alone: its angle between axle and L in slow steady precession at this tilt and spin, the true one times kappa psi/|1 - A|", |r| r.health.nutation.and_then(|nutation| nutation.scheme_lag_deg());
     "predicted_lag_deg", "deg", Scheme, "the report's scheme alone: the mean angle between axle and L, |tau| dt/(|L| |1 - A|), at the last change of the forces; null where that linear theory is off by more than about a tenth, and where the scheme feeds the nutation in the run (kappa above 1)", |r| r.report_theory.and_then(|theory| theory.lag_deg(r.sample.step.saturating_sub(r.since)));
     "predicted_tilt_swing_deg", "deg", Scheme, "the report's scheme alone: the swing of the tilt about that lag, by the same theory; null too where the scheme damps or feeds the nutation in the run", |r| r.report_theory.and_then(|theory| theory.swing_deg(r.sample.step.saturating_sub(r.since)));
@@ -286,23 +292,23 @@ readouts! {
     "most_distance_m", "m", Exact, "the largest such distance so far, up to predictable_until_s", |r| r.health.most_distance_m;
     "predictable_until_s", "s", Exact, "the time after which no double-precision computation can predict the motion; null where the run ends before that", |r| r.health.predictability.until_s;
     "reliable", "", Exact, "whether the numbers of this step hold; false after predictable_until_s, null where that is not known", |r| r.health.is_reliable();
-    "L_axle_drift_Js", "J s", Exact, "L along the axle less the exact motion's", |r| r.health.deviation.map(|off| off.axle_momentum);
+    "L_axle_drift_Js", "J s", Exact, "L along the axle less the exact motion's", |r| r.health.deviation.map(|off| off.axle_momentum) , summary summary(Further, 6, "L", summary_row::constants);
     "Lz_drift_Js", "J s", Exact, "L_z less the exact motion's", |r| r.health.deviation.map(|off| off.lz);
     "kappa", "", Scenario, "I3/I1 of a body that is symmetric about its axle; with start.rotor I3 is of that part alone; of one that is symmetric to 1 % only, I1 is the mean moment", |r| r.kappa, "*κ*";
-    "asymmetry", "", Scenario, "how far the body is from symmetric about its axle: the largest of the difference of its moments across over their mean, the angle of its principal axis to the axle (rad), and the distance of its center of mass from the axle over its radius of gyration; 0 if symmetric, null where there is no theory (moments: above 0.01, or above a fifth of their difference from the one along the axle; the others: above 0.001)", |r| r.asymmetry;
+    "asymmetry", "", Scenario, "how far the body is from symmetric about its axle: the largest of the difference of its moments across over their mean, the angle of its principal axis to the axle (rad), and the distance of its center of mass from the axle over its radius of gyration; 0 if symmetric, null where there is no theory (moments: above 0.01, or above a fifth of their difference from the one along the axle; the others: above 0.001)", |r| r.asymmetry , summary summary(Motion, 4, "asymmetry", summary_row::asymmetry);
     "theory_axis", "", Theory, "the axis that theory speaks of: +z, or another (against the forces, or along L where there are none), and then what it says about that axis is null", |r| r.theory.map(|theory| theory.axis.to_string());
-    "path", "", Theory, "the path of the axle about +z", |r| r.lasting_theory().map(|theory| theory.path.to_string());
+    "path", "", Theory, "the path of the axle about +z", |r| r.lasting_theory().map(|theory| theory.path.to_string()) , summary summary(Further, 0, "theory", summary_row::theory);
     "predicted_lowest_tilt_deg", "deg", Theory, "least tilt of the exact motion from +z in the whole run; null once the forces have changed", |r| r.predicted_tilts_of_run().map(|range| range.0), "*θ*_{min}";
     "predicted_highest_tilt_deg", "deg", Theory, "greatest tilt of the exact motion from +z in the whole run; null once the forces have changed", |r| r.predicted_tilts_of_run().map(|range| range.1), "*θ*_{max}";
     "cusp_tilt_deg", "deg", Theory, "tilt at which the axle stands still in azimuth", |r| r.lasting_theory().and_then(|theory| theory.cusp_tilt_deg);
     "predicted_precession_rad_per_s", "rad/s", Theory, "mean precession of the exact motion about +z", |r| r.lasting_theory().and_then(|theory| theory.precession), "*Ω*_{p}";
-    "measured_precession_rad_per_s", "rad/s", Measured, "mean precession about +z; none under friction, which changes it all the time", |r| value(r.precession), "*Ω*_{p}" => now(4, "precession", "precess.").measured(|r| r.precession).unless(passes_through_vertical).in_unit("°/s", DEGREES_PER_RAD).off_by(Tolerance::OfItself);
+    "measured_precession_rad_per_s", "rad/s", Measured, "mean precession about +z; none under friction, which changes it all the time", |r| value(r.precession), "*Ω*_{p}" => now(4, "precession", "precess.").measured(|r| r.precession).unless(passes_through_vertical).in_unit("°/s", DEGREES_PER_RAD).off_by(Tolerance::OfItself) , summary summary(Motion, 2, "precession", summary_row::precession);
     "measured_precession_uncertainty_rad_per_s", "rad/s", Measured, "one standard error of reading it off the steps; the error that the scheme and its time step make is not in it", |r| uncertainty(r.precession);
-    "slow_precession_rad_per_s", "rad/s", Theory, "steady precession at this tilt, the slow one", |r| r.theory_about_z().and_then(|theory| theory.slow_precession), "*Ω*_{slow}";
+    "slow_precession_rad_per_s", "rad/s", Theory, "steady precession at this tilt, the slow one", |r| r.theory_about_z().and_then(|theory| theory.slow_precession), "*Ω*_{slow}" , summary summary(Further, 1, "steady", summary_row::steady_precession);
     "fast_precession_rad_per_s", "rad/s", Theory, "steady precession at this tilt, the fast one", |r| r.theory_about_z().and_then(|theory| theory.fast_precession), "*Ω*_{fast}";
     "fast_top_precession_rad_per_s", "rad/s", Theory, "the fast top's precession M g h/L3", |r| r.theory_about_z().and_then(|theory| theory.fast_top_precession), "*M* *g* *h*/*L*_{3}";
     "predicted_nutation_period_s", "s", Theory, "nutation period of the exact motion", |r| r.lasting_theory().and_then(|theory| theory.nutation_period_s), "*T*_{n}";
-    "measured_nutation_period_s", "s", Measured, "mean time from one greatest tilt to the next; none under friction", |r| value(r.nutation), "*T*_{n}" => now(5, "nutation", "nutation").measured(|r| r.nutation).off_by(Tolerance::OfItself);
+    "measured_nutation_period_s", "s", Measured, "mean time from one greatest tilt to the next; none under friction", |r| value(r.nutation), "*T*_{n}" => now(5, "nutation", "nutation").measured(|r| r.nutation).off_by(Tolerance::OfItself) , summary summary(Motion, 3, "nutation", summary_row::nutation);
     "measured_nutation_uncertainty_s", "s", Measured, "one standard error of reading it off the steps; the error that the scheme and its time step make is not in it", |r| uncertainty(r.nutation);
     "nutation_is_resolved", "", State, "false: the time step is too long to see the nutation, what the steps show is strobed", |r| r.nutation_is_resolved();
     "predicted_precession_period_s", "s", Theory, "time of one turn of the mean precession of the exact motion about +z", |r| r.lasting_theory().and_then(Theory::precession_period_s), "*T*_{p}";
@@ -316,11 +322,11 @@ readouts! {
     "w3_rad_per_s", "rad/s", State, "angular velocity along the axle", |r| r.sample.omega().z, "*ω*_{3}";
     "foot_force_N", "N", State, "vertical force of the floor on the foot; null under friction", |r| r.foot_force, "*N*";
     "predicted_mean_foot_force_N", "N", Theory, "its mean over whole nutations: M g, and what pushes press down; of a lopsided body too", |r| r.predicted_mean_foot_force, "*M* *g*";
-    "measured_mean_foot_force_N", "N", Measured, "its mean over whole nutations; null before one was seen, and where the time step is too long to see them", |r| value(r.mean_foot_force), "*N*";
+    "measured_mean_foot_force_N", "N", Measured, "its mean over whole nutations; null before one was seen, and where the time step is too long to see them", |r| value(r.mean_foot_force), "*N*" , summary summary(Motion, 5, "foot force", summary_row::foot_force);
     "measured_mean_foot_force_uncertainty_N", "N", Measured, "one standard error of reading it off the steps", |r| uncertainty(r.mean_foot_force);
-    "sleeping_limit_Js", "J s", Theory, "least L along the axle with which this top, stood upright, sleeps; null where it stands without spin, its centre of mass below the pivot", |r| r.theory_about_z().and_then(|theory| theory.sleeping_limit);
+    "sleeping_limit_Js", "J s", Theory, "least L along the axle with which this top, stood upright, sleeps; null where it stands without spin, its centre of mass below the pivot", |r| r.theory_about_z().and_then(|theory| theory.sleeping_limit) , summary summary(Further, 2, "upright", summary_row::upright);
     "health", "", Exact, "whether the numbers hold, in one sentence", |r| r.health.sentence(r.advice.as_ref());
-    "wall_s", "s", Clock, "time spent on stepping alone", |r| r.stepping.map(|wall| wall.as_secs_f64());
+    "wall_s", "s", Clock, "time spent on stepping alone", |r| r.stepping.map(|wall| wall.as_secs_f64()) , summary summary(State, 6, "wall time", summary_row::wall_time);
     "steps_per_second", "1/s", Clock, "steps taken in a second of it", |r| r.stepping.map(|wall| per_second(r.sample.step, wall));
 }
 

@@ -16,6 +16,8 @@ use std::iter;
 
 /// Columns of a field.
 const FIELD: u16 = 7;
+/// Columns of the longest number that is not rounded.
+const MOST_DIGITS: usize = 12;
 /// In fewer columns a heading is short.
 const LONG_HEADING_FROM: u16 = 27;
 
@@ -142,7 +144,7 @@ impl Editor<'_, '_> {
                 write(
                     area,
                     (0, 0),
-                    "no editable value matches",
+                    "no editable value",
                     theme.style(Role::Label),
                     buf,
                 );
@@ -293,12 +295,12 @@ fn around_selected<'a>(rows: &[EditorRow<'a>], room: usize) -> Vec<EditorRow<'a>
     shown
 }
 
-/// The text of `value` on at most `room` columns: all digits that were given if a field has room for them, else four.
+/// The text of `value` on at most `room` columns: all digits that were given if there is room for them, else four.
 fn shown_text(value: &ListedValue, room: usize) -> String {
     let text = on_one_line(&value.text);
-    let field = room.min(FIELD.into());
+    let field = room.min(MOST_DIGITS);
     match text.parse::<f64>() {
-        Ok(number) if text.len() > field => four_digits(number, field),
+        Ok(number) if text.len() > field => four_digits(number, field.min(FIELD.into())),
         Ok(number) if text.contains(['.', 'e']) => shortest(number),
         _ => shortened(&text, room).into_owned(),
     }
