@@ -144,6 +144,12 @@ fn whole_scene(lab: &TheLab) -> KeyCommands {
 /// So many of the keys of the step pane, the first, go through the phases.
 pub const PHASE_KEYS: usize = 2;
 
+/// The keys of the values while they have the focus.
+#[rustfmt::skip]
+pub const VALUES_KEYS: &[Binding] = &[
+    row(&[Lab], &[Char('/')], Action::FindValue, "find", "find a value by a part of its name; Esc shows all again"),
+];
+
 /// The keys of the step pane while it has the focus.
 #[rustfmt::skip]
 pub const STEP_KEYS: &[Binding] = &[

@@ -9,12 +9,11 @@ use crate::engine::analysis::Readouts;
 use crate::engine::run::Moment;
 use crate::engine::text::number::without_minus_zero;
 use crate::lab::Lab;
-use crate::lab::action::Action;
 use crate::lab::form::InputField;
 use crate::lab::values::list::ValueList;
 use crate::lab::view::theme::Marker;
 use crate::lab::view::{HideablePart, Pane, View};
-use crate::tui::keymap::{Binding, Key, Mode, row};
+use crate::tui::keymap::{Mode, VALUES_KEYS};
 use crate::tui::split::{split_columns, split_rows};
 use crate::tui::theme::Role;
 use editor::Editor;
@@ -39,15 +38,9 @@ pub const PARAMETERS_ROW: PaneRow = PaneRow {
     id: Pane::Parameters,
     title: "values",
     draw: |lab, area, buf| ValuesPane::of(lab).render(area, buf),
-    keys: PARAMETER_PANE_KEYS,
+    keys: VALUES_KEYS,
     arrows: None,
 };
-
-/// The keys that the footer names while the pane has the focus.
-#[rustfmt::skip]
-const PARAMETER_PANE_KEYS: &[Binding] = &[
-    row(&[Mode::Lab], &[Key::Char('/')], Action::FindValue, "find", "find a value by a part of its name; Esc shows all again"),
-];
 
 pub struct ValuesPane<'a> {
     pub readouts: &'a Readouts,
