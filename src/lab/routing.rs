@@ -165,6 +165,12 @@ impl Lab {
         self.read_now();
     }
 
+    /// Selects the value of this number in the list of values.
+    pub fn select_value(&mut self, index: usize) {
+        self.edits.values.list.select_index(index);
+        self.changed = true;
+    }
+
     fn edit_field(&mut self, edit: FieldEdit) {
         match edit {
             edit if self.popups.mode == Mode::Find => {

@@ -3,7 +3,9 @@
 use super::keymap::{Key, KeyEffect, Mode, zoomed_in, zoomed_out};
 use super::layout::ScreenLayout;
 use super::panes::form::FormPane;
-use super::panes::{PlotInputs, browser, chrome, help, lesson, overview::Overview, traces::Traces};
+use super::panes::{
+    PlotInputs, browser, chrome, help, lesson, overview::Overview, parameters, traces::Traces,
+};
 use super::press::press;
 use super::screen;
 use crate::engine::run::Clock;
@@ -93,8 +95,16 @@ impl Pointer {
             return None;
         }
         let (pane, place) = pane_at(layout, at)?;
+        let value = (pane == Pane::Parameters)
+            .then(|| parameters::value_at(lab, place, at))
+            .flatten();
         lab.turn_to(pane);
-        if lab.mode() == Mode::Lessons {
+        if is_double && pane == Pane::Parameters {
+            return press(Key::Enter, lab);
+        } else if let Some(index) = value {
+            lab.select_value(index);
+            self.selected = Some((at, lab.now()));
+        } else if lab.mode() == Mode::Lessons {
             return self.press_in_lessons(place, at, is_double, lab);
         } else if pane == Pane::Traces {
             self.held = Some(Held::Cursor);

@@ -648,13 +648,6 @@ fn a_missing_energy_error_is_explained() {
 }
 
 #[test]
-fn the_lab_says_why_there_is_no_drift() {
-    let set = ["motion.gravity_m_per_s2=0", "start.momentum_Js=[0,0,0]"];
-    let mut stage = Stage::open("method-2", &set, SMALL);
-    stage.press(".").shows("no scale");
-}
-
-#[test]
 fn a_search_for_advice_that_nobody_waits_for_any_more_ends() {
     let scenario = preset("method-2", &[]);
     let asked = Cell::new(0);

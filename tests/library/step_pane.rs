@@ -37,7 +37,10 @@ fn picture_of(stage: &Stage, pane: Pane) -> String {
     let layout = screen::layout(&stage.lab, true, stage.size);
     let place = layout.place_of(pane).expect("the pane is on the screen");
     let picture = stage.picture();
-    let rows = picture.lines().skip(place.y.into()).take(place.height.into());
+    let rows = picture
+        .lines()
+        .skip(place.y.into())
+        .take(place.height.into());
     rows.map(|row| {
         let cells = row.chars().skip(place.x.into()).take(place.width.into());
         cells.collect::<String>() + "\n"
@@ -196,7 +199,9 @@ fn commands_and_files_say_it_too() {
     let set = ["view.show=['step', 'above']", "view.phase='torque'"];
     let mut stage = Stage::open("method-2", &set, SMALL);
     stage.commands("pause = true\nstep = 3");
-    stage.shows("from above (m)").shows("step 3: 6 of 7, torque");
+    stage
+        .shows("from above (m)")
+        .shows("step 3: 6 of 7, torque");
     stage.commands("phase = 2");
     stage.shows("step 3: 2 of 7, angular velocity");
     stage.commands("phase = 'last'").shows("step 3: 7 of 7");
@@ -335,11 +340,7 @@ fn a_phase_shows_its_own_arrows_in_space() {
     let mut stage = Stage::open("falling", &set, LARGE);
     stage.commands("pause = true\nstep = 2\nshow = ['3d', 'step']");
     for (page, shown, hidden) in [
-        (
-            2,
-            "Ω angular velocity|L angular momentum",
-            "torque|u axis",
-        ),
+        (2, "Ω angular velocity|L angular momentum", "torque|u axis"),
         (3, "u axis of the turn", "L angular|before"),
         (5, "gray: before the step", "L angular"),
         (6, "τ torque|weight", "L angular|Ω angular"),
@@ -353,7 +354,10 @@ fn a_phase_shows_its_own_arrows_in_space() {
     // Without the step pane it shows the usual ones.
     stage.commands("show = ['3d', 'above']");
     let scene = picture_of(&stage, Pane::ThreeD);
-    has_all(&scene, ["L angular momentum", "Ω angular velocity", "τ torque"]);
+    has_all(
+        &scene,
+        ["L angular momentum", "Ω angular velocity", "τ torque"],
+    );
     has_no(&scene, "dL");
 }
 

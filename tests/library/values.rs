@@ -6,7 +6,9 @@ use gyrolab::engine::analysis::readouts::four_digits;
 use gyrolab::engine::journal::derived::DerivedValue;
 use gyrolab::engine::journal::parameters::changed;
 use gyrolab::lab::view::Pane;
+use gyrolab::tui::mouse::{Did, Mouse, Pointer};
 use gyrolab::tui::panes::parameters::PARAMETERS_ROW;
+use gyrolab::tui::screen;
 use gyrolab::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -209,4 +211,24 @@ fn four_digits_fit_and_are_right() {
     ] {
         assert_eq!(four_digits(number, width), text);
     }
+}
+
+#[test]
+fn a_click_selects_a_value_and_a_double_click_types_it() {
+    let mut stage = Stage::open("wobble-push", &[], SMALL);
+    let place = screen::layout(&stage.lab, true, SMALL).place_of(Pane::Parameters);
+    let place = place.unwrap();
+    let (rows, _) = pane(&stage, place.width, place.height);
+    let dt = rows.iter().position(|row| row.starts_with("dt s")).unwrap();
+    let click = Mouse {
+        did: Did::Press,
+        x: place.x + 2,
+        y: place.y + dt as u16,
+    };
+    let mut pointer = Pointer::default();
+    pointer.act(click, SMALL, &mut stage.lab);
+    assert_eq!(stage.focus(), "parameters");
+    assert_eq!(stage.lab.values().list.selected().unwrap().label, "dt");
+    pointer.act(click, SMALL, &mut stage.lab);
+    stage.shows("dt = 0.1 s   Enter:");
 }

@@ -127,9 +127,9 @@ fn a_long_message_and_a_warning_are_both_read_on_a_small_screen() {
 #[test]
 fn esc_leaves_the_values_where_they_fill_the_screen() {
     let mut stage = Stage::open("method-2", &[], Rect::new(0, 0, 40, 12));
-    stage.press("e").shows("parameters").press("\u{1b}");
+    stage.press("e").shows(" values ").press("\u{1b}");
     assert_eq!(stage.focus(), "traces");
-    stage.shows_no("parameters");
+    stage.shows_no(" values ");
 }
 
 /// The clock tells the steps before an edit from one another too, which were shorter.

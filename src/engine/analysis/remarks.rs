@@ -82,14 +82,6 @@ fn no_drift(health: &Health) -> &'static str {
     }
 }
 
-/// Why there is no energy drift, in few letters, as a column of the lab has it.
-pub fn short_no_drift(unit: Option<EnergyUnit>) -> &'static str {
-    match unit {
-        None => "no scale",
-        Some(_) => "overflow",
-    }
-}
-
 /// The unit of an energy drift in few letters, as a column of the lab has it.
 pub fn short_unit(unit: Option<EnergyUnit>) -> &'static str {
     match unit {

@@ -64,6 +64,17 @@ impl ValueList {
         found.is_some()
     }
 
+    /// Selects the value of this number among all, if it is shown.
+    pub fn select_index(&mut self, index: usize) {
+        let is_shown = self
+            .values
+            .get(index)
+            .is_some_and(|value| self.is_shown(value));
+        if is_shown {
+            self.selected = index;
+        }
+    }
+
     pub fn selected(&self) -> Option<&ListedValue> {
         let value = self.values.get(self.selected)?;
         self.is_shown(value).then_some(value)

@@ -18,7 +18,7 @@ use crate::tui::split::{split_columns, split_rows};
 use crate::tui::theme::Role;
 use editor::Editor;
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Position, Rect};
 use ratatui::widgets::Widget;
 use std::borrow::Cow;
 use table::ValueTable;
@@ -31,6 +31,8 @@ const WIDE_FROM: u16 = 90;
 const TABLE_COLUMNS: [(u16, u16); 3] = [(WIDE_FROM, 54), (60, 29), (BESIDE_FROM, 22)];
 /// The fewest columns for a list of the scenario's values.
 const LIST_COLUMNS: u16 = 27;
+/// The column of a wide list after the last digit of a value.
+const VALUE_END: u16 = 25;
 /// Below this height a pane in focus has the list alone.
 const TABLE_FROM: u16 = 8;
 
@@ -129,28 +131,62 @@ impl<'a> ValuesPane<'a> {
         }
     }
 
-    fn editor(&self, columns: u16, value_end: u16, area: Rect, buf: &mut Buffer) {
-        let editor = Editor {
-            pane: self,
-            columns,
-            value_end,
-        };
-        editor.render(area, buf);
+    /// Where the table and the list are on `area`.
+    fn places(&self, area: Rect) -> Places {
+        if area.width + 1 < BESIDE_FROM {
+            self.stacked(area)
+        } else {
+            self.side_by_side(area)
+        }
     }
 
     /// The table above, and the values of the scenario below.
-    fn stacked(&self, area: Rect, buf: &mut Buffer) {
-        let (table_width, value_columns) = table::narrow_columns(area.width);
-        let value_end = table_width + value_columns;
+    fn stacked(&self, area: Rect) -> Places {
+        let (label_width, number_width) = table::narrow_columns(area.width);
+        let list = |place| ListPlace {
+            area: place,
+            columns: 1,
+            value_end: label_width + number_width,
+        };
         if self.has_focus() && area.height < TABLE_FROM {
-            return self.editor(1, value_end, below_rule(area), buf);
+            return Places {
+                table: Rect::ZERO,
+                list: list(below_rule(area)),
+            };
         }
-        let rows = self.table_rows(area.height);
-        let [upper, rest] = split_rows(area, rows);
-        ValueTable { pane: self }.render(upper, buf);
+        let [upper, rest] = split_rows(area, self.table_rows(area.height));
         let gap = u16::from(rest.height > editor::main_rows(self.list) + 1);
         let [_, lower] = split_rows(rest, gap);
-        self.editor(1, value_end, lower, buf);
+        Places {
+            table: upper,
+            list: list(lower),
+        }
+    }
+
+    /// The table, and beside it the values of the scenario.
+    fn side_by_side(&self, area: Rect) -> Places {
+        let widths = TABLE_COLUMNS
+            .iter()
+            .find(|(from, _)| area.width + 1 >= *from);
+        let table_width = widths.map_or(0, |(_, columns)| *columns);
+        if area.width + 1 >= WIDE_FROM {
+            let [table, rest] = split_columns(area, table_width);
+            let [_, right] = split_columns(rest, 2);
+            let list = ListPlace {
+                area: right,
+                columns: right.width / LIST_COLUMNS,
+                value_end: VALUE_END,
+            };
+            return Places { table, list };
+        }
+        let [left, rest] = split_columns(area, area.width.saturating_sub(table_width + 2));
+        let [_, table] = split_columns(rest, 2);
+        let list = ListPlace {
+            area: below_rule(left),
+            columns: (left.width / LIST_COLUMNS).max(1),
+            value_end: left.width.min(VALUE_END),
+        };
+        Places { table, list }
     }
 
     /// Rows of the table, its rule included, in a pane of this height.
@@ -163,46 +199,59 @@ impl<'a> ValuesPane<'a> {
         };
         height.saturating_sub(list).clamp(least.min(height), most)
     }
+}
 
-    /// The table, and beside it the values of the scenario.
-    fn side_by_side(&self, area: Rect, buf: &mut Buffer) {
-        let widths = TABLE_COLUMNS.iter().find(|(from, _)| area.width >= *from);
-        let table_width = widths.map_or(0, |(_, columns)| *columns);
-        if area.width >= WIDE_FROM {
-            let [left, rest] = split_columns(area, table_width);
-            let [_, right] = split_columns(rest, 2);
-            ValueTable { pane: self }.render(left, buf);
-            return self.editor(right.width / LIST_COLUMNS, 25, right, buf);
-        }
-        let [left, rest] = split_columns(area, area.width - table_width - 2);
-        let [_, right] = split_columns(rest, 2);
-        let columns = (left.width / LIST_COLUMNS).max(1);
-        self.editor(columns, left.width.min(25), below_rule(left), buf);
-        ValueTable { pane: self }.render(right, buf);
-    }
+/// Where the parts of the pane are.
+struct Places {
+    /// Empty if only the list has room.
+    table: Rect,
+    list: ListPlace,
+}
+
+/// Where the values of the scenario are.
+#[derive(Clone, Copy)]
+struct ListPlace {
+    area: Rect,
+    /// How many lists are beside each other.
+    columns: u16,
+    /// The column of each list after the last digit of a value.
+    value_end: u16,
+}
+
+/// Returns the number, in the list of values, of the one at `at` of the pane on `area`.
+pub fn value_at(lab: &Lab, area: Rect, at: Position) -> Option<usize> {
+    let pane = &ValuesPane::of(lab);
+    let place = pane.places(without_gap(area)).list;
+    Editor { pane, place }.value_at(at)
+}
+
+/// `area` without its last column, which is empty as the gap between panes is.
+fn without_gap(area: Rect) -> Rect {
+    split_columns(area, area.width.saturating_sub(1))[0]
 }
 
 impl Widget for ValuesPane<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
-        // The last column is empty, as the gap between panes is.
-        let [area, _] = split_columns(area, area.width.saturating_sub(1));
-        if area.is_empty() {
+        let inside = without_gap(area);
+        if inside.is_empty() {
             return;
         }
-        let is_wide = area.width + 1 >= WIDE_FROM;
+        let is_wide = inside.width + 1 >= WIDE_FROM;
         let under_title = if is_wide {
             TABLE_COLUMNS[0].1
         } else {
-            area.width
+            inside.width
         };
-        let [titled, _] = split_columns(area, under_title);
+        let [titled, _] = split_columns(inside, under_title);
         let focus = self.view.marks_focus_of(PARAMETERS_ROW.id);
         rule(&self.title(), None, focus, titled, &self.view.theme, buf);
-        if area.width + 1 < BESIDE_FROM {
-            self.stacked(area, buf);
-        } else {
-            self.side_by_side(area, buf);
-        }
+        let places = self.places(inside);
+        ValueTable { pane: &self }.render(places.table, buf);
+        let editor = Editor {
+            pane: &self,
+            place: places.list,
+        };
+        editor.render(buf);
     }
 }
 

@@ -1,6 +1,6 @@
 //! The values of the scenario: those that matter most, or in focus the whole list with one of them selected.
 
-use super::{ValuesPane, with_minus};
+use super::{ListPlace, ValuesPane, with_minus};
 use crate::engine::analysis::readouts::four_digits;
 use crate::engine::text::number::shortest;
 use crate::engine::text::printable::printable;
@@ -11,7 +11,7 @@ use crate::tui::panes::{rule, shortened, write};
 use crate::tui::split::split_columns;
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Position, Rect};
 use std::iter;
 
 /// Columns of a field.
@@ -23,10 +23,7 @@ const LONG_HEADING_FROM: u16 = 27;
 
 pub(super) struct Editor<'p, 'a> {
     pub(super) pane: &'p ValuesPane<'a>,
-    /// How many lists are beside each other.
-    pub(super) columns: u16,
-    /// The column after the last digit of a value.
-    pub(super) value_end: u16,
+    pub(super) place: ListPlace,
 }
 
 /// A row of the list.
@@ -34,7 +31,8 @@ pub(super) struct Editor<'p, 'a> {
 enum EditorRow<'a> {
     Blank,
     Heading(&'a str),
-    Value(&'a ListedValue, bool),
+    /// A value, its number in the list, and whether it is selected.
+    Value(&'a ListedValue, usize, bool),
     /// No value answers the search.
     Nothing,
 }
@@ -45,7 +43,7 @@ impl EditorRow<'_> {
     }
 
     fn is_selected(&self) -> bool {
-        matches!(self, Self::Value(_, true))
+        matches!(self, Self::Value(_, _, true))
     }
 }
 
@@ -59,9 +57,27 @@ pub(super) fn main_rows(list: &ValueList) -> u16 {
 }
 
 impl Editor<'_, '_> {
-    pub(super) fn render(&self, area: Rect, buf: &mut Buffer) {
-        if area.is_empty() || self.columns == 0 {
-            return;
+    pub(super) fn render(&self, buf: &mut Buffer) {
+        for (place, row) in self.rows() {
+            self.row(&row, place, buf);
+        }
+    }
+
+    /// Returns the number, in the list of values, of the one at `at`.
+    pub(super) fn value_at(&self, at: Position) -> Option<usize> {
+        let mut rows = self.rows().into_iter();
+        let (_, row) = rows.find(|(place, _)| place.contains(at))?;
+        match row {
+            EditorRow::Value(_, index, _) => Some(index),
+            EditorRow::Blank | EditorRow::Heading(_) | EditorRow::Nothing => None,
+        }
+    }
+
+    /// The rows that are shown, each with its place.
+    fn rows(&self) -> Vec<(Rect, EditorRow<'_>)> {
+        let ListPlace { area, columns, .. } = self.place;
+        if area.is_empty() || columns == 0 {
+            return Vec::new();
         }
         let height = area.height.into();
         let lists = if self.pane.has_focus() {
@@ -69,27 +85,26 @@ impl Editor<'_, '_> {
         } else {
             self.most_important(height)
         };
+        let mut rows = Vec::with_capacity(height);
         let mut rest = area;
-        let width = area.width / self.columns;
         for list in lists {
-            let [place, right] = split_columns(rest, width);
-            for (row, line) in list.iter().zip(place.rows()) {
-                self.row(row, line, buf);
-            }
+            let [place, right] = split_columns(rest, area.width / columns);
+            rows.extend(place.rows().zip(list));
             rest = right;
         }
+        rows
     }
 
     /// The values that are always shown, as many as there is room for.
     fn most_important(&self, height: usize) -> Vec<Vec<EditorRow<'_>>> {
-        let values = &self.pane.list.values;
+        let values = self.pane.list.values.iter().enumerate();
         let mut groups = MAIN_GROUPS.map(|group| {
             let of_group = values
-                .iter()
-                .filter(|value| value.rank.is_some() && value.group == group);
+                .clone()
+                .filter(|(_, value)| value.rank.is_some() && value.group == group);
             of_group.collect::<Vec<_>>()
         });
-        if self.columns > 1 {
+        if self.place.columns > 1 {
             return groups
                 .iter_mut()
                 .zip(MAIN_GROUPS)
@@ -119,18 +134,18 @@ impl Editor<'_, '_> {
                 .first()
                 .map(|(_, value)| EditorRow::Heading(&value.group));
             rows.extend(heading);
-            let values = group
-                .iter()
-                .map(|(index, value)| EditorRow::Value(value, *index == list.selected_index()));
+            let values = group.iter().map(|(index, value)| {
+                EditorRow::Value(value, *index, *index == list.selected_index())
+            });
             rows.extend(values);
         }
         if rows.is_empty() && !list.name.is_empty() {
             rows.push(EditorRow::Nothing);
         }
-        if let Some(columns) = by_group(&rows, height, self.columns.into()) {
+        if let Some(columns) = by_group(&rows, height, self.place.columns.into()) {
             return columns;
         }
-        let around = around_selected(&rows, height * usize::from(self.columns));
+        let around = around_selected(&rows, height * usize::from(self.place.columns));
         around.chunks(height.max(1)).map(<[_]>::to_vec).collect()
     }
 
@@ -139,7 +154,7 @@ impl Editor<'_, '_> {
         match row {
             EditorRow::Blank => {}
             EditorRow::Heading(heading) => self.heading(heading, area, buf),
-            EditorRow::Value(value, is_selected) => self.value(value, *is_selected, area, buf),
+            EditorRow::Value(value, _, is_selected) => self.value(value, *is_selected, area, buf),
             EditorRow::Nothing => {
                 write(
                     area,
@@ -175,7 +190,7 @@ impl Editor<'_, '_> {
     fn value(&self, value: &ListedValue, is_selected: bool, area: Rect, buf: &mut Buffer) {
         let pane = self.pane;
         let theme = &pane.view.theme;
-        let end = self.value_end.min(area.width);
+        let end = self.place.value_end.min(area.width);
         let label = on_one_line(&value.label);
         let label_room = end
             .saturating_sub(columns(&label) as u16 + 1)
@@ -240,17 +255,25 @@ fn place_in_list(list: &ValueList) -> String {
     format!("{} of {}", at.map_or(0, |at| at + 1), shown.len())
 }
 
-fn with_heading<'a>(heading: &'a str, values: &[&'a ListedValue]) -> Vec<EditorRow<'a>> {
-    let rows = values.iter().map(|value| EditorRow::Value(value, false));
+/// A value and its number in the list.
+type NumberedValue<'a> = (usize, &'a ListedValue);
+
+fn with_heading<'a>(heading: &'a str, values: &[NumberedValue<'a>]) -> Vec<EditorRow<'a>> {
+    let rows = values
+        .iter()
+        .map(|(index, value)| EditorRow::Value(value, *index, false));
     iter::once(EditorRow::Heading(heading))
         .chain(rows)
         .collect()
 }
 
 /// Leaves out values of the highest rank until there is `room` for the others.
-fn leave_out<'v, 'a>(values: &'v mut Vec<&'a ListedValue>, room: usize) -> &'v [&'a ListedValue] {
+fn leave_out<'v, 'a>(
+    values: &'v mut Vec<NumberedValue<'a>>,
+    room: usize,
+) -> &'v [NumberedValue<'a>] {
     while values.len() > room {
-        let ranks = values.iter().map(|value| value.rank).enumerate();
+        let ranks = values.iter().map(|(_, value)| value.rank).enumerate();
         let last = ranks.max_by_key(|(_, rank)| *rank);
         let Some((last, _)) = last else { break };
         values.remove(last);

@@ -75,6 +75,9 @@ fn fitting_rows(name: &str, height: usize) -> Vec<(&'static Readout, ValueRow)> 
 
 impl ValueTable<'_, '_> {
     pub(super) fn render(&self, area: Rect, buf: &mut Buffer) {
+        if area.is_empty() {
+            return;
+        }
         let columns = self.columns(area.width);
         let (label_width, width) = match columns.len() {
             2 => narrow_columns(area.width),
