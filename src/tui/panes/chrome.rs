@@ -37,16 +37,16 @@ pub fn header(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let step = format!("dt {} s", significant(motion.time_step_s, 7));
     let scenario = lab.player().run().scenario();
     let title = &scenario.file.title;
+    let least_title = columns(title).min(LEAST_TITLE);
     let forms = [
         (format!("  {name} scheme   {step}"), clock(lab, true)),
         (format!("  {name}   {step}"), clock(lab, true)),
         (format!("  {name}   {step}"), clock(lab, false)),
         (format!("  {step}"), clock(lab, false)),
         (String::new(), clock(lab, false)),
-        (String::new(), short_clock(lab, area.width.into())),
+        (String::new(), short_clock(lab, area.width.into(), least_title)),
     ];
     let width = usize::from(area.width);
-    let least_title = columns(title).min(LEAST_TITLE);
     let fits = |form: &(String, String)| {
         least_title + columns(&form.0) + HEADER_GAP + columns(&form.1) <= width
     };
@@ -97,8 +97,8 @@ fn clock(lab: &Lab, with_total: bool) -> String {
     format!("t {time:>time_columns$} s   step {step:>step_columns$}{total}   {pace:<PACE_COLUMNS$}")
 }
 
-/// As [`clock`], for narrow screens.
-fn short_clock(lab: &Lab, width: usize) -> String {
+/// As [`clock`], for a screen of this `width`, where the title needs `least_title` columns.
+fn short_clock(lab: &Lab, width: usize, least_title: usize) -> String {
     let reading = &lab.player().reading;
     let decimals = time_decimals(lab.player().run().scenario().least_time_step_s());
     let (step, pace) = (reading.readouts.sample.step, &reading.pace);
@@ -108,7 +108,8 @@ fn short_clock(lab: &Lab, width: usize) -> String {
         format!("t {time} s  step {step}  {pace} "),
         format!("t {time} s step {step} {moves}"),
     ];
-    shortened(&longest(clocks, width), width).into_owned()
+    let room = width.saturating_sub(least_title + 2);
+    shortened(&longest(clocks, room), width).into_owned()
 }
 
 /// Draws the verdict on the run: a word, the reasons, and the key that fixes it. Reasons give way to the key.
