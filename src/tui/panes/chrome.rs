@@ -44,7 +44,10 @@ pub fn header(lab: &Lab, area: Rect, buf: &mut Buffer) {
         (format!("  {name}   {step}"), clock(lab, false)),
         (format!("  {step}"), clock(lab, false)),
         (String::new(), clock(lab, false)),
-        (String::new(), short_clock(lab, area.width.into(), least_title)),
+        (
+            String::new(),
+            short_clock(lab, area.width.into(), least_title),
+        ),
     ];
     let width = usize::from(area.width);
     let fits = |form: &(String, String)| {
