@@ -1,6 +1,7 @@
 //! `gyrolab figure`: runs, or a table of runs, drawn on paper.
 
-use super::args::{LengthArgs, MapArgs, SetArgs, changed, positive, time};
+use super::args::{LengthArgs, MapArgs, SetArgs, changed};
+use super::argument_values::{positive, time};
 use super::progress::{self, Interrupted};
 use super::writeup::measured;
 use super::{ended_by, refuse, tell, tell_notes};
