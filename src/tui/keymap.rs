@@ -5,8 +5,7 @@ pub use crate::lab::Mode;
 use crate::lab::action::{Action, Ask, Direction, FieldEdit, LessonKey, SHIFT_FACTOR, repeated};
 use crate::lab::command::{Command, PushChoice, SeekTarget};
 use crate::lab::view::Pane;
-use crate::lab::{KeyCommands, Lab as TheLab, LabRequest};
-use crate::tui::panes::{self, Arrows};
+use crate::lab::{KeyCommands, Lab as TheLab};
 use Key::{
     BackTab, Backspace, Char, Ctrl, Delete, Down, End, Enter, Esc, Home, Left, PageDown, PageUp,
     Right, ShiftDown, ShiftLeft, ShiftRight, ShiftUp, Tab, Up,
@@ -60,25 +59,6 @@ pub enum KeyEffect {
     /// The commands that this function returns for the count that was typed before the key are carried out.
     Commands(fn(&TheLab, Option<u64>) -> KeyCommands),
     Action(Action),
-}
-
-impl KeyEffect {
-    pub fn carry_out(self, lab: &mut TheLab) -> Option<LabRequest> {
-        match (self, arrows(lab)) {
-            (Self::Commands(meant), _) => lab.press(meant),
-            (Self::Action(Action::Move(direction, times)), Some(arrows)) => {
-                lab.press(|lab, count| arrows(lab, direction, times * repeated(count)));
-            }
-            (Self::Action(action), _) => return lab.update(action),
-        }
-        None
-    }
-}
-
-/// What arrows mean in the pane that has the focus.
-fn arrows(lab: &TheLab) -> Option<Arrows> {
-    let row = panes::row(lab.view().focus);
-    row.arrows.filter(|_| lab.popups().mode == Mode::Lab)
 }
 
 /// How long the footer names a key where there is not room for all: the least go first.

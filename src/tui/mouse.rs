@@ -2,7 +2,7 @@
 
 use super::keymap::{KeyEffect, Mode, narrower, wider, zoomed_in, zoomed_out};
 use super::layout::ScreenLayout;
-use super::panes::{PlotInputs, browser, chrome, timeline::Timeline, traces::Traces};
+use super::panes::{PlotInputs, browser, carry_out, chrome, timeline::Timeline, traces::Traces};
 use super::press::press;
 use super::screen;
 use crate::engine::run::Clock;
@@ -73,7 +73,7 @@ impl Pointer {
     fn press(&mut self, layout: &ScreenLayout, at: Position, lab: &mut Lab) -> Option<LabRequest> {
         self.held = None;
         if layout.keys.contains(at) {
-            let key = chrome::key_at(lab, layout.keys, at.x)?;
+            let key = chrome::key_at(lab, layout, at.x)?;
             return press(key, lab);
         }
         match lab.popups().mode {
@@ -164,7 +164,7 @@ fn wheel(layout: &ScreenLayout, at: Position, up: bool, lab: &mut Lab) -> Option
     let lines = KeyEffect::Action(Action::Move(line, 1));
     if lab.popups().mode != Mode::Lab {
         for _ in 0..LINES {
-            lines.carry_out(lab);
+            carry_out(lines, lab);
         }
         return None;
     }
@@ -179,5 +179,5 @@ fn wheel(layout: &ScreenLayout, at: Position, up: bool, lab: &mut Lab) -> Option
         _ => return None,
     };
     lab.turn_to(pane);
-    does.carry_out(lab)
+    carry_out(does, lab)
 }

@@ -1,6 +1,6 @@
 //! The lines around the panes: title, health and keys.
 
-use super::{longest, shortened, write};
+use super::{lesson, longest, shortened, write};
 use crate::engine::analysis::remarks::{Remark, remarks};
 use crate::engine::text::number::{fixed, significant};
 use crate::engine::text::wrap::columns;
@@ -10,7 +10,7 @@ use crate::lab::playback::reading::Reading;
 use crate::lab::view::step::StepPageChoice;
 use crate::lab::view::{HideablePart, Pane};
 use crate::tui::keymap::{BINDINGS, Binding, FooterPriority, Key, KeyEffect, Mode};
-use crate::tui::screen::page_goes_on;
+use crate::tui::layout::ScreenLayout;
 use crate::tui::split::split_columns;
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
@@ -133,19 +133,19 @@ pub fn warns(lab: &Lab) -> bool {
 }
 
 /// The keys of the mode, as many as fit; help and quit always.
-pub fn keys(lab: &Lab, area: Rect, buf: &mut Buffer) {
-    let theme = &lab.view().theme;
-    for (x, item) in place_keys(lab, area) {
+pub fn keys(lab: &Lab, places: &ScreenLayout, buf: &mut Buffer) {
+    let (theme, area) = (&lab.view().theme, places.keys);
+    for (x, item) in place_keys(lab, places) {
         let (key, focus) = (item.key.to_string(), theme.style(Role::Focus));
         let x = write(area, (x, 0), &key, focus, buf);
         write(area, (x + 1, 0), item.word, theme.style(Role::Quiet), buf);
     }
 }
 
-/// The key that the line of keys on `area` names at the column `x` of the screen.
-pub fn key_at(lab: &Lab, area: Rect, x: u16) -> Option<Key> {
-    let column = x.checked_sub(area.x)?;
-    let mut placed = place_keys(lab, area).into_iter();
+/// The key that the line of keys names at the column `x` of the screen.
+pub fn key_at(lab: &Lab, places: &ScreenLayout, x: u16) -> Option<Key> {
+    let column = x.checked_sub(places.keys.x)?;
+    let mut placed = place_keys(lab, places).into_iter();
     let found = placed.find(|(at, item)| (*at..at + item.length()).contains(&column));
     found.map(|(_, item)| item.key)
 }
@@ -165,9 +165,14 @@ impl FooterItem {
     }
 }
 
-fn place_keys(lab: &Lab, area: Rect) -> Vec<(u16, FooterItem)> {
-    let screen = Rect::new(0, 0, area.width, area.bottom());
-    let (items, gap) = fitted(footer(lab, page_goes_on(lab, screen)), area.width);
+/// Returns whether the page of the lesson continues below what the screen shows of it.
+pub fn page_goes_on(lab: &Lab, places: &ScreenLayout) -> bool {
+    let place = places.place_of(Pane::Lesson);
+    place.is_some_and(|place| lesson::has_more(lab, place))
+}
+
+fn place_keys(lab: &Lab, places: &ScreenLayout) -> Vec<(u16, FooterItem)> {
+    let (items, gap) = fitted(footer(lab, page_goes_on(lab, places)), places.keys.width);
     let mut x = 1;
     items
         .into_iter()
