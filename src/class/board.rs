@@ -6,7 +6,7 @@ use super::{login, unix_ms};
 use crate::engine::text::number::counted;
 use crate::engine::text::wrap::{columns, wrapped};
 use crate::lessons::page::for_teacher;
-use crate::lessons::{Predict, reading};
+use crate::lessons::{Predict, opening};
 use chrono::Local;
 
 /// Returns the lines of the board, at most `width` columns wide.
@@ -58,7 +58,7 @@ pub fn lines(folder: &ClassFolder, width: usize) -> Vec<String> {
 
 /// Returns the page in words, with the votes on its questions.
 fn page_lines(state: &ClassState, seats: &[SeatStatus]) -> Vec<String> {
-    let told = match reading::open_again(&state.lesson) {
+    let told = match opening::open_again(&state.lesson) {
         Ok(lesson) => for_teacher(&lesson, state.page, |predict| {
             round_lines(predict, state, seats)
         }),

@@ -9,7 +9,7 @@ use crate::lab::sheet::{Paragraph, SheetLineKind};
 use crate::lessons::lesson::Right;
 use crate::lessons::predictions::{LessonProgress, LockedAnswer};
 use crate::lessons::state::KeptLessons;
-use crate::lessons::{AnswerKind, LessonPage, Predict, PredictionAnswer, reading};
+use crate::lessons::{AnswerKind, LessonPage, Predict, PredictionAnswer, opening};
 use chrono::{DateTime, Utc};
 use std::collections::BTreeMap;
 
@@ -237,7 +237,7 @@ pub fn csv(folder: &ClassFolder, seats: &[SeatStatus]) -> Result<String, csv::Er
         for (name, place) in &status.lessons {
             let lesson = read
                 .entry(name.clone())
-                .or_insert_with(|| reading::open_again(name).ok());
+                .or_insert_with(|| opening::open_again(name).ok());
             for (question, given) in place.predictions.all() {
                 let predict = lesson.as_ref().and_then(|lesson| lesson.predict(question));
                 let number = predict.and_then(|predict| predict.asked.number(&given.answer));

@@ -1,14 +1,10 @@
-//! Arguments that several commands have, how their values are read, and the scenario that they mean.
+//! Arguments that several commands have, and the scenario that they mean.
 
-use super::refuse;
+use super::argument_values::{frames, length, one_or_more, positive, setting, steps};
 use crate::engine::data::{ColumnOptions, ColumnSigma};
-use crate::engine::export::CsvLayout;
-use crate::engine::export::layout::{LAYOUT_KEYS, LayoutFile};
 use crate::engine::run::Simulation;
 use crate::engine::scenario::csv::{Renaming, renaming};
-use crate::engine::scenario::kind::ValueKind;
 use crate::engine::scenario::rescale::MOST_RUN_STEPS_BY_TIME;
-use crate::engine::scenario::schema::SchemaRow;
 use crate::engine::scenario::{Document, Problem, Problems, Scenario};
 use crate::lab::view::theme::Background;
 use crate::lab::view::theme::Marker;
@@ -16,14 +12,10 @@ use crate::physics::scheme;
 use crate::tui::terminal::MOST_SCREEN_CELLS;
 use crate::tui::theme::ColorChoice;
 use clap::builder::{PossibleValue, PossibleValuesParser};
-use clap::error::ErrorKind;
-use clap::parser::ValueSource;
-use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, ValueEnum};
+use clap::{Args, ValueEnum};
 use std::io;
 use std::num::NonZeroU64;
 use std::path::PathBuf;
-use std::str::FromStr;
-use toml::{Table, Value};
 
 #[derive(Debug, Args)]
 pub(super) struct ScenarioArgs {
@@ -291,200 +283,6 @@ pub(super) struct LessonArgs {
 
     #[command(flatten)]
     pub(super) look: DisplayArgs,
-}
-
-/// Which rows and columns a CSV has, and how its numbers are written: an option for each row of [`LAYOUT_KEYS`].
-#[derive(Debug)]
-pub(super) struct LayoutArgs(LayoutFile);
-
-impl Args for LayoutArgs {
-    fn augment_args(command: Command) -> Command {
-        command.args(LAYOUT_KEYS.iter().map(layout_option))
-    }
-
-    fn augment_args_for_update(command: Command) -> Command {
-        Self::augment_args(command)
-    }
-}
-
-impl FromArgMatches for LayoutArgs {
-    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
-        let values = LAYOUT_KEYS
-            .iter()
-            .filter_map(|row| Some((row.path.to_owned(), given_value(row, matches)?)));
-        let file = Table::from_iter(values).try_into::<LayoutFile>();
-        file.map(Self)
-            .map_err(|error| clap::Error::raw(ErrorKind::ValueValidation, error))
-    }
-
-    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
-        *self = Self::from_arg_matches(matches)?;
-        Ok(())
-    }
-}
-
-/// Returns the value of the option for a row of [`LAYOUT_KEYS`], if the command line gives it: the header of a CSV may
-/// have another default.
-fn given_value(row: &SchemaRow, matches: &ArgMatches) -> Option<Value> {
-    let name = layout_option_name(row);
-    if matches.value_source(name) != Some(ValueSource::CommandLine) {
-        return None;
-    }
-    Some(match row.kind {
-        ValueKind::Flag => matches.get_flag(name).into(),
-        ValueKind::Lines => {
-            let columns = matches.get_many::<Value>(name)?;
-            Value::Array(columns.cloned().collect())
-        }
-        _ => matches.get_one::<Value>(name)?.clone(),
-    })
-}
-
-/// The option for a row of [`LAYOUT_KEYS`]; one without a default needs an output.
-fn layout_option(row: &SchemaRow) -> Arg {
-    let name = layout_option_name(row);
-    let arg = Arg::new(name).long(name).help(row.about);
-    let arg = match row.kind {
-        ValueKind::Flag => arg.action(ArgAction::SetTrue),
-        ValueKind::Lines => arg
-            .value_name("A,B")
-            .value_delimiter(',')
-            .action(ArgAction::Append)
-            .value_parser(|text: &str| Ok::<_, String>(Value::from(text))),
-        ValueKind::Whole(..) => arg
-            .value_name("N")
-            .allow_negative_numbers(true)
-            .value_parser(|text: &str| one_or_more(text).map(whole)),
-        _ => arg
-            .value_name("SECONDS")
-            .allow_negative_numbers(true)
-            .value_parser(|text: &str| time(text).map(Value::from)),
-    };
-    match row.default {
-        Some(default) => arg.default_value(default.to_string()),
-        None => arg.requires("output").help_heading(ROWS_HEADING),
-    }
-}
-
-fn layout_option_name(row: &SchemaRow) -> &'static str {
-    row.path.trim_end_matches("_s")
-}
-
-fn whole(number: NonZeroU64) -> Value {
-    i64::try_from(number.get()).unwrap_or(i64::MAX).into()
-}
-
-const ROWS_HEADING: &str = "Rows and columns of the CSV";
-
-/// A time from the beginning of the run on, s.
-pub(super) fn time(text: &str) -> Result<f64, String> {
-    bare(
-        text,
-        |seconds| *seconds >= 0.0 && seconds.is_finite(),
-        MEANT_IN_SECONDS,
-        "must be a time in seconds, 0 or more",
-    )
-}
-
-impl LayoutArgs {
-    /// The layout in the header of a CSV, `of_header`, with these options over it. The process ends where there is none such,
-    /// as it does where clap refuses.
-    pub(super) fn layout(&self, of_header: LayoutFile) -> CsvLayout {
-        self.0
-            .clone()
-            .or(of_header)
-            .check()
-            .unwrap_or_else(|error| {
-                let option = error.key.trim_end_matches("_s");
-                let message = format!("--{option}: {}", error.rule);
-                refuse("run", ErrorKind::ValueValidation, &message)
-            })
-    }
-}
-
-pub(super) fn one_or_more(text: &str) -> Result<NonZeroU64, String> {
-    text.parse()
-        .map_err(|_| "must be a whole number, 1 or more".to_owned())
-}
-
-/// The number `text` that `fits`, which is to be given in the unit `meant`; or what it must be.
-pub(super) fn bare<T: FromStr>(
-    text: &str,
-    fits: fn(&T) -> bool,
-    meant: &str,
-    rule: &str,
-) -> Result<T, String> {
-    let number = text.parse().ok().filter(fits);
-    number.ok_or_else(|| without_unit(text, meant).unwrap_or_else(|| rule.to_owned()))
-}
-
-pub(super) fn steps(text: &str) -> Result<u64, String> {
-    let rule = "must be a whole number of steps, 0 or more, in digits";
-    bare(text, |_| true, MEANT_IN_STEPS, rule)
-}
-
-pub(super) fn length(text: &str) -> Result<u64, String> {
-    let rule = "must be a whole number of steps, 1 or more, in digits";
-    let steps = bare(text, |steps| *steps > 0, MEANT_IN_STEPS, rule)?;
-    if i64::try_from(steps).is_err() {
-        return Err("is more steps than can be counted".to_owned());
-    }
-    Ok(steps)
-}
-
-pub(super) fn frames(text: &str) -> Result<u32, String> {
-    match text.parse() {
-        Ok(frames) if (1..=60).contains(&frames) => Ok(frames),
-        _ => Err("must be a whole number from 1 to 60".to_owned()),
-    }
-}
-
-pub(super) fn setting(text: &str) -> Result<String, String> {
-    if text.contains('=') {
-        Ok(text.to_owned())
-    } else {
-        Err("must be KEY=VALUE, such as motion.time_step_s=0.05".to_owned())
-    }
-}
-
-pub(super) fn positive(text: &str) -> Result<f64, String> {
-    bare(
-        text,
-        |number| *number > 0.0 && number.is_finite(),
-        MEANT_IN_SECONDS,
-        "must be a number greater than zero",
-    )
-}
-
-pub(super) fn size(text: &str) -> Result<(u16, u16), String> {
-    let (columns, lines) = MOST_SCREEN_CELLS;
-    let number = |part: &str, most| {
-        let number = part.parse().ok();
-        number.filter(|number| (1..=most).contains(number))
-    };
-    text.split_once('x')
-        .and_then(|(width, height)| Some((number(width, columns)?, number(height, lines)?)))
-        .ok_or_else(|| {
-            format!("must be columns x lines, such as 80x24, from 1x1 to {columns}x{lines}")
-        })
-}
-
-/// How a time is given, and how a step, which is no time.
-pub(super) const MEANT_IN_SECONDS: &str = "in seconds";
-const MEANT_IN_STEPS: &str = "in time steps";
-
-/// What is said of a number with a unit behind it, as `20s`; the number is to be given `meant`.
-fn without_unit(text: &str, meant: &str) -> Option<String> {
-    let number = text.trim_end_matches(char::is_alphabetic).trim_end();
-    let unit = text.strip_prefix(number)?.trim_start();
-    let value: f64 = number.parse().ok()?;
-    let is_unit = !unit.is_empty() && value.is_finite() && value >= 0.0;
-    is_unit.then(|| match unit {
-        "s" | "sec" | "second" | "seconds" if meant == MEANT_IN_SECONDS => {
-            format!("must be a number without a unit: write {number}, {meant}")
-        }
-        _ => format!("must be a number without a unit ({unit}), {meant}"),
-    })
 }
 
 /// The scenario with all that the command line changes in it, so that its run file tells the whole run.

@@ -3,7 +3,8 @@
 //! The lab's own clock tells the time: it goes on by the same step from picture to picture, however long the computer needs
 //! for one. Neither settings nor the environment are read, so that a file of commands has one recording.
 
-use super::args::{SetArgs, size};
+use super::args::SetArgs;
+use super::argument_values::size;
 use super::new_lab::{DEFAULT, open_lab};
 use super::progress::{self, Interrupted, Interruption};
 use super::tell;

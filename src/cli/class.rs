@@ -15,7 +15,7 @@ use crate::engine::text::printable::{PrintablePath, printable};
 use crate::lab::storage::confined::{Confined, MOST_OF_SEAT};
 use crate::lab::storage::session;
 use crate::lessons::clock::unix_s;
-use crate::lessons::{handout, reading};
+use crate::lessons::{handout, opening};
 use crate::tui;
 use anyhow::{Context, bail, ensure};
 use rustix::process::{Pid, Resource, Signal};
@@ -70,14 +70,14 @@ fn teach(args: &ClassArgs) -> anyhow::Result<ExitCode> {
         state => state.ok().flatten().unwrap_or_default(),
     };
     let (name, page) = match &args.lesson {
-        Some(name) => (reading::full_name(name), 1),
+        Some(name) => (opening::full_name(name), 1),
         None if before.lesson.is_empty() => {
             bail!("no class has begun here: gyrolab class LESSON --folder DIR")
         }
         None => (before.lesson.clone(), before.page.max(1)),
     };
     admit(&name, &confined).context("the lesson of a class lies in its folder")?;
-    let lesson = reading::open(&name)?;
+    let lesson = opening::open(&name)?;
     let workbench = WorkbenchArgs {
         paused: true,
         look: args.look,
@@ -133,7 +133,7 @@ fn answers(
             if place.predictions.is_empty() {
                 continue;
             }
-            let lesson = match reading::open_again(&name) {
+            let lesson = match opening::open_again(&name) {
                 Ok(lesson) => lesson,
                 Err(problems) => {
                     let (word, why) = (&seat.word, problems.in_one_line());

@@ -1,6 +1,7 @@
 //! `gyrolab compare`: schemes and time steps against the exact motion.
 
-use super::args::{LengthArgs, ScenarioArgs, positive, scenario_of};
+use super::args::{LengthArgs, ScenarioArgs, scenario_of};
+use super::argument_values::positive;
 use super::progress::{self, Interrupted};
 use super::{one_on_stdout, print};
 use crate::engine::analysis::compare::{ComparisonTable, compare as table_of};

@@ -1,6 +1,7 @@
 //! `gyrolab figure`: runs, or a table of runs, drawn on paper.
 
-use super::args::{LengthArgs, MapArgs, SetArgs, changed, positive, time};
+use super::args::{LengthArgs, MapArgs, SetArgs, changed};
+use super::argument_values::{positive, time};
 use super::progress::{self, Interrupted};
 use super::writeup::measured;
 use super::{ended_by, refuse, tell, tell_notes};
@@ -12,7 +13,7 @@ use crate::engine::scenario::{Document, Problem, Problems};
 use crate::engine::text::printable::{PrintablePath, printable};
 use crate::physics::scheme;
 use crate::plot::{PT_PER_MM, PageFormat};
-use crate::report::figure::kind::FigureKind;
+use crate::report::figure::kind::{FIGURE_KIND_NAMES, FigureKind};
 use crate::report::figure::of_runs::FigureRun;
 use crate::report::figure::{FigureSource, FigureSpec, WIDTHS_MM};
 use crate::studies::table::TableSource;
@@ -37,11 +38,7 @@ pub(super) struct FigureArgs {
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
 
-    /// What to draw: traces, above, 3d, residuals, or columns with commas between them
-    ///
-    /// Traces are x, y, z over time, residuals are measured less run, columns are those of the CSV, over time
-    /// [default: traces, or with --measured what was measured].
-    #[arg(long, value_name = "KIND")]
+    #[arg(long, value_name = "KIND", help = kind_help(), long_help = long_kind_help())]
     kind: Option<String>,
 
     /// Begin at this time of the run, s
@@ -127,6 +124,19 @@ impl LabelArgs {
             (format, false) => Ok(format),
         }
     }
+}
+
+fn kind_help() -> String {
+    let kinds = FIGURE_KIND_NAMES.join(", ");
+    format!("What to draw: {kinds}, or columns with commas between them")
+}
+
+fn long_kind_help() -> String {
+    format!(
+        "{}\n\nTraces are x, y, z over time, residuals are measured less run, columns are those of the CSV, over time \
+         [default: traces, or with --measured what was measured].",
+        kind_help()
+    )
 }
 
 /// Two numbers, the lower one first: 0..1.

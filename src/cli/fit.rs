@@ -2,7 +2,8 @@
 
 mod throws;
 
-use super::args::{MapArgs, STDIN, STDIN_WORDS, SetArgs, change, open, positive, time};
+use super::args::{MapArgs, STDIN, STDIN_WORDS, SetArgs, change, open};
+use super::argument_values::{positive, time};
 use super::progress::{self, Interrupted, Interruption, Meter};
 use super::{one_on_stdout, print, print_result, refuse, tell, tell_notes, tell_of_rows};
 use crate::engine::data::{self, DataKind, MeasuredData};

@@ -11,7 +11,7 @@ use crate::lab::storage::confined::Confined;
 use crate::lessons::handout::{self, Paper};
 use crate::lessons::play::{self, LessonWalk};
 use crate::lessons::state::files_in;
-use crate::lessons::{Lesson, LessonPage, reading, shipped};
+use crate::lessons::{Lesson, LessonPage, opening, shipped};
 use anyhow::Context;
 use std::io::{self, IsTerminal};
 use std::path::Path;
@@ -44,7 +44,7 @@ pub(super) fn lesson(args: &LessonArgs) -> anyhow::Result<ExitCode> {
     if let Some(language) = &args.frame {
         return print_frame(args, name, language);
     }
-    let lesson = reading::open(name)?;
+    let lesson = opening::open(name)?;
     if args.handout {
         return write(args, |go_on| {
             let paper = if args.results {
@@ -65,8 +65,8 @@ pub(super) fn lesson(args: &LessonArgs) -> anyhow::Result<ExitCode> {
 
 /// Checks that the lesson that NAME names comes with the program, or lies in `folder`.
 pub(super) fn admit(name: &str, folder: &Confined) -> anyhow::Result<()> {
-    if reading::is_file_name(name) {
-        let name = reading::full_name(name);
+    if opening::is_file_name(name) {
+        let name = opening::full_name(name);
         let inside = folder.check_reading(Path::new(&name));
         inside.map_err(anyhow::Error::msg)?;
     }
@@ -101,12 +101,12 @@ fn list(folder: Option<&Confined>) -> anyhow::Result<String> {
         .map(|folder| files_in(folder.lessons()))
         .unwrap_or_default()
     {
-        let lesson = reading::open(&path)?;
+        let lesson = opening::open(&path)?;
         let name = Path::new(&path).file_name().unwrap_or_default();
         text += &format!("{}: {}\n", PrintablePath(Path::new(name)), lesson.title);
     }
     for shipped in shipped::LESSONS {
-        let lesson = reading::open(shipped.name)?;
+        let lesson = opening::open(shipped.name)?;
         text += &format!("{}: {}\n", shipped.name, lesson.title);
     }
     Ok(text)
@@ -131,7 +131,7 @@ fn picture(lab: &Lab) -> String {
 /// # Errors
 /// When the shipped preset of a new lab cannot be opened, or a signal ends the play.
 pub(super) fn checked(file: &Path) -> anyhow::Result<Result<String, Problems>> {
-    let lesson = match reading::read_file(file) {
+    let lesson = match opening::read_file(file) {
         Ok(lesson) => lesson,
         Err(problems) => return Ok(Err(problems)),
     };

@@ -6,6 +6,7 @@
 //! Data goes to stdout, talk to stderr. Exit codes: 0 done (a closed pipe too), 1 failed, 2 wrong usage, 130 Ctrl-C.
 
 mod args;
+mod argument_values;
 mod cast;
 mod class;
 mod compare;
@@ -13,6 +14,7 @@ mod complete;
 mod figure;
 mod fit;
 mod info;
+mod layout_args;
 mod lesson;
 mod manual;
 mod new_lab;

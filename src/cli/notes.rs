@@ -14,7 +14,7 @@ use crate::lessons::clock;
 use crate::lessons::page::for_teacher;
 use crate::lessons::predictions::LessonProgress;
 use crate::lessons::state::KeptLessons;
-use crate::lessons::{Lesson, handout, reading};
+use crate::lessons::{Lesson, handout, opening};
 use anyhow::{bail, ensure};
 use std::io::{self, IsTerminal, Stdout, Write};
 use std::path::Path;
@@ -33,8 +33,8 @@ pub(super) fn answers(
     name: &str,
     confined: Option<&Confined>,
 ) -> anyhow::Result<ExitCode> {
-    let lesson = reading::open(name)?;
-    let full_name = reading::full_name(name);
+    let lesson = opening::open(name)?;
+    let full_name = opening::full_name(name);
     let folder = sessions::folder_of(confined).map_err(anyhow::Error::msg)?;
     let found = session::list(&folder)?.into_iter().filter_map(|session| {
         let mut lessons = lessons_of(&session)?.lessons;
@@ -121,7 +121,7 @@ fn watch_session(
             let now = found
                 .as_ref()
                 .and_then(open_in)
-                .and_then(|(lesson, place)| Some((reading::open(&lesson).ok()?, place)));
+                .and_then(|(lesson, place)| Some((opening::open(&lesson).ok()?, place)));
             let page =
                 |(lesson, place): &(Lesson, LessonProgress)| (lesson.name.clone(), place.page);
             if let Some((lesson, place)) = &now

@@ -1,6 +1,7 @@
 //! `gyrolab run`: a run from its start to its end, without a terminal.
 
-use super::args::{LayoutArgs, LengthArgs, ScenarioArgs, changed, open};
+use super::args::{LengthArgs, ScenarioArgs, changed, open};
+use super::layout_args::LayoutArgs;
 use super::progress::{self, Interrupted};
 use super::{ended_by, one_on_stdout, print_result, tell_of_rows};
 use crate::engine::export::layout::{LayoutFile, above_run_file};

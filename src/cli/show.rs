@@ -1,6 +1,7 @@
 //! `gyrolab show`: the lab's picture as plain text or as SVG, at one step or after commands.
 
-use super::args::{MeasuredArgs, SetArgs, size, steps};
+use super::args::{MeasuredArgs, SetArgs};
+use super::argument_values::{size, steps};
 use super::new_lab::{self, DEFAULT};
 use super::{print, progress, tell};
 use crate::engine::provenance::{self, File, Origin, Payload, SCREEN};

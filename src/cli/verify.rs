@@ -1,6 +1,6 @@
 //! `gyrolab verify`: whether a CSV or a figure is what the run in it gives, or whether somebody's own program agrees with the scheme.
 
-use super::args::{one_or_more, setting};
+use super::argument_values::{one_or_more, setting};
 use super::progress::{self, Interrupted, Interruption};
 use super::{fit, print, tell, writeup};
 use crate::engine::export::OutputFolder;

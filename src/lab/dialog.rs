@@ -17,6 +17,7 @@ use crate::engine::scenario::Scenario;
 use crate::engine::scenario::keys::Effect;
 use crate::engine::text::printable::PrintablePath;
 use crate::lab::storage::exporting::{self, Estimate};
+use crate::report::figure::kind::RUN_FIGURE_NAMES;
 use indicatif::{DecimalBytes, HumanCount};
 use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};
@@ -196,9 +197,10 @@ impl Dialog {
             _ => Pane::Traces.id(),
         };
         let fields = [("file", path), ("kind", kind.to_owned())];
+        let kinds = RUN_FIGURE_NAMES.join(", ");
         let info = [
-            "the file's end says in which form: .svg, .pdf or .png",
-            "kind: traces, above, 3d, or columns such as tilt_deg,energy_J",
+            "the file's end says in which form: .svg, .pdf or .png".to_owned(),
+            format!("kind: {kinds}, or columns such as tilt_deg,energy_J"),
         ];
         let title = format!("draw steps 0 to {step}");
         Self::new(DialogKind::Figure(step), &title, &fields, info)

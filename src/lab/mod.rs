@@ -21,7 +21,7 @@
 //! | [`Settings`] | what is remembered | |
 //!
 //! For a command that changes the run, [`Edits`] returns a `ScenarioEdit`; `Lab::apply` changes the other parts.
-//! `dispatch` leads commands to the parts, `routing` [actions](action::Action) and time.
+//! `dispatch` leads commands to the parts, `routing` leads [actions](action::Action), and `time` lets time pass.
 //!
 //! A new command changes three files: [`command`] with the row in its table, the `match` of `Lab::dispatch`, and the part that
 //! carries it out. It is also added to the table above.
@@ -54,6 +54,7 @@ pub mod sheet;
 mod snapshot;
 pub mod step_pane;
 pub mod storage;
+mod time;
 pub mod values;
 pub mod view;
 

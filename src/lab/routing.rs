@@ -1,4 +1,4 @@
-//! Leads actions and time to the parts of the lab.
+//! Leads actions to the parts of the lab.
 
 use super::action::{
     Action, Ask, Direction, FieldEdit, LabRequest, LessonKey, PAGE_KEY_ROWS, repeated, signed,
@@ -7,24 +7,12 @@ use super::answer::{ActionResult, Done};
 use super::command::{Command, Commands, CursorTo, SeekTarget};
 use super::dialog::{Dialog, DialogKind};
 use super::form::{edit_line, type_into};
-use super::messages::{self, halt_in_words};
-use super::player::Halt;
 use super::popups::Mode;
 use super::view::Pane;
-use super::{Cleared, CommandScript, Lab, Snapshot, paste_rows};
-use crate::engine::run::NotFinite;
+use super::{Cleared, Lab, Snapshot, paste_rows};
 use crate::engine::scenario::{Document, Problems};
-use std::ops::ControlFlow;
 use std::sync::Arc;
-use std::thread;
-use std::time::Duration;
 
-/// How often to look whether an export is complete while there is nothing else to do.
-const EXPORT_POLL: Duration = Duration::from_millis(2);
-/// How long steps are taken before the caller decides whether to go on.
-const STEPPING_BUDGET: Duration = Duration::from_millis(100);
-
-/// Actions, and time.
 impl Lab {
     /// Carries out `action`. Returns what only the main loop can do.
     pub fn update(&mut self, action: Action) -> Option<LabRequest> {

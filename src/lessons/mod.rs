@@ -5,7 +5,8 @@
 //! of a lesson belongs here. The pane that shows a page belongs to [`tui`](crate::tui).
 //!
 //! - [`lesson`]: a lesson as it was read: its pages, and the blocks of each.
-//! - [`reading`]: Markdown becomes a [`Lesson`]; every refusal names file, line and key.
+//! - [`opening`]: a shipped lesson or a file is opened; [`reading`]: its Markdown becomes a [`Lesson`]; every refusal names
+//!   file, line and key.
 //! - [`text`](mod@text): text whose numbers come from the run.
 //! - [`names`]: the numbers that an expression of a lesson can name.
 //! - [`predictions`]: what a student has predicted.
@@ -23,7 +24,7 @@ pub mod lesson;
 pub mod markdown;
 pub mod names;
 pub mod open_lesson;
-mod opening;
+pub mod opening;
 pub mod page;
 pub mod paper;
 pub mod play;

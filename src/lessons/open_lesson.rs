@@ -9,7 +9,7 @@ use super::names::value;
 use super::predictions::{LessonProgress, Tried};
 use super::stage::LessonStage;
 use super::watch::Watch;
-use super::{reading, shipped};
+use super::{opening, shipped};
 use crate::lab::Lab;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::ControlFlow;
@@ -309,7 +309,7 @@ impl OpenLesson {
             && watch.has_changed(now)
         {
             is_new = true;
-            match reading::read_again(&watch.path) {
+            match opening::read_again(&watch.path) {
                 Ok(lesson) => self.take_file(lesson, lab),
                 Err(problems) => {
                     let text = problems.to_string();

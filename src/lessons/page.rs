@@ -5,7 +5,7 @@ use super::markdown::paragraphs;
 use super::open_lesson::OpenLesson;
 use super::predictions::{LessonProgress, Tried, without};
 use super::text::LessonText;
-use super::{names, reading};
+use super::{names, opening};
 use crate::engine::text::number;
 use crate::lab::Lab;
 use crate::lab::sheet::{Paragraph, Sheet, SheetLineKind};
@@ -53,7 +53,7 @@ pub(super) fn list(
         ..Sheet::default()
     };
     for (index, name) in names.iter().enumerate() {
-        let lesson = reading::open_again(name).ok();
+        let lesson = opening::open_again(name).ok();
         let mut text = lesson.as_ref().map_or(name, |it| &it.title).clone();
         if let Some(minutes) = lesson.as_ref().and_then(|lesson| lesson.minutes) {
             text += &format!(", {minutes} min");

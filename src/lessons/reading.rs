@@ -5,10 +5,6 @@
 //! `text`, `sh`, `toml`, `csv`, `python`, `matlab` and no word at all are shown as they are, and another word is refused.
 //! An HTML comment on lines of its own is no part of the lesson.
 
-pub use super::opening::{
-    LONGEST_LESSON_FILE, full_name, is_file_name, open, open_again, read_again, read_file,
-};
-
 use super::blocks::{self, BlockKind, BlockReader};
 use super::lesson::{CodeBlock, Compare, Lesson, LessonBlock, LessonPage, Setup};
 use super::names::KeptNames;

@@ -3,7 +3,7 @@
 use super::open_lesson::{ClassPage, OpenLesson};
 use super::page::ClassOverlay;
 use super::predictions::LessonProgress;
-use super::{page, reading, shipped};
+use super::{opening, page, shipped};
 use crate::lab::Lab;
 use crate::lab::action::{Direction, LessonKey};
 use crate::lab::form::edit_line;
@@ -73,7 +73,7 @@ pub fn files_in(folder: &Path) -> Vec<String> {
         let path = folder.join(&name);
         let is_meant = name.ends_with(".md") && !name.starts_with('.');
         // A FIFO would be waited for.
-        if is_meant && path.is_file() && reading::read_again(&path).is_ok() {
+        if is_meant && path.is_file() && opening::read_again(&path).is_ok() {
             paths.push(path.display().to_string());
         }
     }
@@ -140,11 +140,11 @@ impl Lessons {
 
     /// Takes the lesson that NAME names, where it was left.
     fn load(&mut self, name: &str, lab: &mut Lab) -> Result<(), String> {
-        let name = reading::full_name(name);
-        if reading::is_file_name(&name) {
+        let name = opening::full_name(name);
+        if opening::is_file_name(&name) {
             lab.files().admit_reading(Path::new(&name))?;
         }
-        let lesson = reading::open_again(&name).map_err(|problems| problems.to_string())?;
+        let lesson = opening::open_again(&name).map_err(|problems| problems.to_string())?;
         self.leave(lab);
         let place = self.left.remove(&lesson.name).unwrap_or_default();
         let mut open = OpenLesson::new(lesson, place, self.now);

@@ -8,7 +8,7 @@ use gyrolab::class::votes::{self, Tally, seat_statuses};
 use gyrolab::class::{ClassFolder, ClassRole, Seat, login};
 use gyrolab::lessons::predictions::{LessonProgress, LockedAnswer};
 use gyrolab::lessons::state::KeptLessons;
-use gyrolab::lessons::{AnswerKind, Lesson, PredictionAnswer, reading};
+use gyrolab::lessons::{AnswerKind, Lesson, PredictionAnswer, opening, reading};
 use std::fs::{self, File, Permissions};
 use std::os::unix::fs::{PermissionsExt, symlink};
 use std::path::{Path, PathBuf};
@@ -285,7 +285,7 @@ fn a_class_has_two_hundred_seats() {
 #[test]
 fn votes_are_counted_by_round_and_late_ones_apart() {
     let (_dir, folder) = class();
-    let lesson = reading::open(LESSON).unwrap();
+    let lesson = opening::open(LESSON).unwrap();
     let predict = lesson.predict("finer").unwrap();
     let all = [(1.0, 2.0, false), (2.0, 2.0, false), (1.0, 1.0, true)];
     for (index, (first, second, late)) in all.into_iter().enumerate() {

@@ -13,7 +13,7 @@ use gyrolab::lessons::handout::{self, Paper};
 use gyrolab::lessons::play::{self, LessonWalk};
 use gyrolab::lessons::predictions::{LockedAnswer, Predictions};
 use gyrolab::lessons::{
-    KeptNumbers, Lesson, LessonBlock, LessonPage, PredictionAnswer, reading, shipped,
+    KeptNumbers, Lesson, LessonBlock, LessonPage, PredictionAnswer, opening, reading, shipped,
 };
 use gyrolab::tui::screen;
 use proptest::prelude::*;
@@ -333,11 +333,11 @@ fn a_file_that_is_too_long_is_refused_with_its_length() {
         (b"# A\n\n\xff\n".to_vec(), "long.md:3: is not text in UTF-8"),
     ] {
         fs::write(&path, text).unwrap();
-        has(reading::read_file(&path).unwrap_err().to_string(), words);
+        has(opening::read_file(&path).unwrap_err().to_string(), words);
     }
-    let told = reading::read_file(folder.path()).unwrap_err();
+    let told = opening::read_file(folder.path()).unwrap_err();
     has(told.to_string(), "is a folder");
-    let unknown = reading::open("no-such-lesson").unwrap_err();
+    let unknown = opening::open("no-such-lesson").unwrap_err();
     has(unknown.to_string(), "no lesson of that name");
 }
 
@@ -477,7 +477,7 @@ fn a_file_that_a_lesson_opens_is_looked_for_beside_the_lesson() {
     let path = folder.path().join("a.md");
     let pages = "# A\n\n## B\n\n```lab\nopen = \"mine.toml\"\n```\n\n## C\n\n```lab\nopen = \"cusps\"\n```\n";
     fs::write(&path, pages).unwrap();
-    let lesson = reading::read_file(&path).unwrap();
+    let lesson = opening::read_file(&path).unwrap();
     let mut walk = LessonWalk::new(&lesson, lab());
     for (page, title) in lesson.pages.iter().zip(["Mine", "Cusps"]) {
         walk.enter(page, &mut on)
@@ -490,7 +490,7 @@ fn a_file_that_a_lesson_opens_is_looked_for_beside_the_lesson() {
 fn lessons() -> Vec<Lesson> {
     let shipped = shipped::LESSONS
         .iter()
-        .map(|lesson| reading::open(lesson.name));
+        .map(|lesson| opening::open(lesson.name));
     let template = reading::read("template.md", shipped::TEMPLATE);
     let all = shipped
         .chain([template])

@@ -6,7 +6,7 @@ use gyrolab::lab::lessons_in;
 use gyrolab::lab::sheet::SheetLineKind;
 use gyrolab::lab::view::{HideablePart, Pane};
 use gyrolab::lessons::predictions::Tried;
-use gyrolab::lessons::{Lessons, PredictionAnswer, reading, shipped};
+use gyrolab::lessons::{Lessons, PredictionAnswer, opening, shipped};
 use std::fs;
 
 /// A lesson with a question of each kind, a task with a check, and notes.
@@ -301,7 +301,7 @@ fn each_page_opens_with_what_matters_and_is_the_same_after_wandering() {
     for lesson in shipped::LESSONS {
         let mut stage = Stage::open("method-2", &[], SMALL);
         let mut wanderer = Stage::open("method-2", &[], SMALL);
-        let pages = reading::open(lesson.name).unwrap().pages.len();
+        let pages = opening::open(lesson.name).unwrap().pages.len();
         for page in 1..=pages {
             let place = format!("{}, page {page}", lesson.name);
             for (screen, wanders) in [(&mut stage, false), (&mut wanderer, true)] {
@@ -411,7 +411,7 @@ fn lessons_are_chosen_from_a_list_and_left_where_they_stand() {
         .shows("L lists the lessons");
     let title = |index: usize| {
         let name = shipped::LESSONS[index].name;
-        reading::open(name).unwrap().title
+        opening::open(name).unwrap().title
     };
     stage.press("L").shows(&format!("> [ ] {}", title(0)));
     stage.press("↓↓↑↓\n").arrive();

@@ -4,9 +4,12 @@
 //! for a readout or for a key of the scenario; the caller looks its value up. A name may have no value at a step: what
 //! is computed from it has none either, and a comparison with it neither holds nor fails.
 
-use serde::{Deserialize, Serialize};
+mod node;
+mod parser;
 
-const LONGEST_EXPRESSION: usize = 1000;
+use node::{AND, COMPARES, ExpressionNode, Operator};
+pub use parser::Fault;
+use serde::{Deserialize, Serialize};
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
@@ -17,102 +20,13 @@ pub struct Expression {
     names: Vec<(String, usize)>,
 }
 
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("column {column}: {rule}")]
-pub struct Fault {
-    /// The character at which the error shows, counted from 1.
-    pub column: usize,
-    pub rule: String,
-}
-
-#[derive(Clone, Debug)]
-enum ExpressionNode {
-    Number(f64),
-    Name(usize),
-    Negated(Box<ExpressionNode>),
-    Absolute(Box<ExpressionNode>),
-    Computed(&'static Operator, Box<ExpressionNode>, Box<ExpressionNode>),
-}
-
-#[derive(Debug)]
-struct Operator {
-    name: &'static str,
-    /// How tightly it binds: the larger, the tighter.
-    power: u8,
-    apply: fn(f64, f64) -> f64,
-}
-
-const OR: u8 = 1;
-const AND: u8 = 2;
-const COMPARES: u8 = 3;
-const ADDS: u8 = 4;
-const MULTIPLIES: u8 = 5;
-
-/// Of two that begin alike the longer stands first. A condition is 1 where it holds and 0 where it does not.
-static OPERATORS: [Operator; 12] = [
-    operator("<=", COMPARES, |a, b| truth(a <= b)),
-    operator(">=", COMPARES, |a, b| truth(a >= b)),
-    operator("==", COMPARES, |a, b| truth(a == b)),
-    operator("!=", COMPARES, |a, b| truth(a != b)),
-    operator("<", COMPARES, |a, b| truth(a < b)),
-    operator(">", COMPARES, |a, b| truth(a > b)),
-    operator("+", ADDS, |a, b| a + b),
-    operator("-", ADDS, |a, b| a - b),
-    operator("*", MULTIPLIES, |a, b| a * b),
-    operator("/", MULTIPLIES, |a, b| a / b),
-    // Where neither side decides.
-    operator("and", AND, |_, _| 1.0),
-    operator("or", OR, |_, _| 0.0),
-];
-
-const fn operator(name: &'static str, power: u8, apply: fn(f64, f64) -> f64) -> Operator {
-    Operator { name, power, apply }
-}
-
-fn truth(holds: bool) -> f64 {
-    f64::from(u8::from(holds))
-}
-
-impl Operator {
-    /// Returns the result where one side alone decides it, whatever the other is.
-    fn decided_by(&self, side: Option<f64>) -> Option<f64> {
-        match (self.power, side?) {
-            (OR, value) if value != 0.0 => Some(1.0),
-            (AND, 0.0) => Some(0.0),
-            _ => None,
-        }
-    }
-
-    /// Returns the result with the value `left`; `right` computes the other one where it is needed.
-    fn value(&self, left: Option<f64>, right: impl FnOnce() -> Option<f64>) -> Option<f64> {
-        self.decided_by(left).or_else(|| {
-            let other = right();
-            let decided = self.decided_by(other);
-            decided.or_else(|| Some((self.apply)(left?, other?)))
-        })
-    }
-}
-
 impl Expression {
     pub fn parse(text: &str) -> Result<Self, Fault> {
-        if text.len() > LONGEST_EXPRESSION {
-            let rule = format!("an expression has at most {LONGEST_EXPRESSION} characters");
-            return Err(Fault { column: 1, rule });
-        }
-        let mut parser = Parser {
-            text,
-            at: 0,
-            names: Vec::new(),
-            depth: 0,
-        };
-        let root = parser.expression(0)?;
-        if !parser.rest().is_empty() {
-            return parser.misplaced("cannot follow here: an operator must come first");
-        }
+        let (root, names) = parser::parse(text)?;
         Ok(Self {
             text: text.to_owned(),
             root,
-            names: parser.names,
+            names,
         })
     }
 
@@ -203,23 +117,6 @@ impl Expression {
     }
 }
 
-impl ExpressionNode {
-    /// Returns the expression in `abs(EXPRESSION - NUMBER)`.
-    fn off_by(&self) -> Option<&Self> {
-        let Self::Absolute(inside) = self else {
-            return None;
-        };
-        match inside.as_ref() {
-            Self::Computed(Operator { name: "-", .. }, left, right)
-                if matches!(**right, Self::Number(_)) =>
-            {
-                Some(left)
-            }
-            _ => None,
-        }
-    }
-}
-
 impl TryFrom<String> for Expression {
     type Error = Fault;
 
@@ -237,204 +134,6 @@ impl From<Expression> for String {
 impl PartialEq for Expression {
     fn eq(&self, other: &Self) -> bool {
         self.text == other.text
-    }
-}
-
-impl ExpressionNode {
-    fn is_condition(&self) -> bool {
-        matches!(self, Self::Computed(operator, ..) if operator.power <= COMPARES)
-    }
-
-    fn value(&self, name: &mut impl FnMut(usize) -> Option<f64>) -> Option<f64> {
-        match self {
-            Self::Number(number) => Some(*number),
-            Self::Name(index) => name(*index),
-            Self::Negated(inner) => Some(-inner.value(name)?),
-            Self::Absolute(inner) => Some(inner.value(name)?.abs()),
-            Self::Computed(operator, left, right) => {
-                let known = left.value(name);
-                operator.value(known, || right.value(name))
-            }
-        }
-    }
-}
-
-/// How deep parentheses and signs may be nested.
-const DEEPEST_NESTING: usize = 64;
-
-/// Reads `text` from its beginning to its end.
-struct Parser<'a> {
-    text: &'a str,
-    /// Where the next character stands, in bytes.
-    at: usize,
-    /// Each name once, with its column.
-    names: Vec<(String, usize)>,
-    depth: usize,
-}
-
-/// Returns the number, name or operator in letters at the beginning of `rest`; empty where it begins with a sign.
-fn word(rest: &str) -> &str {
-    let is_number = rest.starts_with(|c: char| c.is_ascii_digit() || c == '.');
-    let mut before = ' ';
-    let end = rest.find(|c: char| {
-        let is_of_exponent = matches!((before, c), ('e' | 'E', '+' | '-'));
-        before = c;
-        let is_of_both = c.is_ascii_alphanumeric() || c == '.';
-        !(is_of_both || if is_number { is_of_exponent } else { c == '_' })
-    });
-    &rest[..end.unwrap_or(rest.len())]
-}
-
-/// Returns what is wrong with the sign `c`, which `next` follows.
-fn no_meaning(c: char, next: Option<char>) -> String {
-    match (c, next) {
-        ('=', Some('>')) => "write >= for =>".to_owned(),
-        ('=', Some('<')) => "write <= for =<".to_owned(),
-        ('=', _) => "a comparison is written ==".to_owned(),
-        ('&', _) => "write and".to_owned(),
-        ('|', _) => "write or, or abs(...)".to_owned(),
-        _ => format!("{} has no meaning here", c.escape_debug()),
-    }
-}
-
-impl<'a> Parser<'a> {
-    /// Returns what has not been read; it begins with no space.
-    fn rest(&mut self) -> &'a str {
-        let rest = self.text[self.at..].trim_start();
-        self.at = self.text.len() - rest.len();
-        rest
-    }
-
-    /// Returns the column of the next character that is no space.
-    fn column(&mut self) -> usize {
-        self.rest();
-        self.text[..self.at].chars().count() + 1
-    }
-
-    fn operator(&mut self) -> Option<&'static Operator> {
-        let rest = self.rest();
-        let read = word(rest);
-        OPERATORS.iter().find(|operator| match read {
-            "" => rest.starts_with(operator.name),
-            word => operator.name == word,
-        })
-    }
-
-    fn fault<T>(column: usize, rule: impl Into<String>) -> Result<T, Fault> {
-        Err(Fault {
-            column,
-            rule: rule.into(),
-        })
-    }
-
-    /// Error for the token at the cursor: `rule` if the token is known, else that it has no meaning.
-    fn misplaced<T>(&mut self, rule: &str) -> Result<T, Fault> {
-        let column = self.column();
-        let rest = self.rest();
-        let mut signs = rest.chars();
-        let known = self.operator().map_or(word(rest), |operator| operator.name);
-        match (known, signs.next()) {
-            ("", Some(c @ ('(' | ')'))) => Self::fault(column, format!("{c} {rule}")),
-            ("", Some(c)) => Self::fault(column, no_meaning(c, signs.next())),
-            _ => Self::fault(column, format!("{known} {rule}")),
-        }
-    }
-
-    /// Returns the operands joined by operators that bind at least as tightly as `least`.
-    fn expression(&mut self, least: u8) -> Result<ExpressionNode, Fault> {
-        let begin = self.column();
-        self.depth += 1;
-        if self.depth > DEEPEST_NESTING {
-            return Self::fault(begin, "it is nested too deep");
-        }
-        let mut left = self.operand()?;
-        while let Some(operator) = self.operator().filter(|it| it.power >= least) {
-            let column = self.column();
-            self.at += operator.name.len();
-            let right_begins = self.column();
-            let right = self.expression(operator.power + 1)?;
-            for (side, at) in [(&left, begin), (&right, right_begins)] {
-                Self::check_side(operator, side, at, column)?;
-            }
-            left = ExpressionNode::Computed(operator, Box::new(left), Box::new(right));
-        }
-        self.depth -= 1;
-        Ok(left)
-    }
-
-    fn check_side(
-        operator: &Operator,
-        side: &ExpressionNode,
-        at: usize,
-        column: usize,
-    ) -> Result<(), Fault> {
-        let name = operator.name;
-        match (operator.power < COMPARES, side.is_condition()) {
-            (true, false) => Self::fault(at, format!("{name} joins comparisons, not numbers")),
-            (false, true) => {
-                let rule = format!("{name} takes numbers, not comparisons: join those with and");
-                Self::fault(column, rule)
-            }
-            _ => Ok(()),
-        }
-    }
-
-    fn operand(&mut self) -> Result<ExpressionNode, Fault> {
-        let (column, rest, operator) = (self.column(), self.rest(), self.operator());
-        let read = word(rest);
-        match (operator, rest.chars().next()) {
-            (_, None) => Self::fault(column, "a number or a name is missing at the end"),
-            (Some(operator), Some('-')) => {
-                self.at += 1;
-                let inner = self.expression(MULTIPLIES + 1)?;
-                Self::check_side(operator, &inner, column, column)?;
-                Ok(ExpressionNode::Negated(Box::new(inner)))
-            }
-            (None, Some('(')) => {
-                self.at += 1;
-                let inside = self.expression(0)?;
-                if !self.rest().starts_with(')') {
-                    let rule = format!("the parenthesis of column {column} is not closed");
-                    return Self::fault(self.column(), rule);
-                }
-                self.at += 1;
-                Ok(inside)
-            }
-            (None, Some(c)) if c.is_ascii_digit() || c == '.' => {
-                self.at += read.len();
-                match read.parse::<f64>() {
-                    Ok(number) if number.is_finite() => Ok(ExpressionNode::Number(number)),
-                    _ => Self::fault(column, format!("{read} is no number")),
-                }
-            }
-            (None, Some(_)) if !read.is_empty() => {
-                self.at += read.len();
-                match read {
-                    "abs" => self.absolute(column),
-                    name => Ok(ExpressionNode::Name(self.number_of(name, column))),
-                }
-            }
-            _ => self.misplaced("needs a number or a name before it"),
-        }
-    }
-
-    fn absolute(&mut self, column: usize) -> Result<ExpressionNode, Fault> {
-        if !self.rest().starts_with('(') {
-            return Self::fault(self.column(), "abs needs parentheses: abs(...)");
-        }
-        let inner = self.operand()?;
-        if inner.is_condition() {
-            return Self::fault(column, "abs takes a number, not a comparison");
-        }
-        Ok(ExpressionNode::Absolute(Box::new(inner)))
-    }
-
-    fn number_of(&mut self, name: &str, column: usize) -> usize {
-        let known = self.names.iter().position(|(known, _)| known == name);
-        known.unwrap_or_else(|| {
-            self.names.push((name.to_owned(), column));
-            self.names.len() - 1
-        })
     }
 }
 

@@ -1,19 +1,11 @@
 //! Dotted keys: the way to a value in a table, with numbers from 0 for the places in arrays (`push.0.force_N`).
 
 use super::problem::Problem;
+pub use super::problem::join;
 use toml::{Table, Value};
 
 /// The most names and numbers of a key: body.point.N.at_m.N has five. Tables nested without bound would exhaust the stack.
 const DEEPEST_KEY: usize = 5;
-
-/// `name` below the dotted path `under`.
-pub fn join(under: &str, name: &str) -> String {
-    if under.is_empty() {
-        name.to_owned()
-    } else {
-        format!("{under}.{name}")
-    }
-}
 
 /// Writes `value` at the dotted `key`; numbers lead into arrays, and the one past the end adds an element.
 pub fn set_key(table: &mut Table, key: &str, value: Value) -> Result<(), Problem> {

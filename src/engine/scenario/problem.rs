@@ -1,6 +1,5 @@
 //! What is wrong with a scenario, in words that one who has never seen the code can act on.
 
-use super::dotted::join;
 use crate::text::printable::{brief, printable};
 use std::fmt;
 
@@ -316,6 +315,15 @@ fn closest<'a>(
 fn letters(name: &str) -> String {
     let all = name.chars().filter(|c| c.is_alphanumeric());
     all.flat_map(char::to_lowercase).collect()
+}
+
+/// `name` below the dotted path `under`.
+pub fn join(under: &str, name: &str) -> String {
+    if under.is_empty() {
+        name.to_owned()
+    } else {
+        format!("{under}.{name}")
+    }
 }
 
 #[cfg(test)]

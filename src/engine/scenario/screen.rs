@@ -11,45 +11,44 @@ pub const ABOVE: &str = "above";
 /// The pane of the scene in space, and its figure.
 pub const THREE_D: &str = "3d";
 
-/// A pane of the screen. Its id is the word for it in commands, in `[view]` and in sessions. `tui` has a row for each.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Pane {
+/// Makes the enum of the panes, the list of all, and their ids from one table.
+macro_rules! panes {
+    ($($(#[$about:meta])* $name:ident = $id:expr,)*) => {
+        /// A pane of the screen. Its id is the word for it in commands, in `[view]` and in sessions. `tui` has a row for each.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum Pane {
+            $($(#[$about])* $name,)*
+        }
+
+        impl Pane {
+            /// Every pane, from left to right on the screen; the focus goes through them in this order.
+            pub const ALL: [Self; [$($id),*].len()] = [$(Self::$name),*];
+
+            pub const fn id(self) -> &'static str {
+                match self {
+                    $(Self::$name => $id,)*
+                }
+            }
+        }
+    };
+}
+
+panes! {
     /// The page of a lesson. It is shown as long as there is one.
-    Lesson,
+    Lesson = "lesson",
     /// x, y, z and tilt over time.
-    Traces,
+    Traces = TRACES,
     /// The path from above.
-    Above,
+    Above = ABOVE,
     /// The scene in space.
-    ThreeD,
+    ThreeD = THREE_D,
     /// The scenario's values and the readouts.
-    Parameters,
+    Parameters = "parameters",
     /// One time step, phase by phase.
-    Step,
+    Step = "step",
 }
 
 impl Pane {
-    /// Every pane, from left to right on the screen; the focus goes through them in this order.
-    pub const ALL: [Self; 6] = [
-        Self::Lesson,
-        Self::Traces,
-        Self::Above,
-        Self::ThreeD,
-        Self::Parameters,
-        Self::Step,
-    ];
-
-    pub const fn id(self) -> &'static str {
-        match self {
-            Self::Lesson => "lesson",
-            Self::Traces => TRACES,
-            Self::Above => ABOVE,
-            Self::ThreeD => THREE_D,
-            Self::Parameters => "parameters",
-            Self::Step => "step",
-        }
-    }
-
     /// Whether it is shown only where it is asked for; the others are shown where there is room.
     pub const fn is_on_request(self) -> bool {
         matches!(self, Self::Step)

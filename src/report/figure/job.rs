@@ -2,7 +2,6 @@
 
 use super::course::SampledRun;
 use super::kind::FigureKind;
-use super::source::FigureSource;
 use super::spec::FigureSpec;
 use crate::engine::data::MeasuredData;
 use crate::engine::run::Clock;
@@ -54,17 +53,7 @@ pub(super) struct FigureJob<'a> {
     pub known: &'a KnownNumbers,
 }
 
-impl<'a> FigureJob<'a> {
-    pub fn new(source: &'a FigureSource, kind: &'a FigureKind, known: &'a KnownNumbers) -> Self {
-        Self {
-            runs: &source.runs,
-            spec: &source.spec,
-            kind,
-            measured: source.measured.as_deref(),
-            known,
-        }
-    }
-
+impl FigureJob<'_> {
     /// Whether both are drawn from the same numbers of the runs under the same names.
     pub fn is_alike(&self, other: &Self) -> bool {
         let are_residuals = [self, other].map(|it| matches!(it.kind, FigureKind::Residuals));

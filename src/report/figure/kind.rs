@@ -20,8 +20,13 @@ const MOST_FIGURE_COLUMNS: usize = 30;
 
 pub const RESIDUALS: &str = "residuals";
 
-/// The names that stand alone; a list of columns is the other way to name a figure.
-pub const FIGURE_KIND_NAMES: [&str; 4] = [TRACES, ABOVE, THREE_D, RESIDUALS];
+/// The kinds of figure of any run, by name.
+pub const RUN_FIGURE_NAMES: [&str; 3] = [TRACES, ABOVE, THREE_D];
+/// Those, and the kind that needs measured data. A list of columns is the other way to name a figure.
+pub const FIGURE_KIND_NAMES: [&str; 4] = {
+    let [traces, above, three_d] = RUN_FIGURE_NAMES;
+    [traces, above, three_d, RESIDUALS]
+};
 
 fn find(name: &str) -> Option<&'static CsvColumn> {
     CsvColumn::all().find(|column| column.name == name)
@@ -58,10 +63,10 @@ impl FigureKind {
         Self::OverTime(names.filter_map(find).collect())
     }
 
-    /// The kind of that name: `traces`, `above`, `3d`, `residuals`, or columns with commas between them.
+    /// Returns the kind of that name: one of [`FIGURE_KIND_NAMES`], or columns with commas between them.
     ///
     /// # Errors
-    /// When there is no such kind or column: what was meant, perhaps.
+    /// If there is no such kind or column: perhaps the name that was meant.
     pub fn named(name: &str) -> Result<Self, String> {
         match name {
             TRACES => return Ok(Self::traces()),
@@ -93,7 +98,10 @@ impl FigureKind {
 
 fn column(name: &str) -> Result<&'static CsvColumn, String> {
     if name.is_empty() {
-        return Err("lacks a name: traces, above, 3d, residuals, or columns of the CSV with commas between them".to_owned());
+        let kinds = FIGURE_KIND_NAMES.join(", ");
+        return Err(format!(
+            "lacks a name: {kinds}, or columns of the CSV with commas between them"
+        ));
     }
     if FIGURE_KIND_NAMES.contains(&name) {
         return Err("is a figure of its own: no columns can stand beside it".to_owned());
@@ -106,7 +114,8 @@ fn column(name: &str) -> Result<&'static CsvColumn, String> {
         )
     } else {
         let near = problem::nearest(name, FIGURE_KIND_NAMES.into_iter().chain(columns));
-        format!("is no kind of figure (traces, above, 3d, residuals) and no column of the CSV: {near}")
+        let kinds = FIGURE_KIND_NAMES.join(", ");
+        format!("is no kind of figure ({kinds}) and no column of the CSV: {near}")
     })
 }
 

@@ -8,12 +8,14 @@
 //! - [`of_table`]: figures of a comparison, of a sweep or of a fit, read by [`table`](crate::studies::table).
 //! - `spec`: what a figure shows.
 //! - `source`: the runs or the table that a figure shows, what of them its file carries, and the way back.
+//! - `drawing`: a figure of runs or of a table is drawn from its source.
 //! - `redraw`: a figure, drawn again from its file.
 //! - [`quantity`]: columns and readouts as they stand at an axis.
 
 mod chords;
 pub mod course;
 mod dense;
+mod drawing;
 mod job;
 pub mod kind;
 pub mod labels;

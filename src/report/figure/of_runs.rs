@@ -54,7 +54,7 @@ pub fn figures(
         .zip(&kinds)
         .map(|(source, kind)| {
             let is_single = source.runs.len() == 1;
-            FigureJob::new(source, kind, if is_single { known } else { &nothing })
+            source.job(kind, if is_single { known } else { &nothing })
         })
         .collect();
     let mut figures = Vec::new();

@@ -1,8 +1,7 @@
 //! What a figure is drawn from, what of that its file carries, and the way back.
 
+use super::job::{FigureJob, FigureRun, KnownNumbers};
 use super::kind::FigureKind;
-use super::of_runs::{self, DrawnFigure, FigureRun, KnownNumbers};
-use super::of_table;
 use super::spec::FigureSpec;
 use crate::engine::data::{self, MeasuredData};
 use crate::engine::provenance::{File, Origin, Payload, sha256};
@@ -11,9 +10,7 @@ use crate::engine::text::printable::brief;
 use crate::plot::format::{self, PageFormat};
 use crate::plot::scene::{PageScene, Unwritable};
 use crate::studies::table::TableSource;
-use std::ops::ControlFlow;
 use std::path::Path;
-use std::slice;
 use std::sync::Arc;
 
 /// What a figure shows: runs, beside what was measured where there is something, or else a table.
@@ -26,28 +23,6 @@ pub struct FigureSource {
 }
 
 impl FigureSource {
-    /// Draws it. `watch` is told the step reached and the last one, and says whether to go on; `None` where it said no.
-    ///
-    /// # Errors
-    /// When it cannot be drawn so, in words.
-    pub fn draw(
-        &self,
-        watch: impl FnMut(u64, u64) -> ControlFlow<()>,
-    ) -> Result<Option<DrawnFigure>, String> {
-        self.check()?;
-        match &self.table {
-            Some(table) => match of_table(table, &self.spec) {
-                Ok(figure) => Ok(Some(figure)),
-                Err(refusal) => Err(format!("{}: {refusal}", table.origin)),
-            },
-            None => {
-                let known = KnownNumbers::default();
-                let figures = of_runs::figures(slice::from_ref(self), &known, watch)?;
-                Ok(figures.and_then(|mut figures| figures.pop()))
-            }
-        }
-    }
-
     /// Draws `measured` with the runs.
     pub fn draw_with(&mut self, measured: Option<Arc<MeasuredData>>) {
         self.spec.measured_until_s = measured.as_ref().and_then(|it| it.until_s);
@@ -76,6 +51,21 @@ impl FigureSource {
             }
             (None, Some(measured)) => Ok(FigureKind::measured(measured.series()?)),
             (None, None) => Ok(FigureKind::traces()),
+        }
+    }
+
+    /// Returns it as a figure of runs to be drawn: of this `kind`, with what is `known` of its runs.
+    pub(super) fn job<'a>(
+        &'a self,
+        kind: &'a FigureKind,
+        known: &'a KnownNumbers,
+    ) -> FigureJob<'a> {
+        FigureJob {
+            runs: &self.runs,
+            spec: &self.spec,
+            kind,
+            measured: self.measured.as_deref(),
+            known,
         }
     }
 
@@ -133,25 +123,6 @@ impl FigureSource {
         }
         Ok(source)
     }
-}
-
-/// The figure of `table` that is asked for.
-fn of_table(table: &TableSource, spec: &FigureSpec) -> Result<DrawnFigure, String> {
-    let columns: Vec<_> = spec
-        .kind
-        .iter()
-        .flat_map(|kind| kind.split(','))
-        .map(str::trim)
-        .collect();
-    let mut chart = of_table::chart(table, &columns, spec.page_width_pt())?;
-    let without_point = of_table::warning(table, &chart);
-    let hidden = spec.labels.apply(&mut chart)?;
-    let mut figure = DrawnFigure::without_remarks(chart.scene());
-    spec.labels.write_title(&mut figure.scene);
-    figure
-        .warnings
-        .extend(without_point.into_iter().chain(hidden));
-    Ok(figure)
 }
 
 fn refused(rule: &str) -> Problems {

@@ -9,7 +9,7 @@ use crate::engine::scenario::screen::{ABOVE, THREE_D, TRACES};
 use crate::engine::text::number::{rounded, significant};
 use crate::plot::{COLUMN_PT, PageScene};
 use crate::report::figure::course::{RunSampler, SampleRequest, SampledRun};
-use crate::report::figure::kind::FigureKind;
+use crate::report::figure::kind::{FigureKind, RESIDUALS};
 use crate::report::figure::of_runs::{self, DrawnFigure, FigureRun, KnownNumbers};
 use crate::report::figure::{FigureSource, FigureSpec};
 use std::ops::ControlFlow;
@@ -26,9 +26,8 @@ pub struct WriteupFigure {
     pub source: FigureSource,
 }
 
-/// The figures of what was measured, and of measured less run.
+/// The figure of what was measured.
 const MEASURED_FIGURE: &str = "measured";
-const RESIDUALS_FIGURE: &str = "residuals";
 /// The figure of the first swings of a run.
 const SWINGS_FIGURE: &str = "swings";
 /// Least number of swings of a run that has this figure.
@@ -152,7 +151,7 @@ fn also(scenario: &Scenario, readouts: &Readouts, is_exact: bool, exact: bool) -
     format!("{beneath}{}", joined.unwrap_or_default())
 }
 
-/// The figures of what was measured, and of measured less run.
+/// The figure of what was measured.
 fn of_data(beside: &MeasuredComparison, whole: &FigureSource, also: &str) -> Vec<PlannedFigure> {
     let measured = beside.reached();
     let Some(series) = measured
@@ -172,7 +171,7 @@ fn of_data(beside: &MeasuredComparison, whole: &FigureSource, also: &str) -> Vec
     let kind = FigureKind::measured(series);
     vec![
         PlannedFigure::new(MEASURED_FIGURE, &kind, over_time, &whole),
-        PlannedFigure::new(RESIDUALS_FIGURE, &FigureKind::Residuals, less, &whole),
+        PlannedFigure::new(RESIDUALS, &FigureKind::Residuals, less, &whole),
     ]
 }
 

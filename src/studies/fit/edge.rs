@@ -6,9 +6,9 @@
 //! the truth at least as often as it says, since those throws whose s came out above 0 are stated as usual.
 
 use super::chart::{Chart, Rule, moment};
+use super::fitted::Fitted;
 use super::free::Free;
 use super::levenberg::{Minimum, SINGULAR};
-use super::search::Fitted;
 use super::solution::COMBINATION_ROUNDING;
 use super::within::complement;
 use crate::engine::text::number::significant;

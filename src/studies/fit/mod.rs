@@ -6,10 +6,11 @@
 //! [`chart`] says in which parameters the search goes on, and within which limits. [`levenberg`] looks for the values, by
 //! steps that [`within`] finds; [`weights`] says how much each datum counts, [`solution`] what the minimum says of the keys
 //! and of the model, [`edge`] what it says where a limit holds them, [`verdict`] whether the model fits, in a sentence.
-//! [`search`] brings these together to a [`Fit`], [`report`] writes it for people and programs, and as a CSV.
+//! [`search`] brings these together to a [`Fit`], with each key as [`fitted`], [`report`] writes it for people and programs, and as a CSV.
 
 pub mod chart;
 pub mod edge;
+pub mod fitted;
 pub mod flights;
 pub mod free;
 pub mod levenberg;

@@ -1,8 +1,9 @@
 //! A fit as people read it, as programs do, and as a CSV.
 
+use super::fitted::{Fitted, Sides};
 use super::free::shown;
 use super::model::Model;
-use super::search::{Fit, Fitted, Sides};
+use super::search::Fit;
 use super::solution::student;
 use crate::engine::data::quantity::TIME_COLUMN;
 use crate::engine::data::{DataKind, Residual};

@@ -2,7 +2,7 @@
 
 use super::chart::Chart;
 use super::edge::{Edge, edges_at};
-use super::free::Free;
+use super::fitted::{Fitted, Sides};
 use super::levenberg::{self, Failure, LeastSquares, Minimum, Stop};
 use super::model::{FitProgress, Model};
 use super::solution::{FitSolution, Quality, SILENT_KEY, scatter_variance};
@@ -30,26 +30,6 @@ pub struct Fit {
     pub variance: Option<f64>,
     /// The limits that hold the keys.
     pub edges: Vec<Edge>,
-}
-
-#[derive(Clone, Debug)]
-pub struct Fitted {
-    /// The key, where the search began, and its bounds.
-    pub free: Free,
-    pub value: f64,
-    /// One standard uncertainty of it, of two sides the larger one; `None` where it cannot be stated.
-    pub sigma: Option<f64>,
-    /// The uncertainties to both sides, which differ where a limit of nature holds the key.
-    pub sides: Option<Sides>,
-    /// Whether it is held at a bound, beyond which the fit would be better.
-    pub is_held: bool,
-}
-
-/// How far below and above its value a key may be.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sides {
-    pub below: f64,
-    pub above: f64,
 }
 
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

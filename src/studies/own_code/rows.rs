@@ -27,7 +27,7 @@ const AGREEMENT_TOLERANCES: [f64; 2] = [1e-8, 1e-6];
 
 #[derive(Clone, Debug)]
 pub struct ProgramColumn {
-    /// Its place in [`ROW_COLUMN_NAMES`].
+    /// Its place in `ROW_COLUMN_NAMES`.
     pub place: usize,
     pub values: Vec<f64>,
     /// How many digits its values have at most: behind the point, and in all.

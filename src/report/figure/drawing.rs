@@ -1,0 +1,53 @@
+//! Draws a figure of runs or of a table.
+
+use super::job::{DrawnFigure, KnownNumbers};
+use super::of_runs;
+use super::of_table;
+use super::source::FigureSource;
+use super::spec::FigureSpec;
+use crate::studies::table::TableSource;
+use std::ops::ControlFlow;
+use std::slice;
+
+impl FigureSource {
+    /// Draws it. `watch` is told the step reached and the last one, and says whether to go on; `None` where it said no.
+    ///
+    /// # Errors
+    /// When it cannot be drawn so, in words.
+    pub fn draw(
+        &self,
+        watch: impl FnMut(u64, u64) -> ControlFlow<()>,
+    ) -> Result<Option<DrawnFigure>, String> {
+        self.check()?;
+        match &self.table {
+            Some(table) => match of_table(table, &self.spec) {
+                Ok(figure) => Ok(Some(figure)),
+                Err(refusal) => Err(format!("{}: {refusal}", table.origin)),
+            },
+            None => {
+                let known = KnownNumbers::default();
+                let figures = of_runs::figures(slice::from_ref(self), &known, watch)?;
+                Ok(figures.and_then(|mut figures| figures.pop()))
+            }
+        }
+    }
+}
+
+/// The figure of `table` that is asked for.
+fn of_table(table: &TableSource, spec: &FigureSpec) -> Result<DrawnFigure, String> {
+    let columns: Vec<_> = spec
+        .kind
+        .iter()
+        .flat_map(|kind| kind.split(','))
+        .map(str::trim)
+        .collect();
+    let mut chart = of_table::chart(table, &columns, spec.page_width_pt())?;
+    let without_point = of_table::warning(table, &chart);
+    let hidden = spec.labels.apply(&mut chart)?;
+    let mut figure = DrawnFigure::without_remarks(chart.scene());
+    spec.labels.write_title(&mut figure.scene);
+    figure
+        .warnings
+        .extend(without_point.into_iter().chain(hidden));
+    Ok(figure)
+}
