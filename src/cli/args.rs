@@ -9,7 +9,6 @@ use crate::engine::scenario::{Document, Problem, Problems, Scenario};
 use crate::lab::view::theme::Background;
 use crate::lab::view::theme::Marker;
 use crate::physics::scheme;
-use crate::tui::terminal::MOST_SCREEN_CELLS;
 use crate::tui::theme::ColorChoice;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, ValueEnum};

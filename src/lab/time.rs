@@ -36,15 +36,17 @@ impl Lab {
         }
         self.follow_export();
         self.go_on_with_script(halt);
-        if self.changed && self.player.is_due(now, self.view.look.window_s) {
+        if self.changed && self.player.is_due(now) {
             self.read_now();
+        } else if self.changed {
+            self.choose_window();
         }
     }
 
     /// Takes the run to `step` before returning, as long as `go_on` says so.
     ///
-    /// The strip of the fast motion keeps its window from one reading of the numbers to the next. They are read after 1, 2, 4
-    /// and so on steps, so that the picture does not depend on how fast the steps are taken.
+    /// The window of the traces depends on the one before. It is chosen after 1, 2, 4 and so on steps, so that the picture
+    /// does not depend on how fast the steps are taken.
     pub fn begin_at(
         &mut self,
         step: u64,
@@ -85,9 +87,10 @@ impl Lab {
         if let Halt::NotFinite(_) = halt {
             let edits = self.edits.runs.journal();
             let is_edited = edits.count_by(self.player.step_number()) > 0;
-            let mends = self.adviser.offer(&self.player).map(|[_, short]| short);
+            let offer = self.adviser.offer(&self.player);
+            let cure = offer.map(|offer| format!("a: rerun with {offer}"));
             self.messages
-                .tell_of_break(&text, mends.as_deref(), is_edited);
+                .tell_of_break(&text, cure.as_deref(), is_edited);
             self.changed = true;
         } else {
             self.tell(text);

@@ -244,7 +244,7 @@ impl Lessons {
             && !filter.is_empty()
         {
             names.retain(|name| {
-                let lesson = reading::open_again(name).ok();
+                let lesson = opening::open_again(name).ok();
                 let title = lesson.map_or(String::new(), |lesson| lesson.title);
                 Match::find(&format!("{title} {name}"), filter).is_some()
             });

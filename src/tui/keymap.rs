@@ -63,6 +63,25 @@ pub enum KeyEffect {
     Action(Action),
 }
 
+impl KeyEffect {
+    pub fn carry_out(self, lab: &mut TheLab) -> Option<LabRequest> {
+        match (self, arrows(lab)) {
+            (Self::Commands(meant), _) => lab.press(meant),
+            (Self::Action(Action::Move(direction, times)), Some(arrows)) => {
+                lab.press(|lab, count| arrows(lab, direction, times * repeated(count)));
+            }
+            (Self::Action(action), _) => return lab.update(action),
+        }
+        None
+    }
+}
+
+/// What arrows mean in the pane that has the focus.
+fn arrows(lab: &TheLab) -> Option<Arrows> {
+    let row = panes::row(lab.view().focus);
+    row.arrows.filter(|_| lab.popups().mode == Mode::Lab)
+}
+
 /// How long the footer names a key where there is not room for all: the least go first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum FooterPriority {

@@ -81,7 +81,7 @@ impl Pointer {
     fn press(&mut self, layout: &ScreenLayout, at: Position, lab: &mut Lab) -> Option<LabRequest> {
         self.held = None;
         if layout.keys.contains(at) {
-            let key = chrome::key_at(lab, layout, at.x)?;
+            let key = chrome::key_at(lab, layout.keys, at.x)?;
             return press(key, lab);
         }
         let is_double = self.is_double(at, lab.now());
@@ -223,7 +223,7 @@ fn wheel(layout: &ScreenLayout, at: Position, up: bool, lab: &mut Lab) -> Option
     let lines = KeyEffect::Action(Action::Move(line, 1));
     if lab.popups().mode != Mode::Lab {
         for _ in 0..LINES {
-            carry_out(lines, lab);
+            lines.carry_out(lab);
         }
         return None;
     }
@@ -245,5 +245,5 @@ fn wheel(layout: &ScreenLayout, at: Position, up: bool, lab: &mut Lab) -> Option
         _ => return None,
     };
     lab.turn_to(pane);
-    carry_out(does, lab)
+    does.carry_out(lab)
 }

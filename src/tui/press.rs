@@ -17,7 +17,7 @@ pub fn press(key: Key, lab: &mut Lab) -> Option<LabRequest> {
             lab.update(Action::Lesson(LessonKey::Digit(digit)))
         }
         Some(does) => {
-            let request = panes::carry_out(does, lab);
+            let request = does.carry_out(lab);
             help::limit(lab);
             request
         }

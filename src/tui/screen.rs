@@ -54,7 +54,8 @@ pub fn scroll_page(lab: &mut Lab, direction: Direction, size: Rect) {
 
 /// Whether the page of the lesson goes on below what a screen of this size shows of it.
 pub fn page_goes_on(lab: &Lab, size: Rect) -> bool {
-    chrome::page_goes_on(lab, &layout(lab, true, size))
+    let place = layout(lab, true, size).place_of(Pane::Lesson);
+    place.is_some_and(|place| lesson::has_more(lab, place))
 }
 
 /// Where everything of `lab` stands on `area`; `keys` says whether there is a line of keys.

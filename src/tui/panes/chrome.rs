@@ -10,7 +10,7 @@ use crate::lab::action::{Action, LessonKey};
 use crate::lab::view::Pane;
 use crate::lab::view::step::StepPageChoice;
 use crate::tui::keymap::{BINDINGS, Binding, FooterPriority, Key, KeyEffect, Mode};
-use crate::tui::layout::ScreenLayout;
+use crate::tui::screen::page_goes_on;
 use crate::tui::split::split_columns;
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
@@ -238,14 +238,9 @@ impl FooterItem {
     }
 }
 
-/// Returns whether the page of the lesson continues below what the screen shows of it.
-pub fn page_goes_on(lab: &Lab, places: &ScreenLayout) -> bool {
-    let place = places.place_of(Pane::Lesson);
-    place.is_some_and(|place| lesson::has_more(lab, place))
-}
-
-fn place_keys(lab: &Lab, places: &ScreenLayout) -> Vec<(u16, FooterItem)> {
-    let (items, gap) = fitted(footer(lab, page_goes_on(lab, places)), places.keys.width);
+fn place_keys(lab: &Lab, area: Rect) -> Vec<(u16, FooterItem)> {
+    let screen = Rect::new(0, 0, area.width, area.bottom());
+    let (items, gap) = fitted(footer(lab, page_goes_on(lab, screen)), area.width);
     let mut x = 1;
     items
         .into_iter()

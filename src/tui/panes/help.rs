@@ -56,7 +56,7 @@ pub fn do_entry(lab: &mut Lab) -> Option<LabRequest> {
     }
     match binding.does {
         KeyEffect::Action(Action::Help) => None,
-        does => carry_out(does, lab),
+        does => does.carry_out(lab),
     }
 }
 

@@ -21,7 +21,7 @@ use crate::engine::analysis::MeasuredNumber;
 use crate::engine::run::Sample;
 use crate::engine::text::printable::printable;
 use crate::engine::text::wrap::{columns, wrapped};
-use crate::lab::action::{Action, Direction, repeated};
+use crate::lab::action::Direction;
 use crate::lab::comparison::DataComparison;
 use crate::lab::playback::ghost::Ghost;
 use crate::lab::playback::live::LiveRun;
@@ -95,19 +95,6 @@ pub fn keys_of(lab: &Lab) -> impl Iterator<Item = &'static Binding> + Clone {
         let mut keys = own.iter().flat_map(|own| own.keys);
         keys.all(|key| !row.keys.contains(key))
     }))
-}
-
-/// Carries out what a key does; an arrow does what it means in the pane that has the focus.
-pub fn carry_out(does: KeyEffect, lab: &mut Lab) -> Option<LabRequest> {
-    let arrows = row(lab.view().focus).arrows;
-    match (does, arrows.filter(|_| lab.popups().mode == Mode::Lab)) {
-        (KeyEffect::Commands(meant), _) => lab.press(meant),
-        (KeyEffect::Action(Action::Move(direction, times)), Some(arrows)) => {
-            lab.press(|lab, count| arrows(lab, direction, times * repeated(count)));
-        }
-        (KeyEffect::Action(action), _) => return lab.update(action),
-    }
-    None
 }
 
 /// What the panes of the motion draw: a run, the runs and data beside it, and how they are looked at.
