@@ -345,6 +345,8 @@ fn lines_that_are_not_the_runs_are_found() {
     told(&joined(&lines[..at]), "it is cut off");
     let uneven = text.replace(lines[at], &format!("{},7", lines[at]));
     told(uneven.as_bytes(), " is \"29,");
+    // a byte-order mark belongs to the beginning of a file
+    difference(text.replace("\n40,", "\n\u{feff}40,").as_bytes());
     let unended = difference(text.trim_end().as_bytes());
     assert!(unended.to_string().contains("is cut off before its end"));
     assert_eq!(unended.line, lines.len() as u64);

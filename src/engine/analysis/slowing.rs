@@ -37,7 +37,6 @@ impl FrictionEffect {
             swing_viscous,
             ..
         } = friction;
-
         let least = SPIN_ROUNDING * state.momentum.norm();
         let along_axle = state.axle().dot(&state.momentum).abs();
         let spin = top.map(|_| if along_axle > least { along_axle } else { 0.0 });
@@ -50,9 +49,9 @@ impl FrictionEffect {
     }
 }
 
-/// Returns the time in which a friction that is `rate` times as large as its effect on `moment` ends it, s.
-fn time_s(moment: Option<f64>, rate: f64) -> Option<f64> {
-    Some(moment? / rate).filter(|s| s.is_finite())
+/// Returns how long friction takes that removes `rate` in a second, s, to remove `amount`; `None` without an end.
+fn time_s(amount: Option<f64>, rate: f64) -> Option<f64> {
+    Some(amount? / rate).filter(|s| s.is_finite())
 }
 
 impl fmt::Display for FrictionEffect {

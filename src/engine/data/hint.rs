@@ -121,7 +121,6 @@ impl Guess<'_> {
                 !self.cells.own[place].is_mapped && (is_first || track(self.cells, place) == only)
             })
             .collect();
-
         let times = self.cells.names.iter().filter(|name| *name == TIME_COLUMN);
         let has_time = times.count() == 1;
         if !has_time && self.cells.names.iter().any(|name| is_of_table(name)) {

@@ -155,11 +155,11 @@ impl Document {
     pub fn set(&mut self, argument: &str) -> Result<(), Problems> {
         let Some((key, value)) = argument.split_once('=') else {
             let rule = "must be KEY=VALUE, such as motion.time_step_s=0.05";
-            return Err(self.refused(argument, Problem::at("", rule)));
+            return Err(self.with_error(argument, Problem::at("", rule)));
         };
         let (value, mistake) = toml_or_text(value);
         if let Err(problem) = self.set_value(key.trim(), value) {
-            return Err(self.refused(argument, problem));
+            return Err(self.with_error(argument, problem));
         }
         self.set.push(SetArgument {
             key: key.trim().to_owned(),
@@ -169,7 +169,7 @@ impl Document {
         Ok(())
     }
 
-    fn refused(&self, argument: &str, mut problem: Problem) -> Problems {
+    fn with_error(&self, argument: &str, mut problem: Problem) -> Problems {
         problem.place = Some(set_place(argument));
         Problems::one(self.origin.as_str(), problem)
     }

@@ -24,7 +24,7 @@ const MOST_RATE: f64 = 1e100;
 const AXLE_TOLERANCE: f64 = 1e-9;
 
 pub(super) fn read_body(file: &BodyFile) -> Result<NamedBody, Problems> {
-    few_enough(file)?;
+    check_point_count(file)?;
     let mut points = rim_points(file);
     let mut named = PointNames::default();
     for (index, point) in file.point.iter().enumerate() {
@@ -62,7 +62,7 @@ pub(super) fn read_body(file: &BodyFile) -> Result<NamedBody, Problems> {
     })
 }
 
-fn few_enough(file: &BodyFile) -> Result<(), Problem> {
+fn check_point_count(file: &BodyFile) -> Result<(), Problem> {
     let count = file.rim_points() + file.point.len() + OF_PART * file.part.len();
     if count as i64 <= MOST_POINTS {
         return Ok(());

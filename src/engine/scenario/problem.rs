@@ -317,7 +317,7 @@ fn letters(name: &str) -> String {
     all.flat_map(char::to_lowercase).collect()
 }
 
-/// `name` below the dotted path `under`.
+/// Returns the dotted key of `name` in the table at the dotted path `under`.
 pub fn join(under: &str, name: &str) -> String {
     if under.is_empty() {
         name.to_owned()

@@ -132,7 +132,6 @@ pub fn uncertain(number: f64, uncertainty: f64) -> Option<Uncertain> {
     } else {
         scientific(number, 16).1.max(first)
     };
-
     if (-3..=5).contains(&top) && last <= 0 {
         let decimals = last.unsigned_abs() as usize;
         let digits = without_minus_zero(format!("{number:.decimals$}"));

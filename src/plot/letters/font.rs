@@ -148,7 +148,6 @@ fn contour_point(p: Point, is_on: bool) -> ContourPoint {
 impl Glyph {
     fn from_letter(letter: &Letter) -> Self {
         let mut contours: Vec<Vec<ContourPoint>> = Vec::new();
-
         for segment in &letter.outline.0 {
             if let Segment::Move(_) = segment {
                 contours.push(Vec::new());

@@ -69,7 +69,6 @@ impl FigureLabels {
     /// Where the chart cannot have them.
     pub fn apply(&self, chart: &mut Chart) -> Result<Option<String>, String> {
         self.check(chart)?;
-
         if let Some(text) = &self.x {
             rename(&mut chart.x, text, AXIS_TITLE_SHARE * chart.width_pt);
         }

@@ -108,7 +108,6 @@ pub(super) fn above(job: &FigureJob<'_>) -> Result<(Option<ChartSeries>, Option<
             )),
         ));
     }
-
     let places = ChartSeries {
         name: name(measured, shown.len(), job.spec),
         points: shown.iter().map(|place| [place.at.x, place.at.y]).collect(),

@@ -281,7 +281,6 @@ impl Space {
         let mut reach: f64 = 0.0;
         for tick in &ticks.major {
             let foot = self.place(&Self::along(edge, self.share(axis, tick.at)));
-
             // As far out as the label needs to be clear of the tick.
             let half = at(0.5 * ink::width(&tick.label, LABEL_PT), 0.5 * height);
             let clear = SPACE_TICK_LENGTH + TICK_GAP + half.x * out.x.abs() + half.y * out.y.abs();

@@ -198,7 +198,6 @@ impl Inside {
             _ => 1.0,
         });
         let units = DVector::from_iterator(slopes.ncols(), units);
-
         let others: Vec<DVector<f64>> = minimum
             .held
             .iter()

@@ -124,7 +124,6 @@ fn by_time(
     let (gap, off) = even.ok_or_else(|| vec![Problem::at(TIME_NAME, rule)])?;
     let stride = every.unwrap_or_else(|| ((gap / time_step_s).round() as i64).max(1));
     let is_own = is_same(gap / stride as f64, time_step_s, off / stride as f64);
-
     let counts = every.map_or(STEPS_A_ROW.to_vec(), |every| vec![every]);
     let mut others: Vec<_> = counts
         .into_iter()

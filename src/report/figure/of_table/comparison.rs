@@ -18,7 +18,7 @@ pub(super) fn drawn(
 ) -> Result<(ChartAxis, Vec<Panel>), String> {
     let steps = numbers(table, "time_step_s")?;
     let groups = grouped(&table.texts("scheme").unwrap_or_default());
-    let columns = or_error(columns);
+    let columns = columns_or_default(columns);
     let mut panels = Vec::new();
     for column in columns {
         let values = numbers(table, column)?;
@@ -55,7 +55,7 @@ fn named(scheme: &str, slope: Option<f64>, width_pt: f64) -> String {
 }
 
 /// The columns that are drawn where `columns` were asked for.
-fn or_error<'a>(columns: &'a [&'a str]) -> &'a [&'a str] {
+fn columns_or_default<'a>(columns: &'a [&'a str]) -> &'a [&'a str] {
     if columns.is_empty() {
         &["error_m"]
     } else {
