@@ -5,9 +5,8 @@ pub use crate::lab::Mode;
 use crate::lab::action::{Action, Ask, Direction, FieldEdit, LessonKey, SHIFT_FACTOR, repeated};
 use crate::lab::command::{Command, CursorTo, PushChoice, SeekTarget};
 use crate::lab::view::Pane;
-use crate::lab::{KeyCommands, Lab as TheLab, LabRequest};
+use crate::lab::{KeyCommands, Lab as TheLab};
 use crate::plot::camera::Camera;
-use crate::tui::panes::{self, Arrows};
 use Key::{
     BackTab, Backspace, Char, Ctrl, Delete, Down, End, Enter, Esc, Home, Left, PageDown, PageUp,
     Right, ShiftDown, ShiftLeft, ShiftRight, ShiftUp, Tab, Up,
@@ -61,25 +60,6 @@ pub enum KeyEffect {
     /// The commands that this function returns for the count that was typed before the key are carried out.
     Commands(fn(&TheLab, Option<u64>) -> KeyCommands),
     Action(Action),
-}
-
-impl KeyEffect {
-    pub fn carry_out(self, lab: &mut TheLab) -> Option<LabRequest> {
-        match (self, arrows(lab)) {
-            (Self::Commands(meant), _) => lab.press(meant),
-            (Self::Action(Action::Move(direction, times)), Some(arrows)) => {
-                lab.press(|lab, count| arrows(lab, direction, times * repeated(count)));
-            }
-            (Self::Action(action), _) => return lab.update(action),
-        }
-        None
-    }
-}
-
-/// What arrows mean in the pane that has the focus.
-fn arrows(lab: &TheLab) -> Option<Arrows> {
-    let row = panes::row(lab.view().focus);
-    row.arrows.filter(|_| lab.popups().mode == Mode::Lab)
 }
 
 /// How long the footer names a key where there is not room for all: the least go first.
@@ -391,44 +371,6 @@ pub fn meaning(
         _ => return None,
     };
     Some(KeyEffect::Action(action))
-}
-
-/// Returns the message about `key`, which means nothing in `mode`: where it means something, or what there is to press.
-pub fn refusal(mode: Mode, key: Key) -> String {
-    let here = match mode {
-        Lab => "? lists the keys",
-        Browser => "Enter opens, Esc closes",
-        Lessons => "Enter opens, Esc closes the list",
-        Find => "Enter edits the value, Esc shows all values",
-        Help => "Enter does the entry, Esc closes",
-        Dialog => "Enter applies what is typed, Esc cancels",
-    };
-    match elsewhere(mode, key) {
-        Some(place) => format!("{key} is a key {place}; {here}"),
-        None => format!("no key {key} here; {here}"),
-    }
-}
-
-/// Returns where `key` means something, and how to get there; `None` if it means nothing anywhere else.
-fn elsewhere(mode: Mode, key: Key) -> Option<String> {
-    let of_pane = panes::rows().find(|pane| pane.keys.iter().any(|row| row.keys.contains(&key)));
-    if let Some(pane) = of_pane.filter(|_| mode == Lab) {
-        let way = match pane.id {
-            Pane::Lesson => "L lists the lessons",
-            Pane::Step => "v opens it",
-            Pane::Parameters => "e turns to it",
-            Pane::Traces | Pane::Above | Pane::ThreeD => "Tab turns to it",
-        };
-        return Some(format!("of the pane \"{}\": {way}", pane.title));
-    }
-    let mut others = BINDINGS.iter().filter(|row| !row.modes.contains(&mode));
-    let other = others.find(|row| row.keys.contains(&key))?;
-    Some(match other.modes[0] {
-        Lab => "of the lab".to_owned(),
-        Browser | Lessons | Help => "of lists (o, L, ?, c)".to_owned(),
-        Find => "of the search for a value (/)".to_owned(),
-        Dialog => "of dialogs, where text is typed".to_owned(),
-    })
 }
 
 impl std::fmt::Display for Key {

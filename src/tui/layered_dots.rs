@@ -88,10 +88,12 @@ impl LayeredDots {
 
     fn place(&self, (x, y): FineDot) -> Option<usize> {
         let (across, down) = self.marker.dots();
-        let x = x.floor() * across as f64 / FINE_DOTS.0 as f64;
-        let y = y.floor() * down as f64 / FINE_DOTS.1 as f64;
-        let place = on_sheet((x, y), (self.width, self.height));
-        place.map(|(x, y)| y * self.width + x)
+        let dot = (
+            x.floor() * across as f64 / FINE_DOTS.0 as f64,
+            y.floor() * down as f64 / FINE_DOTS.1 as f64,
+        );
+        let (column, row) = on_sheet(dot, (self.width, self.height))?;
+        Some(row * self.width + column)
     }
 
     /// Sets a dot, unless one of a higher layer is there; outside the sheet nothing happens.

@@ -4,7 +4,8 @@ use super::keymap::{Key, KeyEffect, Mode, zoomed_in, zoomed_out};
 use super::layout::ScreenLayout;
 use super::panes::form::FormPane;
 use super::panes::{
-    PlotInputs, browser, chrome, help, lesson, overview::Overview, parameters, traces::Traces,
+    PlotInputs, browser, carry_out, chrome, help, lesson, overview::Overview, parameters,
+    traces::Traces,
 };
 use super::press::press;
 use super::screen;
@@ -81,7 +82,7 @@ impl Pointer {
     fn press(&mut self, layout: &ScreenLayout, at: Position, lab: &mut Lab) -> Option<LabRequest> {
         self.held = None;
         if layout.keys.contains(at) {
-            let key = chrome::key_at(lab, layout.keys, at.x)?;
+            let key = chrome::key_at(lab, layout, at.x)?;
             return press(key, lab);
         }
         let is_double = self.is_double(at, lab.now());
@@ -223,7 +224,7 @@ fn wheel(layout: &ScreenLayout, at: Position, up: bool, lab: &mut Lab) -> Option
     let lines = KeyEffect::Action(Action::Move(line, 1));
     if lab.popups().mode != Mode::Lab {
         for _ in 0..LINES {
-            lines.carry_out(lab);
+            carry_out(lines, lab);
         }
         return None;
     }
@@ -245,5 +246,5 @@ fn wheel(layout: &ScreenLayout, at: Position, up: bool, lab: &mut Lab) -> Option
         _ => return None,
     };
     lab.turn_to(pane);
-    does.carry_out(lab)
+    carry_out(does, lab)
 }

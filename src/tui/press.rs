@@ -1,9 +1,10 @@
 //! What a key that is pressed does in the lab.
 
-use super::keymap::{self, Key, KeyEffect};
+use super::keymap::{self, BINDINGS, Key, KeyEffect};
 use super::panes::{self, help};
 use crate::lab::action::{Action, LessonKey};
-use crate::lab::{Lab, LabRequest};
+use crate::lab::view::Pane;
+use crate::lab::{Lab, LabRequest, Mode};
 
 pub fn press(key: Key, lab: &mut Lab) -> Option<LabRequest> {
     let mode = lab.mode();
@@ -17,12 +18,12 @@ pub fn press(key: Key, lab: &mut Lab) -> Option<LabRequest> {
             lab.update(Action::Lesson(LessonKey::Digit(digit)))
         }
         Some(does) => {
-            let request = does.carry_out(lab);
+            let request = panes::carry_out(does, lab);
             help::limit(lab);
             request
         }
         None => {
-            lab.refuse(keymap::refusal(mode, key));
+            lab.refuse(refusal(mode, key));
             None
         }
     }
@@ -31,4 +32,42 @@ pub fn press(key: Key, lab: &mut Lab) -> Option<LabRequest> {
 /// Whether a digit is for the sheet; behind the first digit of a count it goes on with the count.
 fn is_of_sheet(lab: &Lab) -> bool {
     lab.view().sheet_takes_digits() && lab.popups().count.is_none()
+}
+
+/// Returns the message about `key`, which means nothing in `mode`: where it means something, or what there is to press.
+fn refusal(mode: Mode, key: Key) -> String {
+    let here = match mode {
+        Mode::Lab => "? lists the keys",
+        Mode::Browser => "Enter opens, Esc closes",
+        Mode::Lessons => "Enter opens, Esc closes the list",
+        Mode::Find => "Enter edits the value, Esc shows all values",
+        Mode::Help => "Enter does the entry, Esc closes",
+        Mode::Dialog => "Enter applies what is typed, Esc cancels",
+    };
+    match elsewhere(mode, key) {
+        Some(place) => format!("{key} is a key {place}; {here}"),
+        None => format!("no key {key} here; {here}"),
+    }
+}
+
+/// Returns where `key` means something, and how to get there; `None` if it means nothing anywhere else.
+fn elsewhere(mode: Mode, key: Key) -> Option<String> {
+    let of_pane = panes::rows().find(|pane| pane.keys.iter().any(|row| row.keys.contains(&key)));
+    if let Some(pane) = of_pane.filter(|_| mode == Mode::Lab) {
+        let way = match pane.id {
+            Pane::Lesson => "L lists the lessons",
+            Pane::Step => "v opens it",
+            Pane::Parameters => "e turns to it",
+            Pane::Traces | Pane::Above | Pane::ThreeD => "Tab turns to it",
+        };
+        return Some(format!("of the pane \"{}\": {way}", pane.title));
+    }
+    let mut others = BINDINGS.iter().filter(|row| !row.modes.contains(&mode));
+    let other = others.find(|row| row.keys.contains(&key))?;
+    Some(match other.modes[0] {
+        Mode::Lab => "of the lab".to_owned(),
+        Mode::Browser | Mode::Lessons | Mode::Help => "of lists (o, L, ?, c)".to_owned(),
+        Mode::Find => "of the search for a value (/)".to_owned(),
+        Mode::Dialog => "of dialogs, where text is typed".to_owned(),
+    })
 }

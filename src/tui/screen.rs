@@ -54,8 +54,7 @@ pub fn scroll_page(lab: &mut Lab, direction: Direction, size: Rect) {
 
 /// Whether the page of the lesson goes on below what a screen of this size shows of it.
 pub fn page_goes_on(lab: &Lab, size: Rect) -> bool {
-    let place = layout(lab, true, size).place_of(Pane::Lesson);
-    place.is_some_and(|place| lesson::has_more(lab, place))
+    chrome::page_goes_on(lab, &layout(lab, true, size))
 }
 
 /// Where everything of `lab` stands on `area`; `keys` says whether there is a line of keys.
@@ -86,7 +85,7 @@ pub fn draw(lab: &Lab, keys: bool, area: Rect, buf: &mut Buffer) {
     if has_message || !lab.view().look.bare && !share_a_row {
         hint::draw(lab, keys && places.is_cramped, place, buf);
     }
-    chrome::keys(lab, places.keys, buf);
+    chrome::keys(lab, &places, buf);
     draw_popup(lab, &places, buf);
     match lab.view().marker {
         Marker::Ascii => to_ascii(area, buf),

@@ -119,10 +119,10 @@ fn put(out: &mut String, cells: &[(u32, &Cell)], top: u32, page: PageColors) {
         CellKind::Shape => {
             let path: String = cells
                 .iter()
-                .flat_map(|(left, cell)| {
+                .flat_map(|(at, cell)| {
                     let symbol = cell.symbol().chars().next().unwrap_or(' ');
                     let bars = shape(symbol).into_iter();
-                    bars.map(move |[x, y, w, h]| format!("M{} {}h{w}v{h}h-{w}z", left + x, top + y))
+                    bars.map(move |[x, y, w, h]| format!("M{} {}h{w}v{h}h-{w}z", at + x, top + y))
                 })
                 .collect();
             let _ = writeln!(out, "<path fill=\"{ink}\"{dim} d=\"{path}\"/>");

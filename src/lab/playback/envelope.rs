@@ -101,7 +101,7 @@ mod tests {
         (0..200)
             .map(|column| {
                 let rows = (0..=40).map(|part| row(f64::from(column) + f64::from(part) / 40.0));
-                rows.map(|row| (row, row))
+                rows.map(|at| (at, at))
                     .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
             })
             .collect()

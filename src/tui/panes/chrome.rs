@@ -1,6 +1,6 @@
 //! The rows around the panes: the header, the verdict and the keys.
 
-use super::{longest, shortened, write};
+use super::{lesson, longest, shortened, write};
 use crate::engine::analysis::verdict::{Phrase, Verdict, VerdictWord};
 use crate::engine::run::Clock;
 use crate::engine::text::number::{fixed, significant};
@@ -10,7 +10,7 @@ use crate::lab::action::{Action, LessonKey};
 use crate::lab::view::Pane;
 use crate::lab::view::step::StepPageChoice;
 use crate::tui::keymap::{BINDINGS, Binding, FooterPriority, Key, KeyEffect, Mode};
-use crate::tui::screen::page_goes_on;
+use crate::tui::layout::ScreenLayout;
 use crate::tui::split::split_columns;
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
@@ -165,16 +165,10 @@ fn fitting_phrases(
     let hint = verdict.hint.iter().map(|it| (it, PhraseKind::Hint));
     let cure = cure.map(|it| (it, PhraseKind::Cure));
     let mut phrases: Vec<_> = reasons.chain(hint).chain(cure).collect();
-    let length = |phrases: &[(&Phrase, PhraseKind)], is_long: bool| {
-        let all = phrases
-            .iter()
-            .map(|(phrase, _)| columns(if is_long { &phrase.long } else { &phrase.short }) + gap);
-        all.sum::<usize>().saturating_sub(gap)
-    };
-    if length(&phrases, true) > room {
+    if length_of(&phrases, true, gap) > room {
         phrases.retain(|(_, kind)| *kind != PhraseKind::Hint);
     }
-    while length(&phrases, true) > room && length(&phrases, false) > room {
+    while length_of(&phrases, true, gap) > room && length_of(&phrases, false, gap) > room {
         let reason = phrases
             .iter()
             .rposition(|(_, kind)| *kind != PhraseKind::Cure);
@@ -183,7 +177,7 @@ fn fitting_phrases(
             None => break,
         };
     }
-    let is_long = length(&phrases, true) <= room;
+    let is_long = length_of(&phrases, true, gap) <= room;
     phrases
         .into_iter()
         .map(|(phrase, kind)| {
@@ -193,20 +187,28 @@ fn fitting_phrases(
         .collect()
 }
 
+/// The columns of `phrases` in their long or short form, `gap` columns apart.
+fn length_of(phrases: &[(&Phrase, PhraseKind)], is_long: bool, gap: usize) -> usize {
+    let all = phrases
+        .iter()
+        .map(|(phrase, _)| columns(if is_long { &phrase.long } else { &phrase.short }) + gap);
+    all.sum::<usize>().saturating_sub(gap)
+}
+
 /// Draws the keys of the mode, as many as fit.
-pub fn keys(lab: &Lab, area: Rect, buf: &mut Buffer) {
-    let theme = &lab.view().theme;
-    for (at, item) in place_keys(lab, area) {
+pub fn keys(lab: &Lab, places: &ScreenLayout, buf: &mut Buffer) {
+    let (theme, area) = (&lab.view().theme, places.keys);
+    for (at, item) in place_keys(lab, places) {
         let label = item.label();
         let x = write(area, (at, 0), &label, theme.style(Role::Heading), buf);
         write(area, (x + 1, 0), item.word, theme.style(Role::Label), buf);
     }
 }
 
-/// The key that the row of keys on `area` names at the column `x` of the screen.
-pub fn key_at(lab: &Lab, area: Rect, x: u16) -> Option<Key> {
-    let column = x.checked_sub(area.x)?;
-    let mut placed = place_keys(lab, area).into_iter();
+/// The key that the row of keys names at the column `x` of the screen.
+pub fn key_at(lab: &Lab, places: &ScreenLayout, x: u16) -> Option<Key> {
+    let column = x.checked_sub(places.keys.x)?;
+    let mut placed = place_keys(lab, places).into_iter();
     let (at, item) = placed.find(|(at, item)| (*at..at + item.length()).contains(&column))?;
     let mut end = at;
     let mut keys = item.keys.iter().copied();
@@ -238,9 +240,14 @@ impl FooterItem {
     }
 }
 
-fn place_keys(lab: &Lab, area: Rect) -> Vec<(u16, FooterItem)> {
-    let screen = Rect::new(0, 0, area.width, area.bottom());
-    let (items, gap) = fitted(footer(lab, page_goes_on(lab, screen)), area.width);
+/// Returns whether the page of the lesson continues below what the screen shows of it.
+pub fn page_goes_on(lab: &Lab, places: &ScreenLayout) -> bool {
+    let place = places.place_of(Pane::Lesson);
+    place.is_some_and(|place| lesson::has_more(lab, place))
+}
+
+fn place_keys(lab: &Lab, places: &ScreenLayout) -> Vec<(u16, FooterItem)> {
+    let (items, gap) = fitted(footer(lab, page_goes_on(lab, places)), places.keys.width);
     let mut x = 1;
     items
         .into_iter()

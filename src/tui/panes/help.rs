@@ -1,7 +1,7 @@
 //! The help: keys and words, searched by typing; Enter does the key that is selected. Keys are grouped by their
 //! purpose, and the words are those of the glossary.
 
-use super::{SELECTED_MARK, below_rule, popup_rule, rows, write};
+use super::{SELECTED_MARK, below_rule, carry_out, popup_rule, rows, write};
 use crate::engine::text::wrap::{columns, wrapped};
 use crate::lab::action::Action;
 use crate::lab::values::list::Match;
@@ -56,7 +56,7 @@ pub fn do_entry(lab: &mut Lab) -> Option<LabRequest> {
     }
     match binding.does {
         KeyEffect::Action(Action::Help) => None,
-        does => does.carry_out(lab),
+        does => carry_out(does, lab),
     }
 }
 

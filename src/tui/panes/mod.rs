@@ -21,7 +21,7 @@ use crate::engine::analysis::MeasuredNumber;
 use crate::engine::run::Sample;
 use crate::engine::text::printable::printable;
 use crate::engine::text::wrap::{columns, wrapped};
-use crate::lab::action::Direction;
+use crate::lab::action::{Action, Direction, repeated};
 use crate::lab::comparison::DataComparison;
 use crate::lab::playback::ghost::Ghost;
 use crate::lab::playback::live::LiveRun;
@@ -29,8 +29,8 @@ use crate::lab::playback::reading::Reading;
 use crate::lab::step_pane::StepWorkings;
 use crate::lab::view::theme::Theme;
 use crate::lab::view::{Pane, View};
-use crate::lab::{KeyCommands, Lab};
-use crate::tui::keymap::{self, Binding};
+use crate::lab::{KeyCommands, Lab, LabRequest};
+use crate::tui::keymap::{self, Binding, KeyEffect, Mode};
 use crate::tui::split::split_rows;
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
@@ -95,6 +95,19 @@ pub fn keys_of(lab: &Lab) -> impl Iterator<Item = &'static Binding> + Clone {
         let mut keys = own.iter().flat_map(|own| own.keys);
         keys.all(|key| !row.keys.contains(key))
     }))
+}
+
+/// Carries out what a key does; an arrow does what it means in the pane that has the focus.
+pub fn carry_out(does: KeyEffect, lab: &mut Lab) -> Option<LabRequest> {
+    let arrows = row(lab.view().focus).arrows;
+    match (does, arrows.filter(|_| lab.popups().mode == Mode::Lab)) {
+        (KeyEffect::Commands(meant), _) => lab.press(meant),
+        (KeyEffect::Action(Action::Move(direction, times)), Some(arrows)) => {
+            lab.press(|lab, count| arrows(lab, direction, times * repeated(count)));
+        }
+        (KeyEffect::Action(action), _) => return lab.update(action),
+    }
+    None
 }
 
 /// What the panes of the motion draw: a run, the runs and data beside it, and how they are looked at.
@@ -162,18 +175,19 @@ pub(super) fn rule(
     write(area, (0, 0), &line, theme.style(Role::Rule), buf);
     let printed = printable(title);
     let short = shortened(&printed, area.width.saturating_sub(3).into());
-    if focus && !title.is_empty() {
-        let title = format!(" {short} ");
-        write(area, (0, 0), &title, theme.style(Role::Selected), buf);
-    } else if !title.is_empty() {
-        let title = format!("{short} ");
-        write(area, (0, 0), &title, theme.style(Role::Heading), buf);
+    let (text, role) = if focus {
+        (format!(" {short} "), Role::Selected)
+    } else {
+        (format!("{short} "), Role::Heading)
+    };
+    if !title.is_empty() {
+        write(area, (0, 0), &text, theme.style(role), buf);
     }
-    if let Some((text, role)) = right {
-        let x = area.width.saturating_sub(columns(text) as u16 + 1);
+    if let Some((words, look)) = right {
+        let x = area.width.saturating_sub(columns(words) as u16 + 1);
         if usize::from(x) > columns(&short) + 3 {
             write(area, (x, 0), " ", theme.style(Role::Rule), buf);
-            write(area, (x + 1, 0), text, theme.style(role), buf);
+            write(area, (x + 1, 0), words, theme.style(look), buf);
         }
     }
     below_rule(area)

@@ -97,7 +97,7 @@ impl<'a> Overview<'a> {
     pub fn time_s(&self, x: u16) -> Option<f64> {
         let cell = x.checked_sub(self.sheet.x)?;
         let share = f64::from(cell) / f64::from(self.sheet.width.saturating_sub(1).max(1));
-        (cell < self.sheet.width).then(|| self.span.begin_s + share * self.span.window_s)
+        (cell < self.sheet.width).then_some(self.span.begin_s + share * self.span.window_s)
     }
 
     /// Returns the column of cells of `time_s`; a time outside is at the nearer end.

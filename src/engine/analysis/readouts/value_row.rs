@@ -1,7 +1,7 @@
 //! The rows of the lab's values pane: how each readout is shown, and beside which exact value.
 
+use super::Readouts;
 use super::table::{READOUTS, Readout};
-use super::{ReadoutValue, Readouts};
 use crate::analysis::MeasuredNumber;
 use crate::analysis::remarks::short_unit;
 use crate::analysis::theory::{AxlePath, TheoryAxis};
@@ -187,15 +187,14 @@ impl ValueRow {
         let settled = measured.filter(MeasuredNumber::is_settled);
         let value = match (self.of_moment, self.measured) {
             (Some(of), _) => of(run),
-            (None, Some(_)) => settled.map(|measured| measured.value),
+            (None, Some(_)) => settled.map(|number| number.value),
             (None, None) => readout.read_from(readouts).number(),
         };
         let exact_value = match self.of_moment {
             Some(of) => exact.and_then(of),
             None => readout
                 .predicted()
-                .map(|predicted| predicted.read_from(readouts))
-                .and_then(|value| ReadoutValue::number(&value)),
+                .and_then(|predicted| predicted.read_from(readouts).number()),
         };
         // A scheme that has broken down leaves neither a position nor an energy of a rigid body.
         let is_lost = readout.is_of_body() && !readouts.health.is_a_rotation;
@@ -203,9 +202,9 @@ impl ValueRow {
         let (unit, factor) = self.unit_of(readout, readouts, known, exact_value);
         ShownValue {
             unit,
-            run: known.map(|value| value * factor),
-            uncertainty: settled.map(|measured| measured.uncertainty * factor),
-            exact: exact_value.map(|value| value * factor),
+            run: known.map(|number| number * factor),
+            uncertainty: settled.map(|number| number.uncertainty * factor),
+            exact: exact_value.map(|number| number * factor),
             is_off: self.is_off(readouts, known, exact_value),
             has_none: known.is_none() && (self.has_none)(readouts),
         }

@@ -37,14 +37,11 @@ impl PlaneExtent {
     pub fn of(seen: &PlotInputs<'_>) -> Self {
         let scenario = seen.run.scenario();
         let mut reached = Self::about(Vector2::zeros(), 0.0);
-        let (_, path) = seen.run.pictures();
+        let (_, own) = seen.run.pictures();
         let exact = seen.run.overlay().map(|overlay| &overlay.path);
         let others = [seen.ghost, seen.pinned].into_iter().flatten();
-        for path in [path]
-            .into_iter()
-            .chain(exact)
-            .chain(others.map(|other| &other.path))
-        {
+        let others = others.map(|other| &other.path);
+        for path in [own].into_iter().chain(exact).chain(others) {
             path.dots()
                 .for_each(|(x, y)| reached.add(Vector2::new(x, y)));
         }
@@ -86,18 +83,10 @@ impl PlaneExtent {
 
     /// The sides of `predicted`, each grown in steps as far as this extent reaches.
     fn in_steps(&self, predicted: &Self, arm_m: f64) -> Self {
-        let side = |reached: f64, predicted: f64| {
-            if reached <= predicted * (1.0 + MARGIN_SHARE) {
-                return predicted;
-            }
-            let base = if predicted > 0.0 { predicted } else { arm_m };
-            base * libm::exp((libm::log(reached / base) / STEP).ceil() * STEP)
-        };
-        let zip =
-            |reached: Vector2<f64>, predicted: Vector2<f64>| reached.zip_map(&predicted, side);
+        let grown = |reached, theory| side_in_steps(reached, theory, arm_m);
         Self {
-            least: -zip(-self.least, -predicted.least),
-            most: zip(self.most, predicted.most),
+            least: -(-self.least).zip_map(&-predicted.least, grown),
+            most: self.most.zip_map(&predicted.most, grown),
         }
     }
 
@@ -109,6 +98,15 @@ impl PlaneExtent {
     pub fn half(&self) -> Vector2<f64> {
         (0.5 * (self.most - self.least)).map(|half| half.max(LEAST_HALF_M))
     }
+}
+
+/// The side of an extent, m: `theory`, grown in steps until the motion, which reached so far, is inside.
+fn side_in_steps(reached: f64, theory: f64, arm_m: f64) -> f64 {
+    if reached <= theory * (1.0 + MARGIN_SHARE) {
+        return theory;
+    }
+    let base = if theory > 0.0 { theory } else { arm_m };
+    base * libm::exp((libm::log(reached / base) / STEP).ceil() * STEP)
 }
 
 /// The radius of the circle that theory predicts, m, where the run covers too little of it to show it.

@@ -108,8 +108,8 @@ impl Editor<'_, '_> {
             return groups
                 .iter_mut()
                 .zip(MAIN_GROUPS)
-                .map(|(values, heading)| {
-                    with_heading(heading, leave_out(values, height.saturating_sub(1)))
+                .map(|(group, heading)| {
+                    with_heading(heading, leave_out(group, height.saturating_sub(1)))
                 })
                 .collect();
         }
@@ -296,7 +296,7 @@ fn by_group<'a>(
             columns.push(group.to_vec());
         }
     }
-    let fits = columns.len() <= most && columns.iter().all(|rows| rows.len() <= height);
+    let fits = columns.len() <= most && columns.iter().all(|column| column.len() <= height);
     fits.then_some(columns)
 }
 

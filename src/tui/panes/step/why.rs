@@ -243,7 +243,7 @@ fn from_above(explained: &StepWorkings, view: &View, area: Rect, buf: &mut Buffe
         )
     }));
     let change_arrow = change.map(|change| change * (CHANGE_ARROW_LENGTH * length));
-    arrows.extend(change_arrow.map(|change| (momentum_tip, change, "dL", Role::Torque)));
+    arrows.extend(change_arrow.map(|arrow| (momentum_tip, arrow, "dL", Role::Torque)));
     let corners: Vec<_> = arrows
         .iter()
         .map(|(from, arrow, ..)| from + arrow)

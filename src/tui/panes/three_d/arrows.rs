@@ -300,15 +300,7 @@ impl Scene<'_> {
     pub(super) fn legend(&self, area: Rect, buf: &mut Buffer) {
         let theme = &self.seen.view.theme;
         let mut words = self.legend_words();
-        let length = |words: &[(&str, String, Role)]| {
-            let columns = words.iter().map(|(letter, meaning, _)| {
-                columns(letter) + 1 + columns(meaning) + usize::from(LEGEND_WORD_GAP)
-            });
-            columns
-                .sum::<usize>()
-                .saturating_sub(LEGEND_WORD_GAP.into())
-        };
-        while length(&words) > area.width.into() {
+        while legend_columns(&words) > area.width.into() {
             words.pop();
         }
         let mut x = 0;
@@ -533,4 +525,13 @@ impl Scene<'_> {
         let (_, stretch) = self.stretched_change()?;
         (stretch != 1.0).then(|| format!("dL {} × as long", decimal(stretch)))
     }
+}
+
+/// The columns of a legend of these letters, meanings and roles.
+fn legend_columns(words: &[(&str, String, Role)]) -> usize {
+    let gap = usize::from(LEGEND_WORD_GAP);
+    let each = words
+        .iter()
+        .map(|(letter, meaning, _)| columns(letter) + 1 + columns(meaning) + gap);
+    each.sum::<usize>().saturating_sub(gap)
 }

@@ -61,9 +61,9 @@ impl Traces<'_> {
         let columns = rows(&extents, &plot.scale, canvas.height());
         let is_drawn: fn(usize, usize) -> bool = match owner {
             CurveOwner::Run => return draw_run(&columns, |_| Layer::Run, canvas),
-            CurveOwner::Previous => |x, across| x.is_multiple_of(PREVIOUS_DOTS.min(across + 1)),
-            CurveOwner::Pinned => |x, across| x / across % PINNED_CELLS.0 < PINNED_CELLS.1,
-            CurveOwner::Exact => |x, across| x / across % EXACT_CELLS.0 < EXACT_CELLS.1,
+            CurveOwner::Previous => |x, cell| x.is_multiple_of(PREVIOUS_DOTS.min(cell + 1)),
+            CurveOwner::Pinned => |x, cell| x / cell % PINNED_CELLS.0 < PINNED_CELLS.1,
+            CurveOwner::Exact => |x, cell| x / cell % EXACT_CELLS.0 < EXACT_CELLS.1,
         };
         let layer = match owner {
             CurveOwner::Exact => Layer::Exact,

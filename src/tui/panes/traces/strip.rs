@@ -157,7 +157,7 @@ impl Traces<'_> {
                 Role::Label
             };
             // The lowest value is on the last row.
-            let row = |value: f64| plot.scale.from_top(value) * height;
+            let row = |number: f64| plot.scale.from_top(number) * height;
             let at = if row(value) == height {
                 height - 1.0
             } else {
@@ -232,7 +232,7 @@ impl Traces<'_> {
         let is_free = at + EXACT_WORD.len() as u16 <= plot.sheet.width
             && cells
                 .into_iter()
-                .all(|at| buf.cell(at).is_some_and(|cell| cell.symbol() == " "));
+                .all(|cell| buf.cell(cell).is_some_and(|it| it.symbol() == " "));
         if is_free {
             let style = self.0.view.theme.style(Role::Exact);
             write(plot.sheet, (at, y as u16), EXACT_WORD, style, buf);
@@ -260,7 +260,7 @@ impl Traces<'_> {
         let digits = plot.scale.decimals();
         let model = value.map(|value| signed(&fixed(value, digits)));
         let data = self.measured_at(plot.content, cursor.time_s);
-        let data = data.map(|value| format!("data {}", signed(&fixed(value, digits))));
+        let data = data.map(|point| format!("data {}", signed(&fixed(point, digits))));
         let parts: Vec<_> = model.into_iter().chain(data).collect();
         let label = format!(" {} ", parts.join(", "));
         let line = self.rule_line(plot);
