@@ -67,7 +67,11 @@ fn ctrl_u_takes_away_what_is_searched_for() {
     stage.press(ESC).press(ESC).press("/gravity");
     stage.shows("/gravity_");
     stage.key(Key::Ctrl('u'));
-    stage.shows("/_ 1 of").press("tilt").shows("/tilt_");
+    stage
+        .shows("/_")
+        .shows("6 of ")
+        .press("tilt")
+        .shows("/tilt_");
 }
 
 #[test]

@@ -176,8 +176,8 @@ fn what_a_broken_scheme_leaves_is_not_shown_as_a_place() {
     stage.commands("go_to = 20").wait(1.0);
     stage
         .shows("rk4 breaks down at this time step: the body is deformed")
-        .shows("tilt °                        –")
-        .shows("x m                           –")
+        .shows("tilt °                         –")
+        .shows("x m                            –")
         .shows_no("0.0000 times a step");
     stage.size = SMALL;
     stage.shows("rk4 breaks down: no rotation");
@@ -233,8 +233,8 @@ fn a_pause_keeps_what_is_left_of_a_wait_and_a_run_that_plays() {
 #[test]
 fn words_on_the_screen_are_in_the_glossary() {
     for (word, meaning) in [
-        ("zoom", "the upper strip of the traces"),
-        ("other run", "the ghost, or where a run is pinned"),
+        ("window", "the time that the strips of the traces show"),
+        ("other run", "the previous run, or the pinned one"),
         ("pinned", "the run that i keeps"),
         ("steady", "in steady precession"),
         ("═", "a push, an edit"),
@@ -284,7 +284,7 @@ fn a_precession_that_there_is_not_is_no_dash() {
     Stage::open("method-1", &[], LARGE)
         .commands("pause = true\ngo_to = 1000")
         .wait(1.0)
-        .shows(" precession   none")
+        .shows("precession °/s              none       none")
         .press("?precession none")
         .shows("goes round L and not round z");
 }

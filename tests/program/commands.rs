@@ -15,7 +15,7 @@ fn show_prints_the_picture_after_the_commands() {
     let output = done(ground.run("show --do demo.toml"));
     assert_eq!(stderr(&output), "");
     let picture = stdout(&output);
-    has_all(picture, ["step 600", "dt 0.05 s"]);
+    has_all(picture, ["step  600 of", "dt 0.05 s"]);
     assert_eq!(ground.stdout("show cusps --do demo.toml"), picture);
     // Without a terminal the lab prints its picture.
     assert_eq!(ground.stdout("--do demo.toml"), picture);
@@ -31,7 +31,7 @@ fn a_fifo_is_read_once() {
     let mut command = ground.command("show --do pipe");
     let child = command.stdout(Stdio::piped()).spawn().unwrap();
     fs::write(ground.file("pipe"), DEMO).unwrap();
-    has(stdout(&child.wait_with_output().unwrap()), "step 600");
+    has(stdout(&child.wait_with_output().unwrap()), "step  600 of");
 }
 
 #[test]
@@ -42,7 +42,7 @@ fn what_is_refused_is_told_and_the_picture_up_to_there_shown() {
     let output = ground.run("show --do demo.toml");
     let words = "demo.toml:3: redo: nothing to do again; the command after it is not carried out";
     failed(&output, &[words]);
-    has(stdout(&output), "step 5 ");
+    has(stdout(&output), "step    5 of");
     has_no(stdout(&output), "nothing to do again"); // it is said once
     ground.write("demo.toml", "[[do]]\nstp = 5\n");
     let misspelled = ground.run("show --do demo.toml");

@@ -210,16 +210,16 @@ fn without_a_terminal_a_page_is_printed_with_its_picture() {
     assert!(stderr(&first).contains("page 1 of 3 is printed"));
     let first = stdout(&first);
     assert!(
-        first.starts_with("## Watch\n\n```text\n A fast top"),
+        first.starts_with("## Watch\n\n```text\nA fast top"),
         "{first}"
     );
     assert!(first.contains("in 64 s.") && !first.contains("## Run it"));
     let third = ground.stdout("lesson my.md --page 3");
     assert!(
-        third.starts_with("## Your turn\n\n```text\n A fast top"),
+        third.starts_with("## Your turn\n\n```text\nA fast top"),
         "{third}"
     );
-    has(&third, "t   10.000 s"); // the page stands on the one before
+    has(&third, "t  10.000 s"); // the page stands on the one before
     let words = "--page 4: my.md has the pages 1 to 3";
     ground.refused("lesson my.md --page 4", 1, &[words]);
 }

@@ -244,21 +244,21 @@ fn colors_that_were_turned_off_and_on_again_are_no_choice() {
     lab.ask("\x1b", "L lessons");
     lab.quit();
     has_kept("auto");
-    let mut lab = without_colors(&ground);
-    assert!(!is_colored(&lab));
+    let mut plain = without_colors(&ground);
+    assert!(!is_colored(&plain));
     // What is remembered does not win over NO_COLOR either; the user's own file does.
-    lab.ask("c\x1b[B\x1b[B\x1b[B\x1b[B\r", "colors 16");
-    lab.ask("\x1b", "L lessons");
-    lab.quit();
+    plain.ask("c\x1b[B\x1b[B\x1b[B\x1b[B\r", "colors 16");
+    plain.ask("\x1b", "L lessons");
+    plain.quit();
     has_kept("16");
-    let mut lab = without_colors(&ground);
-    assert!(!is_colored(&lab));
-    lab.quit();
+    let mut again = without_colors(&ground);
+    assert!(!is_colored(&again));
+    again.quit();
     std::fs::create_dir_all(ground.config().join("gyrolab")).unwrap();
     ground.write("config/gyrolab/config.toml", "colour = 'always'\n");
-    let mut lab = without_colors(&ground);
-    assert!(is_colored(&lab));
-    lab.quit();
+    let mut colored = without_colors(&ground);
+    assert!(is_colored(&colored));
+    colored.quit();
 }
 
 #[test]

@@ -25,10 +25,10 @@ fn seventy_six_acts_each_earlier_than_the_one_before_are_come_back_to() {
     }
     lab.quit();
     lab.wait_for("comes back to step 81 of Method 2");
-    let mut lab = ground.open("--resume");
-    lab.wait_for(AS_LEFT);
-    lab.wait_for_step(81);
-    lab.quit();
+    let mut resumed = ground.open("--resume");
+    resumed.wait_for(AS_LEFT);
+    resumed.wait_for_step(81);
+    resumed.quit();
 }
 
 /// A file size limit of zero does for a full disk: a file can be made, and no byte of it be written.

@@ -115,15 +115,15 @@ fn broken_files_are_told_and_keep_nobody_out() {
     fs::create_dir_all(&folder).unwrap();
     for text in ["marker = [", "marker = 'dots'", "\u{1b}]0;x\u{7}"] {
         fs::write(folder.join("settings.toml"), text).unwrap();
-        let mut lab = open(&ground, &[]);
-        lab.wait_for("settings.toml:1: ");
-        lab.wait_for("not used");
-        lab.ask("c\x1b[B\x1b[B\x1b[B\r\r", "markers half-block");
-        lab.ask("\x1b", "L lessons");
-        lab.quit();
-        let mut lab = open(&ground, &[]);
-        assert!(!lab.words().contains("not used"), "{}", lab.screen());
-        lab.quit();
+        let mut broken = open(&ground, &[]);
+        broken.wait_for("settings.toml:1: ");
+        broken.wait_for("not used");
+        broken.ask("c\x1b[B\x1b[B\x1b[B\r\r", "markers half-block");
+        broken.ask("\x1b", "L lessons");
+        broken.quit();
+        let mut mended = open(&ground, &[]);
+        assert!(!mended.words().contains("not used"), "{}", mended.screen());
+        mended.quit();
         fs::remove_file(folder.join("settings.toml")).unwrap();
     }
 }
@@ -152,8 +152,8 @@ fn dots_that_this_terminal_cannot_show_are_not_taken_from_another() {
     lab.ask("c\x1b[B\x1b[B\x1b[B\r", "markers braille");
     lab.ask("\x1b", "L lessons");
     lab.quit();
-    let mut lab = ground.open_with(&PLAIN, &[("TERM", "xterm"), ("LANG", "C")]);
-    lab.wait_for("L lessons");
-    assert!(is_ascii(&lab));
-    lab.quit();
+    let mut plain = ground.open_with(&PLAIN, &[("TERM", "xterm"), ("LANG", "C")]);
+    plain.wait_for("L lessons");
+    assert!(is_ascii(&plain));
+    plain.quit();
 }

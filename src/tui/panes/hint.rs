@@ -2,7 +2,7 @@
 
 use super::chrome::SEPARATOR;
 use super::{wrapped_to, write};
-use crate::engine::text::wrap::wrapped;
+use crate::engine::text::wrap::{columns, wrapped};
 use crate::lab::dialog::Dialog;
 use crate::lab::view::Pane;
 use crate::lab::{Lab, MOST_COUNTED};
@@ -14,7 +14,7 @@ use ratatui::widgets::{Clear, Widget};
 
 /// What a screen says that has no room for everything.
 const CRAMPED: &str = "80x24 shows more";
-/// Lines that a message may take on a small screen.
+/// Rows that a message may take.
 const MOST_HINT_LINES: u16 = 4;
 
 /// Rows that the note takes on a screen of this width while there is no message.
@@ -42,8 +42,8 @@ fn lines_of(text: &str, width: u16) -> u16 {
     lines.min(u16::MAX.into()) as u16
 }
 
-/// Where the hint of `lab` stands. A message that needs more lines takes lines above as long as it stays: the line about
-/// the numbers, and on a small or a bare screen the last of a pane.
+/// Where the hint of `lab` stands. A message that needs more lines takes lines above as long as it stays: the verdict,
+/// and the last of a pane.
 pub fn place(lab: &Lab, layout: &ScreenLayout) -> Rect {
     let place = layout.note;
     let needed = if has_message(lab) {
@@ -55,11 +55,10 @@ pub fn place(lab: &Lab, layout: &ScreenLayout) -> Rect {
         return place;
     }
     let own = place.union(layout.verdict).height;
-    let most = match (lab.view().look.bare, layout.is_cramped) {
-        (true, _) => place.height + 1,
-        (false, _) if lab.view().sheet.is_some() => own.max(MOST_HINT_LINES),
-        (false, true) => own.max(MOST_HINT_LINES),
-        (false, false) => own,
+    let most = if lab.view().look.bare {
+        place.height + 1
+    } else {
+        own.max(MOST_HINT_LINES)
     };
     let height = needed
         .min(most)
@@ -77,7 +76,11 @@ pub fn draw(lab: &Lab, is_cramped: bool, area: Rect, buf: &mut Buffer) {
     let (text, role) = said(lab, area.width);
     let theme = &lab.view().theme;
     let width = area.width.saturating_sub(2) as usize;
-    let lines = wrapped_to(&text, width, area.height as usize);
+    let lines = if columns(&text) <= width {
+        vec![text]
+    } else {
+        wrapped_to(&text, width, area.height as usize)
+    };
     if has_message(lab) {
         Clear.render(area, buf); // it may lie over the panes
     }
