@@ -580,8 +580,8 @@ fn shown_panes_share_the_screen_at_every_width() {
 #[test]
 fn a_pane_is_pointed_at_by_a_heavy_rule() {
     let mut desk = opened_with(&[]);
-    let is_heavy = |desk: &Desk| {
-        let shown = picture(desk, (80, 24));
+    let is_heavy = |shown_desk: &Desk| {
+        let shown = picture(shown_desk, (80, 24));
         let rule: String = shown.lines().nth(1).unwrap().chars().skip(28).collect();
         rule.contains('━') // a push is a heavy rule too, on the traces
     };

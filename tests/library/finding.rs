@@ -88,11 +88,11 @@ fn the_keys_of_a_pane_stand_under_its_title_and_turn_to_it() {
     for pane in panes::rows().filter(|pane| !pane.keys.is_empty()) {
         stage.shows(&format!("{}: keys of this pane", pane.title));
     }
-    let mut stage = open(SMALL);
-    stage.press("\t");
-    assert_eq!(stage.focus(), "above");
-    stage.press("?the next phase of\n");
-    assert_eq!(stage.focus(), "step");
+    let mut small = open(SMALL);
+    small.press("\t");
+    assert_eq!(small.focus(), "above");
+    small.press("?the next phase of\n");
+    assert_eq!(small.focus(), "step");
 }
 
 #[test]

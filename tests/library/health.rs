@@ -614,9 +614,9 @@ fn the_sentence_names_the_right_cause() {
     );
     // Nor is there one in a steady precession whose traced point holds.
     let fewer = ["motion.time_step_s=0.0001", "motion.steps=5000", report];
-    let sentence = told("steady-slow", &fewer);
-    begins(&sentence, "The numbers hold");
-    has_no(&sentence, "nutation");
+    let of_steady = told("steady-slow", &fewer);
+    begins(&of_steady, "The numbers hold");
+    has_no(&of_steady, "nutation");
     let is_damped = |name: &str, set: &[&str]| {
         let verdict = Verdict::new(&health(preset(name, set)));
         let mut reasons = verdict.reasons.iter();

@@ -30,11 +30,11 @@ fn the_footer_has_the_keys_of_a_pane_once_that_was_touched() {
     footer_begins(&stage, " Left cursor");
     has_all(&footer(&stage), ["space run", "L lessons", "? help"]);
     // From the values, back to the run.
-    let mut stage = Stage::open("method-2", &[], SMALL);
-    stage.press("e");
-    footer_begins(&stage, " / find");
-    stage.key(Key::Esc);
-    footer_begins(&stage, " space pause  . , step");
+    let mut fresh = Stage::open("method-2", &[], SMALL);
+    fresh.press("e");
+    footer_begins(&fresh, " / find");
+    fresh.key(Key::Esc);
+    footer_begins(&fresh, " space pause  . , step");
 }
 
 #[test]

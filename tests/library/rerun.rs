@@ -102,12 +102,12 @@ fn pushes_stay_at_their_times() {
     assert_eq!((push.from_s, push.for_s), (Some(10.0), Some(2.0)));
     assert_eq!(time_s(&desk), 40.0);
     // Those that are counted in steps keep their seconds too, and so does the run.
-    let mut desk = desk_at("wobble-push", "40 s");
-    let end_s = desk.lab.player().end_s;
-    edit(&mut desk, "dt", "0.05", &[Key::Enter]);
-    let push = &desk.scenario().file.push[0];
-    assert_eq!((push.from_s, push.for_s), (Some(0.0), Some(20.0)));
-    assert_eq!(desk.lab.player().end_s, end_s);
+    let mut pushed = desk_at("wobble-push", "40 s");
+    let end_s = pushed.lab.player().end_s;
+    edit(&mut pushed, "dt", "0.05", &[Key::Enter]);
+    let by_steps = &pushed.scenario().file.push[0];
+    assert_eq!((by_steps.from_s, by_steps.for_s), (Some(0.0), Some(20.0)));
+    assert_eq!(pushed.lab.player().end_s, end_s);
 }
 
 #[test]
@@ -161,8 +161,8 @@ fn a_running_lab_goes_on_from_the_same_time() {
 #[test]
 fn files_of_commands_rerun_where_they_say_so() {
     let text = "[[do]]\nset = { 'motion.time_step_s' = 0.05 }\nrerun = true\n";
-    let read = |text: &str| {
-        let document = gyrolab::engine::scenario::Document::parse("a.toml", text).unwrap();
+    let read = |commands_text: &str| {
+        let document = gyrolab::engine::scenario::Document::parse("a.toml", commands_text).unwrap();
         gyrolab::lab::command::read(&document)
     };
     let list = read(text).unwrap().list;
@@ -173,7 +173,7 @@ fn files_of_commands_rerun_where_they_say_so() {
     assert_eq!(time_step_s(&desk.scenario()), 0.05);
     let as_before = read(&text.replace("true", "false")).unwrap().list;
     assert!(matches!(as_before[0].command, Command::Set(_)));
-    let refused = |text: &str| read(text).unwrap_err().to_string();
+    let refused = |wrong: &str| read(wrong).unwrap_err().to_string();
     has(refused(&text.replace("true", "1")), "true or false");
     has(
         refused("[[do]]\nstep = 1\nrerun = true\n"),
@@ -182,11 +182,11 @@ fn files_of_commands_rerun_where_they_say_so() {
     let written = Command::Rerun(toml::Table::from_iter([("title".to_owned(), "x".into())]));
     assert_eq!(written.to_table()["rerun"], toml::Value::Boolean(true));
     // Without it, `set` acts from the next step on, as in a run file.
-    let mut desk = desk_at("method-2", "40 s");
+    let mut edited = desk_at("method-2", "40 s");
     for command in commands("set = { 'motion.time_step_s' = 0.05 }") {
-        desk.carry_out(&command).unwrap();
+        edited.carry_out(&command).unwrap();
     }
-    assert_eq!(desk.scenario().file.edit[0].step, 400);
+    assert_eq!(edited.scenario().file.edit[0].step, 400);
 }
 
 /// The header, the line about the numbers and the journal state the same time step at every step, on both sides of an edit.
@@ -218,7 +218,7 @@ fn header_status_and_journal_agree_on_the_time_step() {
 fn a_restart_does_not_move_the_view() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.wait(2.0).commands("pause = true");
-    let seen = |stage: &Stage| (stage.lab.view().camera, stage.lab.view().look.clone());
+    let seen = |shown: &Stage| (shown.lab.view().camera, shown.lab.view().look.clone());
     let before = seen(&stage);
     stage.press("/dt\n0.05\n").press("\u{1b}\u{1b}");
     assert_eq!(seen(&stage), before);

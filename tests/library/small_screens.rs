@@ -46,8 +46,8 @@ fn a_warning_stands_beside_what_there_is_to_see() {
 fn a_hidden_verdict_leaves_its_row_to_the_page() {
     let mut stage = Stage::open("method-2", &[], TEACHERS);
     stage.lesson("is-the-wobble-real", 1).wait(6.0);
-    let rows = |stage: &Stage| {
-        screen::layout(&stage.lab, true, stage.size).panes[0]
+    let rows = |shown: &Stage| {
+        screen::layout(&shown.lab, true, shown.size).panes[0]
             .1
             .height
     };
@@ -78,11 +78,8 @@ fn a_long_message_has_the_rows_that_it_needs() {
     // Without a note there is one row for it, and that of the verdict, which comes back.
     stage.commands("hide = ['look_at']").wait(6.0);
     stage.shows("reliable:").press("m");
-    let notice = stage.lab.notice().unwrap();
-    assert!(
-        notice.len() > 38 && said(&stage).contains(&notice),
-        "{notice}"
-    );
+    let alone = stage.lab.notice().unwrap();
+    assert!(alone.len() > 38 && said(&stage).contains(&alone), "{alone}");
     stage.shows_no("reliable:").wait(6.0);
     stage.shows("reliable:");
 }

@@ -10,7 +10,7 @@ use gyrolab::tui::mouse::{Did, Mouse, Pointer};
 use gyrolab::tui::panes::parameters::PARAMETERS_ROW;
 use gyrolab::tui::screen;
 use gyrolab::tui::theme::Role;
-use ratatui::buffer::Buffer;
+use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;
 
 const ESC: &str = "\u{1b}";
@@ -21,7 +21,7 @@ fn pane(stage: &Stage, width: u16, height: u16) -> (Vec<String>, Buffer) {
     (PARAMETERS_ROW.draw)(&stage.lab, buf.area, &mut buf);
     let rows = buf.content.chunks(width.into());
     let text = rows
-        .map(|row| row.iter().map(|cell| cell.symbol()).collect())
+        .map(|row| row.iter().map(Cell::symbol).collect())
         .collect();
     (text, buf)
 }
@@ -78,8 +78,8 @@ fn a_wide_pane_shows_how_far_off_and_more_rows() {
 #[test]
 fn what_disagrees_is_marked_and_what_can_be_edited_is_underlined() {
     let mut stage = wobble(SMALL);
-    let style_of = |stage: &Stage, label: &str| {
-        let (rows, buf) = pane(stage, 24, 16);
+    let style_of = |shown: &Stage, label: &str| {
+        let (rows, buf) = pane(shown, 24, 16);
         let y = rows.iter().rposition(|row| row.starts_with(label)).unwrap();
         buf[(15, y as u16)].style()
     };
@@ -117,7 +117,7 @@ fn the_size_of_l_is_set_with_its_direction_kept_and_so_is_its_tilt() {
         .press("4308.131845707603\n")
         .press(ESC)
         .press(ESC);
-    let start = |stage: &Stage| stage.lab.player().run().scenario().start.momentum;
+    let start = |shown: &Stage| shown.lab.player().run().scenario().start.momentum;
     let momentum = start(&stage);
     assert!(
         (momentum - nalgebra::Vector3::new(1600.0, 0.0, 4000.0)).norm() < 1e-9,

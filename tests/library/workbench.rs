@@ -129,8 +129,8 @@ fn a_note_that_may_not_hold_any_more_is_not_shown() {
     stage.shows_no("lmost a circle");
     stage.commands("open = 'method-2'").shows("lmost a circle");
     Stage::open("method-2", &["motion.steps=50", "view.speed=2"], SMALL).shows("lmost a circle");
-    let set = ["motion.time_step_s=0.01", "view.look_at=\"mine\""];
-    Stage::open("method-2", &set, SMALL).shows("mine");
+    let own_note = ["motion.time_step_s=0.01", "view.look_at=\"mine\""];
+    Stage::open("method-2", &own_note, SMALL).shows("mine");
 }
 
 #[test]
@@ -237,7 +237,7 @@ fn esc_closes_one_thing_at_a_time_and_never_leaves() {
 fn any_pane_fills_the_screen_and_comes_back() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     for pane in ["z (m)", "from above", "3-D", "values"] {
-        let panes = |stage: &Stage| screen::layout(&stage.lab, true, SMALL).panes.len();
+        let panes = |shown: &Stage| screen::layout(&shown.lab, true, SMALL).panes.len();
         stage.press("f").shows(pane);
         assert_eq!(panes(&stage), 1);
         stage.press("f");

@@ -413,7 +413,10 @@ fn show_prints_plain_text_of_the_size_asked_for() {
         &ground.stdout("show method-2"),
         ["step 2300 of 2300", "z m        0.811"],
     );
-    has_all(&ground.stdout("show wing-nut --size 200x50"), ["turns over"]);
+    has_all(
+        &ground.stdout("show wing-nut --size 200x50"),
+        ["turns over"],
+    );
 }
 
 #[test]
