@@ -214,7 +214,7 @@ impl Teacher {
     fn list(&self, selected: usize) -> Vec<Paragraph> {
         let mut list = vec![Paragraph::new(SheetLineKind::Heading, "The seats")];
         for (index, entry) in self.entries().into_iter().enumerate() {
-            let (text, is_given) = match entry {
+            let (text, is_closed) = match entry {
                 SeatEntry::Waiting(seat) => (seat.in_words(), true),
                 SeatEntry::Seat(status) => (
                     status.in_words(&self.state),
@@ -222,15 +222,16 @@ impl Teacher {
                 ),
             };
             let kind = SheetLineKind::Choice {
+                number: None,
                 is_selected: index == selected,
-                is_given,
+                mark: if is_closed { "closed" } else { "" },
             };
             list.push(Paragraph::new(kind, text));
         }
         let legend = if self.seats.is_empty() {
             "No seat is taken yet."
         } else {
-            "[x]: closed, and Enter opens it. lost: no sign for 10 s; away: left."
+            "Enter opens a seat that is closed. lost: no sign for 10 s; away: left."
         };
         list.push(Paragraph::new(SheetLineKind::Hint, legend));
         list

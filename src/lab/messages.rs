@@ -182,6 +182,9 @@ pub(super) fn next<'a>(view: &'a View, runs: &'a Runs, player: &'a Player) -> Op
 
 /// Returns the line about what there is to see in the run.
 pub(super) fn note<'a>(view: &'a View, runs: &'a Runs, player: &'a Player) -> Cow<'a, str> {
+    if view.asked().is_some() {
+        return "The verdict and the exact motion come back when you have predicted.".into();
+    }
     if view.hides(HideablePart::LookAt) {
         return "".into();
     }

@@ -4,13 +4,17 @@ use crate::engine::text::ascii::in_ascii;
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Sheet {
-    /// What stands in its frame.
+    /// What stands on its rule, at the left.
     pub title: String,
+    /// What stands there at the right: which of its pages this is.
+    pub place: String,
     pub paragraphs: Vec<Paragraph>,
     /// The first and the last of the paragraphs that are to be seen whole: a longer sheet is scrolled to them.
     pub seen: Option<(usize, usize)>,
     /// Whether a run is played before the rest of the sheet comes: where there is room for one pane, both share it.
     pub plays: bool,
+    /// The question that waits for an answer. Until it has one, whatever answers it is hidden.
+    pub asked: Option<AskedAnswer>,
     /// Whether a digit is an answer, or begins one, rather than a count.
     pub takes_digits: bool,
     /// What Enter does here, in one word; empty where it does nothing.
@@ -18,10 +22,22 @@ pub struct Sheet {
     pub has_next: bool,
     /// Whether it is a list that what is typed filters.
     pub is_list: bool,
-    /// What stands in its frame instead of the title, where that is not empty: it may change while the page stays.
+    /// What stands on its rule instead of the title, where that is not empty: it may change while the page stays.
     pub framed: String,
-    /// What stands in the lower line of its frame.
+    /// What stands in its last row.
     pub border: String,
+}
+
+/// The answer that a question waits for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AskedAnswer {
+    Choice {
+        /// How many answers there are.
+        count: usize,
+        /// Whether one is chosen, though not given yet.
+        is_chosen: bool,
+    },
+    Number,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -42,12 +58,16 @@ pub enum SheetLineKind {
         depth: u16,
     },
     Code,
+    /// Bold words right above the next paragraph.
+    Caption,
     Question,
     Choice {
+        /// Its number, where it has one.
+        number: Option<usize>,
         /// Whether it is the selected one.
         is_selected: bool,
-        /// Whether it is the one that was given.
-        is_given: bool,
+        /// What stands at the end of its row, such as that it was given.
+        mark: &'static str,
     },
     /// What came out, beside what was predicted.
     Result,

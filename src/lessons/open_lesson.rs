@@ -28,9 +28,8 @@ pub struct OpenLesson {
     /// Its file, where it does not come with the program.
     watch: Option<Watch>,
     pub place: LessonProgress,
-    /// By the names of open questions: the choice that the keys point at, from 0, and whether it is marked, so that Enter
-    /// locks it.
-    pub pointed: BTreeMap<String, (usize, bool)>,
+    /// By the names of open questions: the answer that is chosen, from 0, which Enter locks.
+    pub chosen: BTreeMap<String, usize>,
     /// Whether an answer on this page was given.
     pub has_answered: bool,
     /// The lines of the checks of this page that have held.
@@ -88,7 +87,7 @@ impl OpenLesson {
             lesson: Arc::new(lesson),
             watch,
             place,
-            pointed: BTreeMap::new(),
+            chosen: BTreeMap::new(),
             has_answered: false,
             reached: BTreeSet::new(),
             arrived_at: None,
@@ -118,10 +117,10 @@ impl OpenLesson {
             .find(|predict| self.is_open(predict))
     }
 
-    /// Returns whether an answer to the open question is marked, and not locked.
-    fn has_marked(&self) -> bool {
-        let pointed = self.asked().and_then(|it| self.pointed.get(&it.name));
-        pointed.is_some_and(|(_, is_marked)| *is_marked)
+    /// Returns whether an answer to the open question is chosen, and not locked.
+    fn has_chosen(&self) -> bool {
+        let asked = self.asked();
+        asked.is_some_and(|it| self.chosen.contains_key(&it.name))
     }
 
     /// Returns whether an answer to `predict` is wanted: there is none, or none of the round that a class is at.

@@ -8,7 +8,7 @@ use super::text::LessonText;
 use super::{names, opening};
 use crate::engine::text::number;
 use crate::lab::Lab;
-use crate::lab::sheet::{Paragraph, Sheet, SheetLineKind};
+use crate::lab::sheet::{AskedAnswer, Paragraph, Sheet, SheetLineKind};
 use std::collections::BTreeMap;
 use std::time::Duration;
 
@@ -62,15 +62,17 @@ pub(super) fn list(
             let pages = lesson.as_ref().map_or(0, |lesson| lesson.pages.len());
             text += &format!(" (page {} of {pages})", place.page);
         }
+        let has_ended = left.get(name).is_some_and(|place| place.has_ended);
         let choice = SheetLineKind::Choice {
+            number: None,
             is_selected: index == selected,
-            is_given: left.get(name).is_some_and(|place| place.has_ended),
+            mark: if has_ended { "done" } else { "" },
         };
         sheet.paragraphs.push(Paragraph::new(choice, text));
         if index == selected {
             if let Some(lesson) = lesson.filter(|lesson| !lesson.about.is_empty()) {
                 let item = SheetLineKind::Item {
-                    mark: "     ".to_owned(),
+                    mark: "  ".to_owned(),
                     depth: 1,
                 };
                 sheet.paragraphs.push(Paragraph::new(item, lesson.about));
@@ -97,7 +99,8 @@ pub(super) fn sheet(open: &OpenLesson, overlay: &ClassOverlay, now: Duration, la
         sheet: Sheet {
             framed: overlay.framed.clone(),
             border: overlay.border.clone(),
-            title: format!("{page} of {pages} · {}", lesson.title),
+            title: lesson.title.clone(),
+            place: format!("{page} of {pages}"),
             has_next: page < pages && !overlay.is_followed,
             plays: open.plays(),
             ..Sheet::default()
@@ -289,28 +292,35 @@ impl Writer<'_> {
         let place = &self.open.place;
         let kept = &place.kept;
         let first = self.sheet.paragraphs.len();
+        self.add(Paragraph::new(SheetLineKind::Caption, "Your prediction"));
         let ask = predict.ask.with_numbers(self.lab, kept);
         self.extend(paragraphs(&ask, &SheetLineKind::Question));
         let is_open = self.open.is_open(predict);
         let last = place.predictions.to(predict).next_back();
         let given = last.filter(|_| !is_open).map(|given| &given.answer);
-        let pointed = self.open.pointed.get(&predict.name);
-        let (at, is_marked) = pointed.filter(|_| is_open).copied().unzip();
+        let chosen = self.open.chosen.get(&predict.name);
+        let chosen = chosen.filter(|_| is_open).copied();
         if let AnswerKind::Choice(choices) = &predict.asked {
             for (index, choice) in choices.iter().enumerate() {
-                let is_selected = at == Some(index);
-                let is_locked = given.is_some_and(|given| given.in_words(predict) == *choice);
+                let is_given = given.is_some_and(|given| given.in_words(predict) == *choice);
                 let kind = SheetLineKind::Choice {
-                    is_selected,
-                    is_given: is_locked || is_selected && is_marked == Some(true),
+                    number: Some(index + 1),
+                    is_selected: chosen == Some(index),
+                    mark: if is_given { "you" } else { "" },
                 };
-                let text = format!("{} {choice}", index + 1);
-                self.add(Paragraph::new(kind, text));
+                self.add(Paragraph::new(kind, choice));
             }
         }
         self.rounds_of(predict);
         if is_open {
-            self.keys_of(predict, is_marked == Some(true));
+            self.sheet.takes_digits = true;
+            self.sheet.asked = Some(match &predict.asked {
+                AnswerKind::Choice(choices) => AskedAnswer::Choice {
+                    count: choices.len(),
+                    is_chosen: chosen.is_some(),
+                },
+                AnswerKind::Number { .. } => AskedAnswer::Number,
+            });
         }
         // The question that is open now, or the last one where none is.
         if is_open || self.open.has_answered {
@@ -332,18 +342,6 @@ impl Writer<'_> {
             _ => return,
         };
         self.add(Paragraph::new(SheetLineKind::Hint, text));
-    }
-
-    /// Says which keys answer `predict`.
-    fn keys_of(&mut self, predict: &Predict, is_marked: bool) {
-        self.sheet.enter = "answer";
-        self.sheet.takes_digits = true;
-        let keys = match &predict.asked {
-            AnswerKind::Choice(_) if is_marked => "Enter locks it.",
-            AnswerKind::Choice(_) => "A number marks, or Up, Down, Enter.",
-            AnswerKind::Number { .. } => "Type your prediction.",
-        };
-        self.add(Paragraph::new(SheetLineKind::Hint, keys));
     }
 
     fn next(&mut self, number: usize) {

@@ -149,12 +149,12 @@ pub const LESSON_KEYS_EVERYWHERE: &[Binding] = LESSON_KEYS.split_at(5).0;
 /// The keys of the page of a lesson while it has the focus; the first of them also elsewhere.
 #[rustfmt::skip]
 pub const LESSON_KEYS: &[Binding] = &[
-    row(&[Lab], &[Char('n')], Action::Lesson(LessonKey::Next), "next page", "the rest of the page, then the next one; while a page's run plays: to its end"),
+    row(&[Lab], &[Char('n')], Action::Lesson(LessonKey::Next), "next", "the rest of the page, then the next one; while a page's run plays: to its end"),
     row(&[Lab], &[Char('N')], Action::Lesson(LessonKey::Before), "", "the page before; its run begins again"),
-    row(&[Lab], &[Char('b')], Action::Lesson(LessonKey::Again), "", "begin the page again: its run from where the page wants it"),
+    row(&[Lab], &[Char('b')], Action::Lesson(LessonKey::Again), "again", "begin the page again: its run from where the page wants it"),
     row(&[Lab], &[Char('h')], Action::Lesson(LessonKey::ShowTask), "", "a hint for the task of the page; again: show how it is done"),
     row(&[Lab], &[Ctrl('n')], Action::Lesson(LessonKey::Notes), "", "for a class: notes, the next page and a clock"),
-    row(&[Lab], &[Enter], Action::Lesson(LessonKey::Take), "answer", "mark the chosen answer (its number does too), again: lock it; in the list: open the lesson"),
+    row(&[Lab], &[Enter], Action::Lesson(LessonKey::Take), "answer", "lock the chosen answer; in the list: open the lesson"),
     row(&[Lab], &[Up], Action::Lesson(LessonKey::Move(Direction::Up)), "", "the answer above; without a question: scroll"),
     row(&[Lab], &[Down], Action::Lesson(LessonKey::Move(Direction::Down)), "", "the answer below; without a question: scroll"),
     row(&[Lab], &[PageUp], Action::Lesson(LessonKey::Move(Direction::PageUp)), "", "scroll the page up"),
@@ -198,6 +198,23 @@ fn restarted(lab: &TheLab, _: Option<u64>) -> KeyCommands {
     let run = lab.player().is_running().then_some(Command::Run);
     let start = Command::GoTo(SeekTarget::Start);
     Ok([start].into_iter().chain(run).collect())
+}
+
+fn exact_toggled(lab: &TheLab) -> KeyCommands {
+    let is_shown = lab.player().run().shows_exact();
+    match lab.view().asked() {
+        Some(_) if !is_shown => {
+            Err("the exact motion comes back when you have predicted".to_owned())
+        }
+        _ => one(Command::Exact(!is_shown)),
+    }
+}
+
+fn advice_taken(lab: &TheLab) -> KeyCommands {
+    match lab.view().asked() {
+        Some(_) => Err("what fixes the run is told when you have predicted".to_owned()),
+        None => one(lab.adviser().followed(lab.player())?),
+    }
 }
 
 /// What a key means that means one command.
@@ -264,9 +281,9 @@ pub static BINDINGS: &[Binding] = &[
     does(&[Lab], &[Char('.')], |_, count| stepped(count, 1), "step", "one time step on; 10. takes ten").to(PLAY).worth(FooterPriority::Kept),
     does(&[Lab], &[Char(',')], |_, count| stepped(count, -1), "step", "one time step back; 10, goes ten").to(PLAY).worth(FooterPriority::Kept),
     does(&[Lab], &[Char('p')], |_, _| one(Command::Push(PushChoice::default())), "push", "give the push that is chosen, now").found_by("kick force hit").to(PUSH_GROUP).worth(FooterPriority::Useful),
-    does(&[Lab], &[Char('t')], |lab, _| one(Command::Exact(!lab.player().run().shows_exact())), "exact", "the exact motion beside the run, and how far apart they are").found_by("compare truth true overlay dashed").worth(FooterPriority::Useful),
+    does(&[Lab], &[Char('t')], |lab, _| exact_toggled(lab), "exact", "the exact motion beside the run, and how far apart they are").found_by("compare truth true overlay dashed").worth(FooterPriority::Useful),
     row(&[Lab], &[Char('e')], Action::Parameters, "edit", "to the values of the scenario: Up, Down choose, Left, Right nudge").found_by("parameters dt time step scheme mass gravity friction change").to(CHANGE_GROUP).worth(FooterPriority::Useful),
-    does(&[Lab], &[Char('a')], |lab, _| one(lab.adviser().followed(lab.player())?), "fix", "take the advice: rerun from the start with the time step or scheme that fixes the run"),
+    does(&[Lab], &[Char('a')], |lab, _| advice_taken(lab), "fix", "take the advice: rerun from the start with the time step or scheme that fixes the run"),
     does(&[Lab], &[Char('r')], restarted, "restart", "back to step 0; what was done stays").to(PLAY),
     does(&[Lab], &[Char('j')], |lab, count| one(lab.view().other_fourth_strip(repeated(count))), "", "traces: a fourth strip: tilt, distance from the exact motion, or none").found_by("column strip tilt distance off"),
     does(&[Lab], &[Char('w')], other_window, "window", "traces: a few swings, or the whole run; 20w shows twenty swings"),

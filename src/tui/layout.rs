@@ -99,7 +99,9 @@ impl ScreenLayout {
             note_rows.clamp(1, most_note_rows)
         };
         let note = cut_bottom(&mut rest, note_rows);
-        let has_verdict = area.height >= 5 && !(view.hides(HideablePart::Health) && note_rows > 0);
+        // While a question is open, the row of the verdict names the keys that answer it.
+        let is_free = view.hides(HideablePart::Health) && view.asked().is_none() && note_rows > 0;
+        let has_verdict = area.height >= 5 && !is_free;
         let verdict = cut_bottom(&mut rest, has_verdict.into());
         let overview = cut_bottom(&mut rest, overview_rows(area.height, view));
         let measured = cut_bottom(&mut rest, u16::from(view.measured && area.height >= 8));
@@ -187,7 +189,13 @@ fn place_panes(area: Rect, height: u16, view: &View) -> Vec<(Pane, Rect)> {
         vec![(view.focus, area)]
     } else if view.may_show(Pane::Lesson) {
         with_page(area, height, view)
-    } else if view.may_show(Pane::Step) {
+    } else {
+        without_page(area, height, view)
+    }
+}
+
+fn without_page(area: Rect, height: u16, view: &View) -> Vec<(Pane, Rect)> {
+    if view.may_show(Pane::Step) {
         with_step(area, view)
     } else {
         arranged(area, height, view)
@@ -196,8 +204,7 @@ fn place_panes(area: Rect, height: u16, view: &View) -> Vec<(Pane, Rect)> {
 
 /// A lesson's page, and beside it the run.
 fn with_page(area: Rect, height: u16, view: &View) -> Vec<(Pane, Rect)> {
-    let without = View {
-        sheet: None,
+    let beside = View {
         focus: beside_page(view),
         ..view.clone()
     };
@@ -206,22 +213,22 @@ fn with_page(area: Rect, height: u16, view: &View) -> Vec<(Pane, Rect)> {
         // A second blank column makes the page easier to read.
         let [_, rest] = split_columns(rest, 1);
         let mut panes = if rest.width >= FULL_LAB.0 || view.may_show(Pane::Step) {
-            place_panes(rest, height, &without)
+            without_page(rest, height, &beside)
         } else {
-            companion(rest, &without)
+            companion(rest, &beside)
         };
         panes.insert(0, (Pane::Lesson, page));
         return panes;
     }
     if view.focus != Pane::Lesson {
-        return place_panes(area, height, &without);
+        return without_page(area, height, &beside);
     }
     let plays = view.sheet.as_ref().is_some_and(|sheet| sheet.plays);
     if !plays || area.height < 2 * PAGE_ROWS {
         return vec![(Pane::Lesson, area)];
     }
     let [page, rest] = split_rows(area, PAGE_ROWS);
-    vec![(Pane::Lesson, page), (without.focus, rest)]
+    vec![(Pane::Lesson, page), (beside.focus, rest)]
 }
 
 /// The pane that is shown beside a page where there is room for only one.
@@ -293,7 +300,12 @@ fn companion(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     } else {
         place_views(above, view)
     };
-    if is_about_values {
+    if is_about_values && below.width > 2 * VIEW_COLUMNS && !views(view).is_empty() {
+        // The values take the place of one of the two views.
+        let [left, right] = halves(below);
+        panes.push((views(view)[0], left));
+        panes.push((Pane::Parameters, right));
+    } else if is_about_values {
         panes.push((Pane::Parameters, below));
     } else {
         panes.extend(place_views(below, view));

@@ -79,7 +79,8 @@ pub fn draw(lab: &Lab, keys: bool, area: Rect, buf: &mut Buffer) {
     let share_a_row = places.note == places.verdict;
     let has_message = hint::has_message(lab);
     let is_covered = place != places.note || share_a_row && has_message;
-    if !lab.view().hides(HideablePart::Health) && !is_covered {
+    let has_verdict = !lab.view().hides(HideablePart::Health) || lab.view().asked().is_some();
+    if has_verdict && !is_covered {
         chrome::verdict(lab, places.verdict, buf);
     }
     if has_message || !lab.view().look.bare && !share_a_row {

@@ -14,7 +14,8 @@ use crate::engine::recording::{RecordedSample, Recording};
 use crate::engine::run::{Moment, NotFinite, Simulation};
 use crate::engine::scenario::Scenario;
 use crate::physics::{State, Workings};
-use pictures::{Overlay, Pictures};
+pub use pictures::Overlay;
+use pictures::Pictures;
 use std::sync::Arc;
 
 /// Steps between two readings of the clock for a body of one point; a body of n points takes 1/n of that.

@@ -40,11 +40,15 @@ impl View {
         self.fullscreen && self.focus == pane
     }
 
-    /// The panes that can have the focus, from left to right. One that is not on the screen comes there with the focus.
+    /// The panes that can have the focus, from left to right. One that is not on the screen comes there with the focus. Beside
+    /// a page they are those that it names, and the one that the user has turned to.
     fn focusable(&self) -> Vec<Pane> {
         Pane::ALL
             .into_iter()
-            .filter(|pane| self.may_show(*pane) || self.is_filled_by(*pane))
+            .filter(|pane| {
+                let is_chosen = self.names(*pane) || self.focus == *pane;
+                is_chosen && self.may_show(*pane) || self.is_filled_by(*pane)
+            })
             .collect()
     }
 
@@ -70,10 +74,11 @@ impl View {
         self.is_touched = true;
     }
 
-    /// Moves the focus to `pane`, which fills the screen if it is not on it.
+    /// Moves the focus to `pane`, which fills the screen if it may not stand beside others.
     pub fn turn_to(&mut self, pane: Pane) {
-        self.fullscreen = self.is_filled_by(pane) || !self.focusable().contains(&pane);
+        let is_filled = self.is_filled_by(pane);
         self.focus_on(pane);
+        self.fullscreen = is_filled || !self.may_show(pane);
         self.is_touched = true;
     }
 
@@ -112,7 +117,7 @@ impl View {
     /// Moves the focus to the first pane that can have it, if the one in focus no longer can.
     pub fn keep_focus(&mut self) {
         self.keep_focus_among(&self.focusable());
-        if self.focus != Pane::Lesson && !self.fullscreen {
+        if ![Pane::Lesson, Pane::Parameters].contains(&self.focus) && !self.fullscreen {
             self.beside = Some(self.focus);
         }
     }

@@ -12,7 +12,7 @@ mod swings;
 pub mod theme;
 pub mod window;
 
-use super::sheet::Sheet;
+use super::sheet::{AskedAnswer, Sheet};
 use crate::engine::scenario::{Scenario, keys};
 use crate::plot::camera::{Camera, Zoom};
 pub use pane::{HideablePart, Pane};
@@ -191,15 +191,15 @@ impl View {
         view
     }
 
-    /// Shows `sheet` beside the panes, or none. It stays scrolled as it is where its title is the same. Returns whether it is
-    /// another one.
+    /// Shows `sheet` beside the panes, or none. It stays scrolled as it is where title and page are the same. Returns whether
+    /// it is another one.
     pub(super) fn set_sheet(&mut self, sheet: Option<Sheet>) -> bool {
         if self.sheet.as_deref() == sheet.as_ref() {
             return false;
         }
         let before = self.sheet.take();
         let is_same = before.zip(sheet.as_ref()).is_some_and(|(before, sheet)| {
-            before.title == sheet.title && before.seen == sheet.seen
+            before.title == sheet.title && before.place == sheet.place && before.seen == sheet.seen
         });
         if !is_same {
             self.sheet_scrolled = None;
@@ -265,6 +265,9 @@ impl View {
         let before = std::mem::replace(&mut self.look, look);
         if before.show != self.look.show {
             self.beside = self.look.show.first().copied();
+            let mut shown = self.look.show.iter();
+            let path_view = shown.find(|pane| [Pane::Above, Pane::ThreeD].contains(pane));
+            self.path_view = path_view.copied().unwrap_or(Pane::Above);
             self.side_by_side = self.to_show(); // until the lab is fitted to its screen again
         }
         let mut shown = self.look.show.iter();
@@ -284,20 +287,43 @@ impl View {
             .take_if(|camera| *camera == Camera::default());
     }
 
+    /// Whether `part` is hidden: what answers an open question is, too.
     pub fn hides(&self, part: HideablePart) -> bool {
-        self.look.hide.contains(&part)
+        let is_answer = matches!(part, HideablePart::Health | HideablePart::Predicted);
+        self.look.hide.contains(&part) || is_answer && self.asked().is_some()
+    }
+
+    /// The answer that the page beside the run waits for.
+    pub fn asked(&self) -> Option<AskedAnswer> {
+        self.sheet.as_ref()?.asked
     }
 
     pub fn may_show(&self, pane: Pane) -> bool {
-        if pane == Pane::Lesson {
-            return self.sheet.is_some() && !self.hides(HideablePart::Pane(pane));
-        }
-        let is_shown = match (self.look.show.is_empty(), self.look.bare) {
+        let is_beside_page = self.sheet.is_some() && self.is_beside_page(pane);
+        (self.names(pane) || is_beside_page) && !self.hides(HideablePart::Pane(pane))
+    }
+
+    /// Whether `pane` is among those that were chosen, or are shown where none were.
+    fn names(&self, pane: Pane) -> bool {
+        match (self.look.show.is_empty(), self.look.bare) {
+            _ if pane == Pane::Lesson => self.sheet.is_some(),
             (true, true) => BARE.contains(&pane),
             (true, false) => !pane.is_on_request(),
             (false, _) => self.look.show.contains(&pane),
-        };
-        is_shown && !self.hides(HideablePart::Pane(pane))
+        }
+    }
+
+    /// Whether `pane` stands beside a page that does not name it: the run is always to be seen there, and whatever the user
+    /// has turned to.
+    fn is_beside_page(&self, pane: Pane) -> bool {
+        match pane {
+            Pane::Lesson | Pane::Step => false,
+            Pane::Parameters => self.focus == pane,
+            Pane::Traces | Pane::Above | Pane::ThreeD => {
+                let is_about_step = self.look.show.contains(&Pane::Step);
+                self.focus == pane || !self.look.bare && !is_about_step
+            }
+        }
     }
 
     /// Whether `pane` is on the screen, if that has room for it.

@@ -10,7 +10,6 @@ use crate::lessons::predictions::{LockedAnswer, Predictions, Tried};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-const MARKED: &str = "Enter locks it: a prediction is not changed";
 const LOCKED: &str = "your answer is locked: a prediction is not changed";
 
 impl OpenLesson {
@@ -56,8 +55,8 @@ impl OpenLesson {
             return;
         }
         if self.asked().is_some() && !std::mem::replace(&mut self.was_asked, true) {
-            lab.refuse(if self.has_marked() {
-                "Enter locks the answer that you marked. n again leaves it open"
+            lab.refuse(if self.has_chosen() {
+                "Enter locks the answer that you chose. n again leaves it open"
             } else {
                 "predict first: what you write down you see better. n again leaves it open"
             });
@@ -127,7 +126,7 @@ impl OpenLesson {
         None
     }
 
-    /// Points at the answer above or below; scrolls where none is to be chosen.
+    /// Chooses the answer above or below; scrolls where none is to be chosen.
     fn select(&mut self, direction: Direction) -> Option<Direction> {
         let Some(predict) = self.asked().cloned() else {
             return Some(direction);
@@ -136,17 +135,17 @@ impl OpenLesson {
             return Some(direction);
         };
         let last = choices.len().saturating_sub(1);
-        let at = match (self.pointed.get(&predict.name), direction) {
+        let at = match (self.chosen.get(&predict.name), direction) {
             (None, Direction::Up) => last,
             (None, _) => 0,
-            (Some((at, _)), Direction::Up) => at.saturating_sub(1),
-            (Some((at, _)), _) => (at + 1).min(last),
+            (Some(at), Direction::Up) => at.saturating_sub(1),
+            (Some(at), _) => (at + 1).min(last),
         };
-        self.pointed.insert(predict.name, (at, false));
+        self.chosen.insert(predict.name, at);
         None
     }
 
-    /// Marks the answer that the keys point at, or locks it where it is marked; or asks for a number.
+    /// Locks the answer that is chosen, or asks for a number.
     fn confirm_answer(&mut self, lab: &mut Lab) {
         let Some(predict) = self.asked().cloned() else {
             let mut asked = self.page().into_iter().flat_map(LessonPage::predicts);
@@ -158,20 +157,14 @@ impl OpenLesson {
         let AnswerKind::Choice(choices) = &predict.asked else {
             return self.ask_number(None, lab);
         };
-        let at = self.pointed.get_mut(&predict.name);
-        match at.and_then(|(at, is_marked)| Some((choices.get(*at)?, is_marked))) {
-            None => {
-                lab.refuse("Up and Down choose an answer, Enter marks it, Enter again locks it");
-            }
-            Some((_, is_marked @ false)) => {
-                *is_marked = true;
-                lab.refuse(MARKED);
-            }
-            Some((choice, _)) => self.lock(&predict, PredictionAnswer::Choice(choice.clone()), lab),
+        let chosen = self.chosen.get(&predict.name);
+        match chosen.and_then(|at| choices.get(*at)) {
+            None => lab.refuse("choose an answer first: its number, or Up and Down"),
+            Some(choice) => self.lock(&predict, PredictionAnswer::Choice(choice.clone()), lab),
         }
     }
 
-    /// Marks the answer with this number, or begins to type one with this digit.
+    /// Chooses the answer with this number, or begins to type one with this digit.
     fn answer_by_digit(&mut self, digit: u8, lab: &mut Lab) {
         let Some(predict) = self.asked().cloned() else {
             return;
@@ -179,8 +172,7 @@ impl OpenLesson {
         match (&predict.asked, usize::from(digit)) {
             (AnswerKind::Number { .. }, _) => self.ask_number(Some(digit), lab),
             (AnswerKind::Choice(all), number) if (1..=all.len()).contains(&number) => {
-                self.pointed.insert(predict.name, (number - 1, true));
-                lab.refuse(MARKED);
+                self.chosen.insert(predict.name, number - 1);
             }
             (AnswerKind::Choice(all), _) => {
                 lab.refuse(format!("the answers are 1 to {}", all.len()));
@@ -218,7 +210,7 @@ impl OpenLesson {
         if let Err(reason) = self.place.predictions.lock(predict, given) {
             return lab.refuse(reason);
         }
-        self.pointed.remove(&predict.name);
+        self.chosen.remove(&predict.name);
         self.has_answered = true;
         self.state_again(&predict.name, lab);
         let Some(page) = self.page() else {

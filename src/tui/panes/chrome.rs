@@ -7,8 +7,10 @@ use crate::engine::text::number::{fixed, significant};
 use crate::engine::text::wrap::columns;
 use crate::lab::Lab;
 use crate::lab::action::{Action, LessonKey};
+use crate::lab::sheet::AskedAnswer;
 use crate::lab::view::Pane;
 use crate::lab::view::step::StepPageChoice;
+use crate::lab::view::theme::Theme;
 use crate::tui::keymap::{BINDINGS, Binding, FooterPriority, Key, KeyEffect, Mode};
 use crate::tui::layout::ScreenLayout;
 use crate::tui::split::split_columns;
@@ -115,9 +117,13 @@ fn short_clock(lab: &Lab, width: usize, least_title: usize) -> String {
     shortened(&longest(clocks, room), width).into_owned()
 }
 
-/// Draws the verdict on the run: a word, the reasons, and the key that fixes it. Reasons give way to the key.
+/// Draws the verdict on the run: a word, the reasons, and the key that fixes it. Reasons give way to the key. While a question
+/// is open, the row says what answers it.
 pub fn verdict(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
+    if let Some(asked) = lab.view().asked() {
+        return answer_keys(asked, theme, area, buf);
+    }
     let verdict = Verdict::new(&lab.player().reading.readouts.health);
     let (word, role) = match &verdict.word {
         VerdictWord::Reliable => (" reliable:".to_owned(), Role::Heading),
@@ -143,6 +149,32 @@ pub fn verdict(lab: &Lab, area: Rect, buf: &mut Buffer) {
                 write(area, (x, 0), rest, theme.style(Role::Text), buf)
             }
         } + gap as u16;
+    }
+}
+
+/// Draws the keys that answer the open question of a page.
+fn answer_keys(asked: AskedAnswer, theme: &Theme, area: Rect, buf: &mut Buffer) {
+    let (numbers, mut keys) = match asked {
+        AskedAnswer::Number => (String::new(), vec![("Enter", "type your prediction")]),
+        AskedAnswer::Choice { count, is_chosen } => {
+            let numbers: Vec<_> = (1..=count).map(|number| number.to_string()).collect();
+            let locks = is_chosen.then_some(("Enter", "this is my prediction"));
+            (numbers.join(" "), locks.into_iter().collect())
+        }
+    };
+    keys.push(("n", "without one"));
+    let gap = if area.width >= WIDE_FROM { 3 } else { 2 };
+    let (of_key, of_word) = (theme.style(Role::Heading), theme.style(Role::Label));
+    let mut x = 1;
+    if !numbers.is_empty() {
+        x = write(area, (x, 0), &numbers, of_key, buf);
+        x = write(area, (x, 0), " or ", of_word, buf);
+        x = write(area, (x, 0), "↑ ↓", of_key, buf);
+        x = write(area, (x, 0), " choose", of_word, buf) + gap;
+    }
+    for (key, word) in keys {
+        x = write(area, (x, 0), key, of_key, buf);
+        x = write(area, (x + 1, 0), word, of_word, buf) + gap;
     }
 }
 
@@ -343,6 +375,7 @@ fn footer_word(lab: &Lab, goes_on: bool, row: &Binding) -> Option<&'static str> 
     };
     let is_of_use = match (row.footer, action) {
         ("residuals", _) => lab.comparison().data().is_some(),
+        ("exact" | "fix", _) => lab.view().asked().is_none(),
         // A run whose numbers are no longer finite cannot go on.
         ("pause" | "step", _) => !lab.player().run().simulation().has_ended(),
         (_, Some(Action::Lesson(LessonKey::Take))) => !enter.is_empty(),

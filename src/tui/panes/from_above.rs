@@ -252,7 +252,7 @@ impl<'a> AbovePicture<'a> {
 
     /// The exact path is drawn over the run: where the two agree, its dashes alternate with the run.
     fn exact_path(&self, dots: &mut LayeredDots) {
-        if let Some(overlay) = self.seen.run.overlay() {
+        if let Some(overlay) = self.seen.overlay() {
             let places = overlay.path.dots().map(|at| self.plane.dot(at));
             let exact = ink(Role::Exact, Layer::Exact);
             dots.path(places, Some(dots::EXACT_DASHES), 0.0, exact);
@@ -454,7 +454,7 @@ fn tick_text(value: f64, step: f64) -> String {
 /// It is the present moment. Where the traces are held because swings pass too fast to be followed, it is the moment of
 /// the latest reading. Where the scheme has broken down, it is the last moment before.
 fn shown_moment(seen: &PlotInputs<'_>) -> (RecordedSample, Option<Vector2<f64>>) {
-    let is_shown = seen.run.overlay().is_some();
+    let is_shown = seen.overlay().is_some();
     let is_held = seen.view.window.is_held;
     match seen.reading {
         Some(reading) if is_held || reading.last_whole.is_some() => {
@@ -469,7 +469,7 @@ fn shown_moment(seen: &PlotInputs<'_>) -> (RecordedSample, Option<Vector2<f64>>)
             let exact = seen
                 .run
                 .exact_now()
-                .filter(|exact| exact.time_s == now.time_s);
+                .filter(|exact| is_shown && exact.time_s == now.time_s);
             (now, exact.map(|exact| exact.position.xy()))
         }
     }

@@ -1,6 +1,6 @@
 //! The page of a lesson beside the run: its text, the question with its answers, what is to be reached, and the keys.
 
-use super::{PaneRow, below_rule, longest, rule, write};
+use super::{PaneRow, below_rule, longest, rule, shortened, write};
 use crate::engine::text::wrap::{columns, wrapped};
 use crate::lab::Lab;
 use crate::lab::action::Direction;
@@ -23,12 +23,27 @@ pub const LESSON_ROW: PaneRow = PaneRow {
     arrows: None,
 };
 
+/// Columns before the words of an answer.
+const CHOICE_INDENT: u16 = 4;
+/// Stands for a blank at which a line must not end.
+const KEPT_BLANK: char = '\u{e000}';
+/// The units of numbers in the texts of lessons.
+const UNITS: [&str; 16] = [
+    "m", "mm", "m/s", "m²", "s", "ms", "N", "kg", "J", "rad/s", "rad", "°", "degrees", "degree",
+    "%", "times",
+];
+
 /// A line of the page: its first column, and its pieces.
+#[derive(Default)]
 struct LessonLine {
     /// The number of its paragraph; `None` for an empty line between two.
     paragraph: Option<usize>,
     x: u16,
     pieces: Vec<(String, Style)>,
+    /// What stands at its end.
+    mark: &'static str,
+    /// Whether it is the chosen one of several: it is reversed over the whole width.
+    is_selected: bool,
 }
 
 fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
@@ -36,30 +51,26 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let Some(sheet) = &view.sheet else {
         return;
     };
-    let room = area.width.saturating_sub(4).into();
-    let framed = longest(sheet.framed.lines().map(str::to_owned), room);
-    let title = if framed.is_empty() {
-        &sheet.title
-    } else {
-        &framed
-    };
-    let inside = rule(
-        title,
-        None,
-        view.focus == LESSON_ROW.id,
-        area,
-        &view.theme,
-        buf,
+    let framed = longest(
+        sheet.framed.lines().map(str::to_owned),
+        area.width.saturating_sub(4).into(),
     );
+    let (title, place) = match framed.as_str() {
+        "" => (&sheet.title, sheet.place.as_str()),
+        _ => (&framed, ""),
+    };
+    // Which page it is goes before the whole of a long title.
+    let room = area.width.saturating_sub(columns(place) as u16 + 5);
+    let title = shortened(title, room.into());
+    let right = Some((place, Role::Label)).filter(|_| !place.is_empty());
+    let has_focus = view.marks_focus_of(LESSON_ROW.id);
+    let inside = rule(&title, right, has_focus, area, &view.theme, buf);
     if inside.is_empty() {
         return;
     }
     let page = ScrolledPage::new(sheet, inside, view);
-    for (line, y) in page.shown().zip(0..) {
-        let mut x = line.x;
-        for (text, style) in &line.pieces {
-            x = write(inside, (x, y), text, *style, buf);
-        }
+    for (line, row) in page.shown().zip(inside.rows()) {
+        draw_line(line, row, &view.theme, buf);
     }
     let quiet = view.theme.style(Role::Label);
     let below = page.has_more();
@@ -76,6 +87,20 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
         ..inside
     };
     write_border(&sheet.border, more, border, quiet, buf);
+}
+
+fn draw_line(line: &LessonLine, row: Rect, theme: &Theme, buf: &mut Buffer) {
+    let mut x = line.x;
+    for (text, style) in &line.pieces {
+        x = write(row, (x, 0), text, *style, buf);
+    }
+    let at = row.width.saturating_sub(columns(line.mark) as u16);
+    if !line.mark.is_empty() && at > x {
+        write(row, (at, 0), line.mark, theme.style(Role::Heading), buf);
+    }
+    if line.is_selected {
+        buf.set_style(row, theme.style(Role::Selected));
+    }
 }
 
 /// Writes what the border says of the class, and `more` where it fits beside that.
@@ -140,11 +165,7 @@ impl ScrolledPage {
         let mut before: Option<&SheetLineKind> = None;
         for (index, paragraph) in sheet.paragraphs.iter().enumerate() {
             if before.is_some_and(|before| are_apart(before, &paragraph.kind)) {
-                lines.push(LessonLine {
-                    paragraph: None,
-                    x: 0,
-                    pieces: Vec::new(),
-                });
+                lines.push(LessonLine::default());
             }
             let begin = lines.len();
             let is_ascii = view.marker == Marker::Ascii;
@@ -195,6 +216,7 @@ fn are_apart(before: &SheetLineKind, after: &SheetLineKind) -> bool {
     }
     match (before, after) {
         (SheetLineKind::Goal { .. }, SheetLineKind::Goal { .. })
+        | (SheetLineKind::Caption, _)
         | (SheetLineKind::Question, SheetLineKind::Choice { .. }) => false,
         _ => !is_list(before) || !is_list(after),
     }
@@ -206,27 +228,20 @@ fn dressed(kind: &SheetLineKind) -> (String, u16, Role) {
         (mark.to_owned(), 0, role)
     }
     match kind {
-        SheetLineKind::Heading => plain("", Role::Heading),
-        SheetLineKind::Text => plain("", Role::Text),
+        SheetLineKind::Heading | SheetLineKind::Caption => plain("", Role::Heading),
+        SheetLineKind::Text | SheetLineKind::Question => plain("", Role::Text),
         SheetLineKind::Item { mark, depth } => {
             (format!("{mark} "), 2 * depth.saturating_sub(1), Role::Text)
         }
         SheetLineKind::Code => (String::new(), 2, Role::Text),
-        SheetLineKind::Question => plain("? ", Role::Heading),
-        SheetLineKind::Choice {
-            is_selected,
-            is_given,
-        } => {
-            let pointer = if *is_selected { "> " } else { "  " };
-            let mark = if *is_given { "[x] " } else { "[ ] " };
-            let role = if *is_selected {
-                Role::Heading
-            } else {
-                Role::Text
+        SheetLineKind::Choice { mark, .. } => {
+            let role = match *mark {
+                "" => Role::Text,
+                _ => Role::Heading,
             };
-            (format!("{pointer}{mark}"), 0, role)
+            (String::new(), CHOICE_INDENT, role)
         }
-        SheetLineKind::Result => plain("= ", Role::Heading),
+        SheetLineKind::Result => plain("", Role::Heading),
         SheetLineKind::Goal { is_reached: true } => plain("[x] ", Role::Text),
         SheetLineKind::Goal { is_reached: false } => plain("[ ] ", Role::Text),
         SheetLineKind::Hint => plain("", Role::Label),
@@ -242,7 +257,7 @@ fn lines_of(paragraph: &Paragraph, width: u16, theme: &Theme) -> Vec<LessonLine>
     let text = paragraph.text();
     let texts: Vec<String> = match paragraph.kind {
         SheetLineKind::Code => text.lines().flat_map(|line| in_room(line, room)).collect(),
-        _ => wrapped(&text, room),
+        _ => wrapped_with_units(&text, room),
     };
     let mut letters = letters_of(paragraph).peekable();
     let mut lines = Vec::with_capacity(texts.len());
@@ -253,12 +268,64 @@ fn lines_of(paragraph: &Paragraph, width: u16, theme: &Theme) -> Vec<LessonLine>
             pieces.insert(0, (mark.clone(), style));
         }
         lines.push(LessonLine {
-            paragraph: None,
             x: if is_marked { indent } else { hanging },
             pieces,
+            ..LessonLine::default()
         });
     }
+    if let SheetLineKind::Choice {
+        number,
+        is_selected,
+        mark,
+    } = paragraph.kind
+    {
+        as_choice(&mut lines, number, is_selected, mark, theme);
+    }
     lines
+}
+
+/// Makes `lines` those of an answer, or of an entry of a list.
+fn as_choice(
+    lines: &mut [LessonLine],
+    number: Option<usize>,
+    is_selected: bool,
+    mark: &'static str,
+    theme: &Theme,
+) {
+    for line in lines.iter_mut() {
+        line.is_selected = is_selected;
+        if number.is_none() {
+            line.x = 1;
+        }
+    }
+    if let Some(last) = lines.last_mut() {
+        last.mark = mark;
+    }
+    if let (Some(first), Some(number)) = (lines.first_mut(), number) {
+        let label = format!("{number:<width$}", width = usize::from(CHOICE_INDENT) - 1);
+        first.x = 1;
+        let style = theme.style(Role::Heading);
+        first.pieces.insert(0, (label, style));
+    }
+}
+
+/// As [`wrapped`], but no line ends between a number and its unit.
+fn wrapped_with_units(text: &str, room: usize) -> Vec<String> {
+    let words: Vec<&str> = text.split_whitespace().collect();
+    let mut joined = String::with_capacity(text.len());
+    for (index, word) in words.iter().enumerate() {
+        let before = index.checked_sub(1).map_or("", |before| words[before]);
+        let is_number = before.ends_with(|letter: char| letter.is_ascii_digit());
+        let is_unit = UNITS.contains(&word.trim_end_matches(['.', ',', ';', ':', ')', '?']));
+        match index {
+            0 => {}
+            _ if is_number && is_unit => joined.push(KEPT_BLANK),
+            _ => joined.push(' '),
+        }
+        joined += word;
+    }
+    let lines = wrapped(&joined, room).into_iter();
+    lines.map(|line| line.replace(KEPT_BLANK, " ")).collect()
 }
 
 /// `text` in pieces of one style each. Its letters are the next of `letters`, but for the blanks between words.
@@ -329,21 +396,28 @@ mod tests {
     #[test]
     fn paragraphs_hang_on_their_marks() {
         let choice = SheetLineKind::Choice {
+            number: Some(2),
             is_selected: true,
-            is_given: false,
+            mark: "",
         };
         let item = SheetLineKind::Item {
             mark: "-".to_owned(),
             depth: 2,
         };
-        let choices = ["> [ ] is ten", "      times", "      smaller"];
+        let choices = [" 2  is ten", "    times", "    smaller"];
         for (kind, text, width, wanted) in [
-            (choice, "is ten times smaller", 16, &choices[..]),
+            (choice, "is ten times smaller", 11, &choices[..]),
             (item, "one two", 8, &["  - one", "    two"]),
             (SheetLineKind::Code, "a   b\nc", 8, &["  a   b", "  c"]),
         ] {
             assert_eq!(texts(&Paragraph::new(kind, text), width), wanted);
         }
+    }
+
+    #[test]
+    fn a_number_and_its_unit_stay_together() {
+        let lines = wrapped_with_units("a push of 100 N for 20 s.", 13);
+        assert_eq!(lines, ["a push of", "100 N for", "20 s."]);
     }
 
     #[test]

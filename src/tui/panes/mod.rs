@@ -24,11 +24,11 @@ use crate::engine::text::wrap::{columns, wrapped};
 use crate::lab::action::{Action, Direction, repeated};
 use crate::lab::comparison::DataComparison;
 use crate::lab::playback::ghost::Ghost;
-use crate::lab::playback::live::LiveRun;
+use crate::lab::playback::live::{LiveRun, Overlay};
 use crate::lab::playback::reading::Reading;
 use crate::lab::step_pane::StepWorkings;
 use crate::lab::view::theme::Theme;
-use crate::lab::view::{Pane, View};
+use crate::lab::view::{HideablePart, Pane, View};
 use crate::lab::{KeyCommands, Lab, LabRequest};
 use crate::tui::keymap::{self, Binding, KeyEffect, Mode};
 use crate::tui::split::split_rows;
@@ -141,6 +141,12 @@ impl<'a> PlotInputs<'a> {
             explained: lab.step_pane().shown(),
             cursor: player.cursor(),
         }
+    }
+
+    /// The exact motion, where it is shown beside the run.
+    fn overlay(&self) -> Option<&'a Overlay> {
+        let overlay = self.run.overlay();
+        overlay.filter(|_| !self.view.hides(HideablePart::Predicted))
     }
 
     /// The time from which on the path is bright, s: the window of the traces, or the last turn where that is the whole run.

@@ -269,7 +269,7 @@ impl<'a> Scene<'a> {
         let run = self.bins(self.seen.run.recording()).chain([self.position]);
         let run = run.map(|at| self.dot(&at));
         dots.path(run, None, longest, ink(Role::Run, Layer::Run));
-        if let Some(overlay) = self.seen.run.overlay() {
+        if let Some(overlay) = self.seen.overlay() {
             let exact = self.bins(&overlay.recording).map(|at| self.dot(&at));
             let of_exact = ink(Role::Exact, Layer::Exact);
             dots.path(exact, Some(dots::EXACT_DASHES), longest, of_exact);
@@ -307,7 +307,7 @@ impl<'a> Scene<'a> {
             Spot::Three
         };
         let exact = self.seen.reading.and_then(|reading| reading.exact.as_ref());
-        if let Some(exact) = exact.filter(|_| self.seen.run.overlay().is_some()) {
+        if let Some(exact) = exact.filter(|_| self.seen.overlay().is_some()) {
             let of_exact = ink(Role::Exact, Layer::ExactNow);
             dots.spot(self.dot(&exact.position), Spot::Three, of_exact);
         }

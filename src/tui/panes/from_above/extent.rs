@@ -38,7 +38,7 @@ impl PlaneExtent {
         let scenario = seen.run.scenario();
         let mut reached = Self::about(Vector2::zeros(), 0.0);
         let (_, own) = seen.run.pictures();
-        let exact = seen.run.overlay().map(|overlay| &overlay.path);
+        let exact = seen.overlay().map(|overlay| &overlay.path);
         let others = [seen.ghost, seen.pinned].into_iter().flatten();
         let others = others.map(|other| &other.path);
         for path in [own].into_iter().chain(exact).chain(others) {

@@ -9,6 +9,8 @@ use crate::lab::view::FourthStrip;
 
 /// The fewest rows of a strip, with its rule, and the fewest with which a fourth strip joins the others by itself.
 const LEAST_ROWS: u16 = 4;
+/// Beside a page, x and y join the others from this many rows on.
+const ROWS_BESIDE_PAGE: u16 = 16;
 const ROWS_OF_FOURTH: u16 = 9;
 /// The least range of measured quantities, as a share of their size.
 const SHARE_LEAST: f64 = 1e-3;
@@ -48,25 +50,29 @@ impl Traces<'_> {
     }
 
     /// Returns x, y and z, and a fourth strip if there is room. If there is not, a chosen one takes the place of y. On few
-    /// rows z is alone.
+    /// rows z is alone, or below the chosen one.
     fn curves(&self, height: u16) -> Vec<StripContent> {
         let [x, y, z, tilt] = RecordedCurve::ALL.map(StripContent::Curve);
         let (fourth, is_chosen) = match self.0.view.look.detail_of {
             FourthStrip::None => (None, false),
-            FourthStrip::Auto if self.0.run.overlay().is_some() => {
+            FourthStrip::Auto if self.0.overlay().is_some() => {
                 (Some(StripContent::Distance), false)
             }
             FourthStrip::Auto => (Some(tilt), false),
-            FourthStrip::Distance if self.0.run.overlay().is_some() => {
+            FourthStrip::Distance if self.0.overlay().is_some() => {
                 (Some(StripContent::Distance), true)
             }
             FourthStrip::Distance => (None, false),
             FourthStrip::Tilt => (Some(tilt), true),
             FourthStrip::X | FourthStrip::Y | FourthStrip::Z => (None, false),
         };
+        let fewest = match self.0.view.sheet {
+            Some(_) => ROWS_BESIDE_PAGE,
+            None => 3 * LEAST_ROWS,
+        };
         match fourth {
-            Some(fourth) if is_chosen && height < 3 * LEAST_ROWS => vec![z, fourth],
-            _ if height < 3 * LEAST_ROWS => vec![z],
+            Some(fourth) if is_chosen && height < fewest => vec![fourth, z],
+            _ if height < fewest => vec![z],
             Some(fourth) if height >= 4 * ROWS_OF_FOURTH => vec![x, y, z, fourth],
             Some(fourth) if is_chosen && height >= 4 * LEAST_ROWS => vec![x, y, z, fourth],
             Some(fourth) if is_chosen => vec![x, z, fourth],

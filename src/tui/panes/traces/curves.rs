@@ -102,7 +102,7 @@ impl Traces<'_> {
             (CurveOwner::Run, StripContent::Curve(curve)) => Some((self.0.run.recording(), curve)),
             (CurveOwner::Run, StripContent::Measured(index)) => self.0.measured?.recorded(index),
             (CurveOwner::Run, StripContent::Distance) => {
-                Some((&self.0.run.overlay()?.distance, RecordedCurve::X))
+                Some((&self.0.overlay()?.distance, RecordedCurve::X))
             }
             (CurveOwner::Previous, StripContent::Curve(curve)) => {
                 Some((&self.0.ghost?.recording, curve))
@@ -114,7 +114,7 @@ impl Traces<'_> {
                 Some((&self.0.pinned?.recording, curve))
             }
             (CurveOwner::Exact, StripContent::Curve(curve)) => {
-                Some((&self.0.run.overlay()?.recording, curve))
+                Some((&self.0.overlay()?.recording, curve))
             }
             (CurveOwner::Previous, StripContent::Distance)
             | (

@@ -188,7 +188,7 @@ impl Traces<'_> {
     fn legend(&self, plot: &Plot, buf: &mut Buffer) {
         let theme = &self.0.view.theme;
         let is_named = self.name_exact(plot, buf);
-        let has_exact = self.0.run.overlay().is_some() && !is_named;
+        let has_exact = self.0.overlay().is_some() && !is_named;
         let words = [
             (has_exact, EXACT_LEGEND, Role::Exact),
             (self.0.ghost.is_some(), PREVIOUS_LEGEND, Role::Previous),
@@ -216,7 +216,7 @@ impl Traces<'_> {
         let StripContent::Curve(curve) = plot.content else {
             return false;
         };
-        let Some(exact) = self.0.run.overlay().map(|overlay| &overlay.now) else {
+        let Some(exact) = self.0.overlay().map(|overlay| &overlay.now) else {
             return false;
         };
         let across = self.0.view.marker.dots().0;
