@@ -88,6 +88,7 @@ pub struct Player {
     read_at: Duration,
     /// When the window of the traces was held last.
     window_held_at: Duration,
+    seen_swing: Option<window::SeenSwing>,
     at_cursor: Option<CursorNumbers>,
     /// Whether a single step keeps its intermediate results, until they are read.
     pub(super) keeps_workings: bool,
@@ -104,6 +105,7 @@ impl Player {
         let reading = Reading::new(&mut run, &pace);
         Self {
             window_held_at: Duration::ZERO,
+            seen_swing: None,
             run,
             pace,
             goal: None,

@@ -183,9 +183,8 @@ impl Pointer {
                 let run = lab.player().run();
                 let furthest = run.furthest();
                 let furthest_s = Clock::at(run.scenario(), furthest).time_s(furthest);
-                let time_s =
-                    Overview::new(lab, layout.overview).and_then(|overview| overview.time_s(at.x));
-                if let Some(time_s) = time_s {
+                if let Some(overview) = Overview::new(lab, layout.overview) {
+                    let time_s = overview.nearest_time_s(at.x);
                     // Time that the run has not reached would take long: a press goes there.
                     lab.carry_out_now(&Command::GoTo(SeekTarget::Time(time_s.min(furthest_s))));
                 }

@@ -485,7 +485,7 @@ fn solids_are_seen_as_what_they_are() {
 fn a_part_is_edited_in_the_pane_of_values() {
     let mut stage = Stage::open("wing-nut", &[], SMALL);
     stage.commands("pause = true").press("e/outer\n");
-    stage.shows("outer radius, m 0.008").press("0.009\n");
+    stage.shows("outer radius = 0.008 m").press("0.009\n");
     stage.shows("outer radius 9e-3 m");
     let nut = &stage.lab.player().run().scenario().file.body.part[0];
     assert_eq!(nut.outer_radius_m, Some(0.009));

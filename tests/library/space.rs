@@ -118,7 +118,7 @@ fn from_above_one_sees_the_start_the_moment_and_meters() {
         assert!(picture.text().starts_with("from above (m) "));
         picture.is_labelled("now", Role::Cursor);
         picture.is_labelled("start", Role::Label);
-        for label in ["x", "y", "0.5", "-0.5"] {
+        for label in ["x", "y", "0.5", "−0.5"] {
             picture.label(label);
         }
         let (bright, dim) = (picture.dots(Role::Run), picture.dots(Role::RunEarlier));

@@ -276,8 +276,7 @@ fn the_exact_motion_is_dashed_and_named() {
 #[test]
 fn a_magnified_strip_says_where_the_exact_motion_is() {
     let mut stage = at("wobble-push", &["view.exact=true"], 900, MEDIUM);
-    stage.press("\tzzz");
-    stage.commands("magnify = 8");
+    stage.press("zzz");
     let picture = stage.picture();
     assert!(picture.contains(['↑', '↓']), "{picture}");
     stage.press("ZZZ");

@@ -58,6 +58,7 @@ fn what_is_pressed_is_done() {
 fn hostile_places_do_nothing() {
     let mut lab = Terminal::open("--paused --at 10");
     lab.wait_for("L lessons");
+    lab.wait_until("the verdict", |lab| !lab.words().contains("checking"));
     let before = lab.screen();
     for place in [
         "0;0",

@@ -6,10 +6,12 @@
 
 use super::{Player, furthest_s};
 use crate::engine::recording::{Extent, RecordedCurve, Recording};
+use crate::engine::scenario::Scenario;
 use crate::lab::comparison::Comparison;
 use crate::lab::playback::pace::Speed;
 use crate::lab::view::View;
 use crate::lab::view::window::TimeWindow;
+use std::sync::Arc;
 use std::time::Duration;
 
 /// A run of at most so many times the swings that the strips have room for is shown as a whole.
@@ -40,10 +42,17 @@ const KEPT_RANGE: f64 = 0.9;
 
 /// The swings of a run as its steps show them.
 #[derive(Clone, Copy)]
-struct Swing {
+pub(super) struct Swing {
     period_s: f64,
     /// How far they carry the traced point, m.
     height_m: f64,
+}
+
+/// The latest swings that were seen in a run.
+pub(super) struct SeenSwing {
+    scenario: Arc<Scenario>,
+    swing: Swing,
+    now_s: f64,
 }
 
 impl Player {
@@ -54,7 +63,7 @@ impl Player {
         view: &View,
         comparison: &Comparison,
     ) -> TimeWindow {
-        let swing = self.swing();
+        let swing = self.seen_swing();
         let chosen_s = self.window_length_s(view, swing);
         let swing_s = swing.map(|swing| swing.period_s);
         let (begin_s, length_s, is_held) = match (view.since_s, chosen_s) {
@@ -166,6 +175,29 @@ impl Player {
         let few = FEW_WINDOWS * view.swings as f64;
         let arm_m = self.run.scenario().arm_m();
         span_s / swing.period_s > ease * few && swing.height_m > ease * LEAST_SWING * arm_m
+    }
+
+    /// Returns the swings of the run. Where none are seen yet, they are those that the same run had later, so that the panes
+    /// stay as they are where one goes back to its start.
+    fn seen_swing(&mut self) -> Option<Swing> {
+        let (scenario, now_s) = (self.run.scenario(), self.run.now().time_s);
+        let later = self.seen_swing.as_ref();
+        let later =
+            later.filter(|seen| Arc::ptr_eq(&seen.scenario, scenario) && now_s < seen.now_s);
+        let least_m = LEAST_SWING * scenario.arm_m();
+        match (self.swing(), later) {
+            (Some(swing), None) if swing.height_m > least_m => {
+                self.seen_swing = Some(SeenSwing {
+                    scenario: Arc::clone(scenario),
+                    swing,
+                    now_s,
+                });
+                Some(swing)
+            }
+            (Some(swing), _) if swing.height_m > least_m => Some(swing),
+            (_, Some(seen)) => Some(seen.swing),
+            (swing, None) => swing,
+        }
     }
 
     /// Returns the swings of the tilt, or those of the traced point if they are faster or the tilt does not swing.

@@ -103,7 +103,9 @@ fn what_is_no_key_is_passed_over_as_a_whole() {
         "\u{1b}[15~",
         "\u{1b}[201~",
         "\u{1b}OP",
-        "\u{1b}]11;rgb:0000/0000/0000\u{1b}\\",
+        "\u{1b}]10;rgb:0000/0000/0000\u{1b}\\",
+        "\u{1b}]11;rgb:00/00\u{7}",
+        "\u{1b}]11;rgb:zz/00/00\u{7}",
         "\u{1b}]0;a title\u{7}",
         "\u{1b}P>|a terminal\u{1b}\\",
     ] {

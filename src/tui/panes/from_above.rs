@@ -5,11 +5,13 @@
 
 mod extent;
 
+use super::traces::with_minus_sign;
 use super::{MOST_SHOWN_PUSHES, PaneRow, PlotInputs, round_title, rule};
 use crate::engine::data::MeasuredPlace;
 use crate::engine::recording::RecordedSample;
 use crate::engine::text::nice_numbers::climbed;
 use crate::engine::text::number::{fixed, significant};
+use crate::engine::text::wrap::columns;
 use crate::lab::playback::ghost::Ghost;
 use crate::lab::view::theme::Marker;
 use crate::lab::view::{HideablePart, Pane};
@@ -397,7 +399,7 @@ impl<'a> AbovePicture<'a> {
         let (step, [of_x, of_y]) = self.ticks();
         for x in of_x {
             let text = tick_text(x, step);
-            let half = text.len() as i32 / 2;
+            let half = columns(&text) as i32 / 2;
             let column = cell_of(self.plane.dot((x, 0.0))).0;
             let below = [LabelOffset::Right(-half, 1), LabelOffset::Right(-half, -1)];
             labels.place((column, crossing.1), &below, &text, style);
@@ -442,11 +444,11 @@ fn cell_of((x, y): FineDot) -> (i32, i32) {
 /// The number of a tick, m, where ticks are `step` apart.
 fn tick_text(value: f64, step: f64) -> String {
     let decimals = (-libm::log10(step).floor() as i64).max(0);
-    if decimals <= MOST_TICK_DECIMALS {
+    with_minus_sign(&if decimals <= MOST_TICK_DECIMALS {
         fixed(value, decimals as usize)
     } else {
         significant(value, 3)
-    }
+    })
 }
 
 /// The moment that is shown, and the exact motion at that moment if its curves are shown.

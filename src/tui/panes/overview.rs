@@ -95,9 +95,16 @@ impl<'a> Overview<'a> {
 
     /// Returns the time at column `x` of the screen, s; `None` beside the overview.
     pub fn time_s(&self, x: u16) -> Option<f64> {
-        let cell = x.checked_sub(self.sheet.x)?;
-        let share = f64::from(cell) / f64::from(self.sheet.width.saturating_sub(1).max(1));
-        (cell < self.sheet.width).then_some(self.span.begin_s + share * self.span.window_s)
+        let is_inside = (self.sheet.left()..self.sheet.right()).contains(&x);
+        is_inside.then(|| self.nearest_time_s(x))
+    }
+
+    /// Returns the time at column `x` of the screen, s; beside the overview, that of its nearer end.
+    pub fn nearest_time_s(&self, x: u16) -> f64 {
+        let last = self.sheet.width.saturating_sub(1);
+        let cell = x.saturating_sub(self.sheet.x).min(last);
+        let share = f64::from(cell) / f64::from(last.max(1));
+        self.span.begin_s + share * self.span.window_s
     }
 
     /// Returns the column of cells of `time_s`; a time outside is at the nearer end.

@@ -42,8 +42,9 @@ const CIRCLE_PARTS: usize = 72;
 const SMALL_COLUMNS: u16 = 32;
 /// Panes with more rows have larger masses and arrows' heads.
 const LARGE_ROWS: u16 = 20;
-/// From so many rows on, the last one says what the letters mean.
+/// From so many rows and columns on, the last row says what the letters mean.
 const LEGEND_ROWS: u16 = 17;
+const LEGEND_COLUMNS: u16 = 48;
 /// Columns between two words of the legend.
 const LEGEND_WORD_GAP: u16 = 2;
 
@@ -86,7 +87,8 @@ impl Widget for ThreeD<'_> {
 /// The area of the picture in a pane on `area`: below its rule, and above its legend where there is one.
 fn below(area: Rect) -> Rect {
     let inside = super::below_rule(area);
-    let legend = u16::from(inside.height >= LEGEND_ROWS);
+    let has_legend = inside.height >= LEGEND_ROWS && inside.width >= LEGEND_COLUMNS;
+    let legend = u16::from(has_legend);
     split_rows(inside, inside.height - legend)[0]
 }
 

@@ -17,7 +17,7 @@ use crate::lab::view::{Pane, USUAL_SWINGS};
 use crate::tui::keymap::{self, one};
 use crate::tui::split::split_rows;
 use crate::tui::theme::Role;
-pub(super) use axis::{Gutter, times};
+pub(super) use axis::{Gutter, times, with_minus_sign};
 use content::StripContent;
 pub(super) use curves::{draw_run, rows};
 use ratatui::buffer::Buffer;
@@ -28,6 +28,8 @@ pub(super) use strip::{EDIT_MARK, PUSH_BAR, cursor_line};
 /// Columns of dots for a swing, and the fewest swings that are shown: of small dots, and of dots as wide as a cell.
 const SMALL_DOTS: (usize, usize) = (10, 4);
 const LARGE_DOTS: (usize, usize) = (8, 2);
+/// Fewest rows of a strip: its rule, and one of its curves.
+const LEAST_STRIP_ROWS: u16 = 2;
 /// Columns of ticks beside a strip, about.
 const USUAL_GUTTER: usize = 7;
 
@@ -98,7 +100,11 @@ impl Traces<'_> {
     /// Returns the strips that there is room for on `area`, above the axis of time, and the columns of their ticks.
     fn plots(&self, area: Rect) -> (Vec<Plot>, Gutter) {
         let [strips, _] = split_rows(area, area.height.saturating_sub(1));
-        let contents = self.contents(strips.height);
+        let contents = if strips.height < LEAST_STRIP_ROWS {
+            Vec::new()
+        } else {
+            self.contents(strips.height)
+        };
         let scales: Vec<_> = contents
             .iter()
             .map(|(content, is_residual)| self.scale(*content, *is_residual))

@@ -128,7 +128,8 @@ impl SpaceLabel {
             labels.place(cell_of(at), &[offset], &self.text, style)
         });
         if !is_placed {
-            labels.place(cell_of(self.at), AROUND_POINT, &self.text, style);
+            let around = [AROUND_POINT, AROUND_MARK].concat();
+            labels.place(cell_of(self.at), &around, &self.text, style);
         }
     }
 }

@@ -21,7 +21,7 @@ const MANY_ROWS: usize = 9;
 /// Rows that are left free beside the ends.
 const ROWS_FROM_ENDS: usize = 2;
 /// Columns for each label of the axis of time.
-const COLUMNS_PER_TIME: usize = 9;
+const COLUMNS_PER_TIME: usize = 7;
 /// Columns from one label to the next, at least.
 const TICK_LABEL_COLUMNS: usize = 2;
 /// What follows the first label, or the last of two.
@@ -124,7 +124,7 @@ pub fn values(scale: &StripScale, rows: usize) -> Vec<ValueTick> {
     let digits = scale.decimals();
     let end = |row: usize, value: f64| ValueTick {
         row,
-        label: signed(&fixed(value, digits)),
+        label: with_minus_sign(&fixed(value, digits)),
         is_between: false,
     };
     let mut placed = vec![end(0, scale.high)];
@@ -142,7 +142,7 @@ pub fn values(scale: &StripScale, rows: usize) -> Vec<ValueTick> {
     };
     let between = ticks.into_iter().map(|value| ValueTick {
         row: (scale.from_top(value) * (rows - 1) as f64).round() as usize,
-        label: signed(&fixed(value, scale::decimals(apart))),
+        label: with_minus_sign(&fixed(value, scale::decimals(apart))),
         is_between: true,
     });
     placed
@@ -151,8 +151,8 @@ pub fn values(scale: &StripScale, rows: usize) -> Vec<ValueTick> {
 }
 
 /// Returns `number` with a minus sign as wide as a plus sign.
-pub fn signed(number: &str) -> String {
-    number.replacen('-', "−", 1)
+pub fn with_minus_sign(number: &str) -> String {
+    number.replace('-', "−")
 }
 
 /// The columns of ticks beside the strips, as wide as the widest of them needs.

@@ -1,6 +1,6 @@
 //! A strip as it is drawn: its rule with what happens in its time, its curves, and the cursor.
 
-use super::axis::{Gutter, signed};
+use super::axis::{Gutter, with_minus_sign};
 use super::canvas::{Canvas, Layer};
 use super::content::StripContent;
 use super::curves::{CURVE_OWNERS, rows};
@@ -53,7 +53,7 @@ impl Traces<'_> {
         let has_focus = index == 0 && self.0.view.marks_focus_of(TRACES_ROW.id);
         let right = is_held.then_some((HELD_TEXT, Role::Label));
         rule(&title, right, has_focus, plot.area, theme, buf);
-        self.mark_rule(plot, marks, buf);
+        self.mark_rule(plot, columns(&title) as u16, marks, buf);
         gutter.write(&plot.scale, plot.sheet, theme, buf);
         let mut canvas = Canvas::new(plot.sheet, self.0.view.marker);
         if plot.is_residual {
@@ -76,23 +76,22 @@ impl Traces<'_> {
         self.draw_cursor(plot, buf);
     }
 
-    /// Marks on the rule of `plot` where pushes act, and where the run was edited.
-    fn mark_rule(&self, plot: &Plot, marks: &Marks, buf: &mut Buffer) {
+    /// Marks on the rule of `plot`, beside its title of so many columns, where pushes act and where the run was edited.
+    fn mark_rule(&self, plot: &Plot, title_columns: u16, marks: &Marks, buf: &mut Buffer) {
         let across = self.0.view.marker.dots().0;
         let line = self.rule_line(plot);
         let style = self.0.view.theme.style(Role::Push);
+        let first = usize::from((plot.area.x + title_columns + 1).saturating_sub(line.x));
         for &(begin_s, end_s) in &marks.pushes {
             let shown = plot.strip.shown(begin_s, end_s);
-            for x in shown.start / across..shown.end.div_ceil(across) {
+            for x in (shown.start / across).max(first)..shown.end.div_ceil(across) {
                 write(line, (x as u16, 0), PUSH_BAR, style, buf);
             }
         }
-        for x in marks
-            .edits
-            .iter()
-            .filter_map(|edit_s| plot.strip.column(*edit_s))
-        {
-            write(line, ((x / across) as u16, 0), EDIT_MARK, style, buf);
+        let edits = marks.edits.iter();
+        let cells = edits.filter_map(|edit_s| Some(plot.strip.column(*edit_s)? / across));
+        for x in cells.filter(|x| *x >= first) {
+            write(line, (x as u16, 0), EDIT_MARK, style, buf);
         }
     }
 
@@ -258,9 +257,9 @@ impl Traces<'_> {
             }
         };
         let digits = plot.scale.decimals();
-        let model = value.map(|value| signed(&fixed(value, digits)));
+        let model = value.map(|value| with_minus_sign(&fixed(value, digits)));
         let data = self.measured_at(plot.content, cursor.time_s);
-        let data = data.map(|point| format!("data {}", signed(&fixed(point, digits))));
+        let data = data.map(|point| format!("data {}", with_minus_sign(&fixed(point, digits))));
         let parts: Vec<_> = model.into_iter().chain(data).collect();
         let label = format!(" {} ", parts.join(", "));
         let line = self.rule_line(plot);
