@@ -94,9 +94,9 @@ impl ValueEffect {
     fn keys(self) -> &'static str {
         match self {
             Self::AtOnce => DIALOG_KEYS,
-            Self::Rerun => "Enter: rerun from the start   Esc: cancel",
-            Self::RerunByChoice => "Enter: rerun from the start   Tab: from now on   Esc: cancel",
-            Self::FromNowOn => "Enter: from now on   Tab: rerun from the start   Esc: cancel",
+            Self::Rerun => "Enter: rerun from the start  Esc: cancel",
+            Self::RerunByChoice => "Enter: rerun from the start  Tab: from now on  Esc: cancel",
+            Self::FromNowOn => "Enter: from now on  Tab: rerun from the start  Esc: cancel",
         }
     }
 }

@@ -122,7 +122,7 @@ fn values_are_found_by_their_names() {
     assert_eq!(stage.focus(), "parameters");
     // What is found is nudged at once, and typed.
     stage.press("→").shows("9.9");
-    stage.press("\n").shows("gravity = 9.9 m/s2   Enter:");
+    stage.press("\n").shows("gravity = 9.9 m/s2  Enter:");
     stage.press("1.6\n");
     assert_eq!(stage.lab.player().motion().gravity, 1.6);
     stage.shows("/grav").press(ESC).shows_no("/grav");

@@ -180,7 +180,7 @@ fn what_a_broken_scheme_leaves_is_not_shown_as_a_place() {
         .shows("x m                            –")
         .shows_no("0.0000 times a step");
     stage.size = SMALL;
-    stage.shows("rk4 breaks down: no rotation");
+    stage.wait(6.0).shows("rk4 breaks down: no rotation");
     let health = health("wobble-push", &["motion.scheme=rk4"]);
     let sentence = health.sentence(None);
     has(&sentence, "the scheme rk4 breaks down");

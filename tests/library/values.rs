@@ -165,7 +165,7 @@ fn the_value_is_typed_in_its_row_and_the_lab_keeps_its_keys() {
     let step = stage.step();
     assert!(step > 0);
     stage.press("/dt\n").press("0.05");
-    stage.shows("dt = 0.05 s   Enter: rerun from the start   Tab: from now on");
+    stage.shows("dt = 0.05 s  Enter: rerun from the start  Tab: from now on");
     stage.shows("0.05_").shows("x (m)").shows("from above");
     stage.press(ESC).press(ESC).shows("start ");
 }
@@ -230,5 +230,5 @@ fn a_click_selects_a_value_and_a_double_click_types_it() {
     assert_eq!(stage.focus(), "parameters");
     assert_eq!(stage.lab.values().list.selected().unwrap().label, "dt");
     pointer.act(click, SMALL, &mut stage.lab);
-    stage.shows("dt = 0.1 s   Enter:");
+    stage.shows("dt = 0.1 s  Enter:");
 }

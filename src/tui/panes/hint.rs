@@ -143,7 +143,7 @@ fn value_typed(dialog: &Dialog) -> Option<(String, Role)> {
         None => {
             let (label, unit) = field.label.split_once(", ").unwrap_or((&field.label, ""));
             let value = format!("{label} = {} {unit}", field.text());
-            (format!("{}   {}", value.trim_end(), form.keys), Role::Text)
+            (format!("{}  {}", value.trim_end(), form.keys), Role::Text)
         }
     })
 }

@@ -88,7 +88,10 @@ impl Editor<'_, '_> {
         let mut rows = Vec::with_capacity(height);
         let mut rest = area;
         for list in lists {
-            let [place, right] = split_columns(rest, area.width / columns);
+            let [mut place, right] = split_columns(rest, area.width / columns);
+            if !right.is_empty() {
+                place.width -= 1; // the columns are one apart
+            }
             rows.extend(place.rows().zip(list));
             rest = right;
         }
@@ -145,8 +148,15 @@ impl Editor<'_, '_> {
         if let Some(columns) = by_group(&rows, height, self.place.columns.into()) {
             return columns;
         }
-        let around = around_selected(&rows, height * usize::from(self.place.columns));
-        around.chunks(height.max(1)).map(<[_]>::to_vec).collect()
+        if self.place.columns == 1 {
+            return vec![around_selected(&rows, height)];
+        }
+        // Each column begins with the heading of its first value.
+        let room = height.saturating_sub(1).max(1);
+        around_selected(&rows, room * usize::from(self.place.columns))
+            .chunks(room)
+            .map(with_own_heading)
+            .collect()
     }
 
     fn row(&self, row: &EditorRow<'_>, area: Rect, buf: &mut Buffer) {
@@ -298,6 +308,15 @@ fn by_group<'a>(
     }
     let fits = columns.len() <= most && columns.iter().all(|column| column.len() <= height);
     fits.then_some(columns)
+}
+
+/// `rows` below the heading of the first, unless that is a heading itself.
+fn with_own_heading<'a>(rows: &[EditorRow<'a>]) -> Vec<EditorRow<'a>> {
+    let heading = rows.first().and_then(|first| match first {
+        EditorRow::Value(value, ..) => Some(EditorRow::Heading(&value.group)),
+        EditorRow::Blank | EditorRow::Heading(_) | EditorRow::Nothing => None,
+    });
+    heading.into_iter().chain(rows.iter().copied()).collect()
 }
 
 /// The `room` rows around the selected one, with the heading of its group.
