@@ -126,7 +126,7 @@ fn values_are_found_by_their_names() {
     stage.press("1.6\n");
     assert_eq!(stage.lab.player().motion().gravity, 1.6);
     stage.shows("/grav").press(ESC).shows_no("/grav");
-    stage.shows("values").shows("|L| J s");
+    stage.shows("values").shows("L tilt");
     assert_eq!(stage.focus(), "parameters");
     let selected = stage.lab.values().list.selected().unwrap();
     assert_eq!(selected.label, "gravity");

@@ -179,9 +179,9 @@ fn what_a_broken_scheme_leaves_is_not_shown_as_a_place() {
         .shows("tilt °                         –")
         .shows("x m                            –")
         .shows_no("0.0000 times a step");
-    stage.size = SMALL;
-    stage.wait(6.0).shows("rk4 breaks down: no rotation");
     let health = health("wobble-push", &["motion.scheme=rk4"]);
+    let short = &Verdict::new(&health).reasons[0].short;
+    has(short, "rk4 breaks down: no rotation");
     let sentence = health.sentence(None);
     has(&sentence, "the scheme rk4 breaks down");
 }

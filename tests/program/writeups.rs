@@ -63,7 +63,7 @@ fn the_folder_says_what_was_run_and_makes_it_again() {
             "\n\nOf the preset wobble-push as it was: ",
         ],
     );
-    let own = "23 % lower to 14 % higher";
+    let own = "23 % down and 14 % up";
     assert!(!page.contains(own), "{page}");
     done(lab.run("writeup wobble-push --steps 20 -o own"));
     assert!(lab.read("own/README.md").contains(own));
