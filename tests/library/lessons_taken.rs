@@ -7,6 +7,7 @@ use gyrolab::lab::sheet::SheetLineKind;
 use gyrolab::lab::view::{HideablePart, Pane};
 use gyrolab::lessons::predictions::Tried;
 use gyrolab::lessons::{Lessons, PredictionAnswer, opening, shipped};
+use ratatui::layout::Rect;
 use std::fs;
 
 /// A lesson with a question of each kind, a task with a check, and notes.
@@ -113,33 +114,41 @@ fn answer_in(class: &Lessons) -> PredictionAnswer {
 #[test]
 fn a_page_opens_its_run_and_tells_its_numbers() {
     let (mut stage, _folder, _) = taken(1);
-    stage.shows("1 of 4 · Swing").shows("The time is 2.0 s");
+    stage.shows("Swing ─").shows(" 1 of 4").shows("The time is 2.0 s");
     stage.shows("strong words").shows_no("**");
     assert_eq!(stage.focus(), "lesson");
     assert_eq!(stage.lab.runs().name(), "cusps");
     assert!(stage.lab.view().hides(HideablePart::Health));
 }
 
+/// The answers on the page: of each whether it is chosen, and what stands at its end.
+fn answers(stage: &Stage) -> Vec<(bool, &'static str)> {
+    let sheet = stage.lab.view().sheet.as_ref().unwrap();
+    let kinds = sheet.paragraphs.iter().map(|one| &one.kind);
+    kinds
+        .filter_map(|kind| match kind {
+            SheetLineKind::Choice {
+                is_selected, mark, ..
+            } => Some((*is_selected, *mark)),
+            _ => None,
+        })
+        .collect()
+}
+
 #[test]
 fn predictions_are_asked_for_once_locked_and_then_shown_beside_what_happened() {
     let (mut stage, _folder, _) = taken(1);
-    stage.shows("  [ ] 1 stays").shows_no("It goes on here");
-    stage.press("\n").shows("Enter marks it");
+    stage.shows("Your prediction").shows(" 1  stays");
+    stage.shows_no("It goes on here");
+    stage.press("\n").shows("choose an answer first");
     stage.press("n").shows("predict first").shows("1 of 4");
-    stage
-        .press("↓↓↓↑\n")
-        .shows("> [x] 2 grows")
-        .shows_no("It goes on");
-    stage
-        .press("↑")
-        .shows("> [ ] 1 stays")
-        .shows("  [ ] 2 grows");
+    stage.press("↓↓↓↑").shows_no("It goes on");
+    assert_eq!(answers(&stage), [(false, ""), (true, ""), (false, "")]);
     stage.press("7").shows("the answers are 1 to 3");
-    stage.press("3").shows("> [x] 3 shrinks").press("↑");
-    stage
-        .press("\n\n")
-        .shows("  [x] 2 grows")
-        .shows("Locked: grows.");
+    stage.press("3");
+    assert_eq!(answers(&stage), [(false, ""), (false, ""), (true, "")]);
+    stage.press("↑\n").shows("Locked: grows.");
+    assert_eq!(answers(&stage), [(false, ""), (false, "you"), (false, "")]);
     stage.shows("It goes on here").shows("How large is it?");
     assert!(
         stage.lab.view().hides(HideablePart::Health),
@@ -154,11 +163,8 @@ fn predictions_are_asked_for_once_locked_and_then_shown_beside_what_happened() {
     stage.shows("It is 5.0. You said: it grows.");
     stage.shows("You said: 3.5 deg.");
     assert_eq!(stage.lab.player().motion().gravity, 5.0);
-    stage
-        .press("N")
-        .arrive()
-        .shows("1 of 4")
-        .shows("[x] 2 grows");
+    stage.press("N").arrive().shows("1 of 4");
+    assert_eq!(answers(&stage)[1], (false, "you"));
     assert_eq!(
         answer_in(&stage.class),
         PredictionAnswer::Choice("grows".to_owned())
@@ -166,15 +172,96 @@ fn predictions_are_asked_for_once_locked_and_then_shown_beside_what_happened() {
     stage.press("\n").shows("your answer is locked");
 }
 
+/// The words in the row of the verdict, and in the note below it.
+fn rows_below(stage: &Stage) -> [String; 2] {
+    let layout = gyrolab::tui::screen::layout(&stage.lab, true, stage.size);
+    let picture = stage.picture();
+    let row = |at: u16| picture.lines().nth(at.into()).unwrap().trim().to_owned();
+    [row(layout.verdict.y), row(layout.note.y)]
+}
+
+#[test]
+fn an_open_question_hides_what_answers_it_and_names_its_keys() {
+    let text = LESSON.replace("hide = [\"health\", \"predicted\"]\n", "exact = true\n");
+    let (mut stage, _folder, name) = with(&text);
+    stage.lesson(&name, 1).arrive();
+    let hidden = "The verdict and the exact motion come back when you have predicted.";
+    let keys = "1 2 3 or ↑ ↓ choose  n without one";
+    assert_eq!(rows_below(&stage), [keys, hidden]);
+    stage.press("2").wait(0.0);
+    let keys = "1 2 3 or ↑ ↓ choose  Enter this is my prediction  n without one";
+    assert_eq!(rows_below(&stage), [keys, hidden]);
+    // Neither the exact motion nor its numbers, nor advice; the run can be played.
+    stage.shows_no("exact ").shows_no("reliable");
+    stage.press("t").shows("when you have predicted");
+    stage.press("a").shows("when you have predicted");
+    stage.press("e").shows(" values ").shows_no("exact\n");
+    stage.press("\u{1b}").wait(6.0);
+    let step = stage.step();
+    stage.press(" ").wait(1.0).press(" ").wait(6.0);
+    assert!(stage.step() > step);
+    // A number is typed; then all of it comes back.
+    stage.press("\n");
+    assert_eq!(
+        rows_below(&stage)[0],
+        "Enter type your prediction  n without one"
+    );
+    stage.press("3\n").wait(6.0);
+    assert!(rows_below(&stage)[0].starts_with("reliable:"));
+    stage.shows("exact");
+}
+
+#[test]
+fn the_run_stays_in_view_whatever_is_turned_to() {
+    let (mut stage, _folder, _) = taken(3);
+    let panes = |shown: &Stage| {
+        let layout = gyrolab::tui::screen::layout(&shown.lab, true, shown.size);
+        let panes = layout.panes.iter();
+        panes
+            .map(|(pane, place)| (*pane, place.width, place.height))
+            .collect::<Vec<_>>()
+    };
+    let run = [
+        (Pane::Lesson, 37, 19),
+        (Pane::Traces, 41, 7),
+        (Pane::Above, 41, 12),
+    ];
+    let values = (Pane::Parameters, 41, 12);
+    assert_eq!(panes(&stage), run);
+    for keys in ["e", "P"] {
+        stage.press(keys);
+        assert_eq!(panes(&stage), [run[0], run[1], values], "{keys}");
+        let step = stage.step();
+        stage.press(" ").wait(0.5).press(" p");
+        assert!(stage.step() > step, "the run goes on from there");
+        assert!(!stage.lab.player().run().scenario().pushes.is_empty());
+        // While a value is typed too.
+        stage.press("e\n").shows("Enter: ");
+        assert_eq!(panes(&stage), [run[0], run[1], values], "{keys}");
+        stage.press("\u{1b}\u{1b}").wait(6.0);
+        assert_eq!(stage.focus(), "lesson");
+        assert_eq!(panes(&stage), run);
+    }
+    stage.size = Rect::new(0, 0, 120, 40);
+    gyrolab::tui::screen::fit(&mut stage.lab, stage.size);
+    let has = |stage: &Stage| panes(stage).iter().map(|it| it.0).collect::<Vec<_>>();
+    let both = [Pane::Lesson, Pane::Traces, Pane::Above, Pane::ThreeD];
+    assert_eq!(has(&stage), both);
+    stage.press("e");
+    assert_eq!(has(&stage)[..3], both[..3]);
+    assert_eq!(has(&stage)[3], Pane::Parameters);
+}
+
 #[test]
 fn an_open_prediction_can_be_left_open() {
     let (mut stage, _folder, _) = taken(1);
-    stage.press("↓\n").press("nn").arrive().shows("2 of 4");
+    stage.press("↓").press("nn").arrive().shows("2 of 4");
     stage.shows("It is 5.0.").shows_no("You said: it");
     stage.shows("You predicted nothing: page 1 asks");
     // Where nothing else is said, a blank stands for the prediction.
     stage.shows("You said: ….");
-    stage.press("N").arrive().shows("> [x] 1 stays");
+    stage.press("N").arrive();
+    assert_eq!(answers(&stage)[0], (true, ""));
     stage.press("\n").shows("Locked: stays (after its outcome");
 }
 
@@ -215,7 +302,7 @@ fn a_task_is_done_by_hand_or_shown() {
 #[test]
 fn the_session_keeps_page_and_predictions() {
     let (mut stage, _folder, _) = taken(1);
-    stage.press("↓↓\n\n").press("nn").arrive();
+    stage.press("↓↓\n").press("nn").arrive();
     let content = stage.lab.content(stage.class.kept());
     let (class, taken) = Lessons::resumed(lessons_in(&content), &mut resumed(&content));
     taken.unwrap();
@@ -231,7 +318,7 @@ fn the_session_keeps_page_and_predictions() {
 #[test]
 fn a_lesson_that_is_gone_leaves_the_lab_and_what_was_predicted() {
     let (mut stage, folder, name) = taken(1);
-    stage.press("↓↓\n\n");
+    stage.press("↓↓\n");
     let content = stage.lab.content(stage.class.kept());
     drop(folder);
     let (lessons, taken) = Lessons::resumed(lessons_in(&content), &mut resumed(&content));
@@ -383,7 +470,7 @@ fn what_became_of_tasks_and_late_predictions_is_kept() {
         .arrive()
         .press("N")
         .arrive()
-        .press("↓\n\n");
+        .press("↓\n");
     stage.press("nn").arrive().press("n").arrive();
     stage.press("hg4 s\n").arrive().shows("done: be at 4 s");
     let place = &stage.class.open_lesson().unwrap().place;
@@ -413,7 +500,8 @@ fn lessons_are_chosen_from_a_list_and_left_where_they_stand() {
         let name = shipped::LESSONS[index].name;
         opening::open(name).unwrap().title
     };
-    stage.press("L").shows(&format!("> [ ] {}", title(0)));
+    stage.press("L").shows(&title(0));
+    assert!(answers(&stage)[0].0);
     stage.press("↓↓↑↓\n").arrive();
     assert_eq!(stage.class.open_lesson().unwrap().lesson.title, title(2));
     stage.press("nn").arrive().shows("2 of ");
@@ -422,7 +510,12 @@ fn lessons_are_chosen_from_a_list_and_left_where_they_stand() {
     let step = stage.step();
     stage.press("L\n").arrive().shows("2 of ");
     assert_eq!(stage.step(), step, "the run stays");
-    stage.press("L↓\u{1b}L").shows("> [ ] Write it yourself");
+    stage.press("L↓\u{1b}L").shows("Write it yourself");
+    let index = |name: &str| {
+        let mut all = shipped::LESSONS.iter();
+        all.position(|lesson| lesson.name == name).unwrap()
+    };
+    assert!(answers(&stage)[index("write-it-yourself")].0);
     stage.press("\u{1b}");
     assert!(stage.lab.view().sheet.is_none());
 }
@@ -460,8 +553,8 @@ fn what_a_page_has_stated_stays_while_the_run_goes_on() {
     stage.press("g5 s\n").arrive().shows("The time is 2.0 s");
     stage.press("b").arrive().shows("The time is 2.0 s");
     let (mut open, _other_folder, _) = taken(2);
-    open.shows("= It is 5.0.").press("g4 s\n").arrive();
-    open.shows("= It is 5.0.").shows_no("tilt 30 to 36.69");
+    open.shows("It is 5.0.").press("g4 s\n").arrive();
+    open.shows("It is 5.0.").shows_no("tilt 30 to 36.69");
     assert_eq!(stage.lab.player().reading.readouts.sample.time_s, 2.0);
 }
 
@@ -494,9 +587,9 @@ x
 "#;
     let (mut stage, _folder, name) = with(text);
     stage.lesson(&name, 1).arrive();
-    stage.shows("1 of 7").shows(". next phase");
+    stage.shows("phase 1 of 7").shows(". next phase");
     assert_eq!(stage.focus(), "lesson");
-    stage.press("..").shows("3 of 7");
+    stage.press("..").shows("phase 3 of 7");
     assert_eq!(stage.step(), 1, "no further step was taken");
     stage.press("n").arrive().shows("2 of 3").shows("3-D");
     stage.press(".").arrive();

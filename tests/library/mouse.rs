@@ -2,6 +2,7 @@
 
 use crate::support::stage::{LARGE, SMALL, Stage};
 use gyrolab::lab::Mode;
+use gyrolab::lab::sheet::SheetLineKind;
 use gyrolab::plot::camera::Camera;
 use gyrolab::tui::app;
 use gyrolab::tui::layout::ScreenLayout;
@@ -180,7 +181,18 @@ fn a_click_selects_a_row_of_any_list_and_a_double_click_opens_it() {
     let title = "Cusps, loops";
     let row = desk.place(title);
     desk.does(Did::Press, row);
-    desk.stage.shows(&format!("> [ ] {title}"));
+    let sheet = desk.stage.lab.view().sheet.clone().unwrap();
+    let mut rows = sheet.paragraphs.iter();
+    let chosen = rows.find(|row| {
+        matches!(
+            row.kind,
+            SheetLineKind::Choice {
+                is_selected: true,
+                ..
+            }
+        )
+    });
+    assert!(chosen.unwrap().text().starts_with(title));
     assert!(desk.stage.class.open_lesson().is_none());
     desk.does(Did::Press, row);
     let open = desk.stage.class.open_lesson().unwrap();
