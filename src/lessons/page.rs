@@ -60,7 +60,7 @@ pub(super) fn list(
         }
         if let Some(place) = left.get(name) {
             let pages = lesson.as_ref().map_or(0, |lesson| lesson.pages.len());
-            text += &format!(" (page {} of {pages})", place.page);
+            text += &format!(", page {} of {pages}", place.page);
         }
         let has_ended = left.get(name).is_some_and(|place| place.has_ended);
         let choice = SheetLineKind::Choice {

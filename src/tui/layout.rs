@@ -48,6 +48,8 @@ const PAGE_ROWS: u16 = 8;
 /// The fewest and the most columns of the step pane, and its share of the screen in percent.
 const STEP_COLUMNS: (u16, u16) = (44, 84);
 const STEP_SHARE: u32 = 62;
+/// The width of the screen from which the run is beside the step pane.
+const BESIDE_STEP_FROM: u16 = 100;
 /// The fewest columns of what is beside a page or the step pane, and the fewest columns and rows with which it is two panes,
 /// one above the other.
 const COMPANION_COLUMNS: u16 = 24;
@@ -136,8 +138,9 @@ impl ScreenLayout {
 
 fn overview_rows(height: u16, view: &View) -> u16 {
     let full = OVERVIEW_ROWS.iter().find(|(from, _)| height >= *from);
-    // Beside a page of 24 rows there is room for the scrub line only.
-    let has_room = !view.fullscreen && (view.sheet.is_none() || height >= OVERVIEW_ROWS[1].0);
+    // Beside a page or a step of 24 rows there is room for the scrub line only.
+    let is_reading = view.sheet.is_some() || view.may_show(Pane::Step);
+    let has_room = !view.fullscreen && (!is_reading || height >= OVERVIEW_ROWS[1].0);
     match full {
         Some((_, rows)) if view.window.has_overview && has_room => *rows,
         _ => u16::from(height >= SCRUB_FROM),
@@ -243,17 +246,36 @@ fn beside_page(view: &View) -> Pane {
     beside.or(first).unwrap_or(Pane::Traces)
 }
 
-/// One time step, and beside it the run.
+/// One time step, and beside it the run. Where the tables of the step need all columns, it is alone.
 fn with_step(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     let step_columns = percent(area.width, STEP_SHARE, STEP_COLUMNS);
     let is_alone = !usual(view).any(|_| true);
-    if is_alone || area.width < step_columns + 1 + COMPANION_COLUMNS {
+    let least = match view.sheet {
+        Some(_) => step_columns + 1 + COMPANION_COLUMNS,
+        None => BESIDE_STEP_FROM,
+    };
+    if is_alone || area.width < least {
         let pane = if is_alone { Pane::Step } else { view.focus };
         return vec![(pane, area)];
     }
     let [step, rest] = apart(area, step_columns);
-    let mut panes = companion(rest, view);
+    // A second blank column sets the tables off.
+    let [_, rest] = split_columns(rest, 1);
+    let mut panes = beside_step(rest, view);
     panes.insert(0, (Pane::Step, step));
+    panes
+}
+
+/// The run beside a step: its view in space above, where the step is to be seen, and the traces below.
+fn beside_step(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
+    let has_both = view.may_show(Pane::Traces) && !views(view).is_empty();
+    let is_of_values = view.focus == Pane::Parameters;
+    if !has_both || is_of_values || area.height < COMPANION_ROWS {
+        return companion(area, view);
+    }
+    let [above, below] = split_rows(area, area.height - area.height * 11 / 31);
+    let mut panes = place_views(above, view);
+    panes.push((Pane::Traces, below));
     panes
 }
 

@@ -103,7 +103,7 @@ fn footer_trouble(stage: &Stage, picture: &Picture) -> Option<String> {
             "next phase" => "next step",
             "why sideways" => "phases",
             "apply" => "change",
-            "next page" => "more",
+            "next" => "more",
             always => always,
         };
         let key = row.keys[0];

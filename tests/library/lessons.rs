@@ -663,8 +663,8 @@ fn the_handout_has_pictures_and_room_and_no_notes() {
     let begin = paper.find("## Watch").unwrap();
     let end = paper.find("**Prediction.**").unwrap();
     assert!(
-        !paper[begin..end].contains("off exact"),
+        !paper[begin..end].contains("NOT RELIABLE"),
         "the health is hidden before the prediction"
     );
-    assert!(paper[end..].contains("off exact"));
+    assert!(paper[end..].contains("NOT RELIABLE"));
 }

@@ -114,7 +114,10 @@ fn answer_in(class: &Lessons) -> PredictionAnswer {
 #[test]
 fn a_page_opens_its_run_and_tells_its_numbers() {
     let (mut stage, _folder, _) = taken(1);
-    stage.shows("Swing ─").shows(" 1 of 4").shows("The time is 2.0 s");
+    stage
+        .shows("Swing ─")
+        .shows(" 1 of 4")
+        .shows("The time is 2.0 s");
     stage.shows("strong words").shows_no("**");
     assert_eq!(stage.focus(), "lesson");
     assert_eq!(stage.lab.runs().name(), "cusps");
@@ -192,8 +195,14 @@ fn an_open_question_hides_what_answers_it_and_names_its_keys() {
     let keys = "1 2 3 or ↑ ↓ choose  Enter this is my prediction  n without one";
     assert_eq!(rows_below(&stage), [keys, hidden]);
     // Neither the exact motion nor its numbers, nor advice; the run can be played.
-    stage.shows_no("exact ").shows_no("reliable");
-    stage.press("t").shows("when you have predicted");
+    stage.shows_no("reliable");
+    let picture = stage.picture();
+    stage.commands("exact = false");
+    assert_eq!(stage.picture(), picture);
+    stage
+        .commands("exact = true")
+        .press("t")
+        .shows("when you have predicted");
     stage.press("a").shows("when you have predicted");
     stage.press("e").shows(" values ").shows_no("exact\n");
     stage.press("\u{1b}").wait(6.0);
@@ -465,12 +474,7 @@ fn a_page_plays_its_run_and_n_leads_to_its_end() {
 #[test]
 fn what_became_of_tasks_and_late_predictions_is_kept() {
     let (mut stage, _folder, _) = taken(1);
-    stage
-        .press("nn")
-        .arrive()
-        .press("N")
-        .arrive()
-        .press("↓\n");
+    stage.press("nn").arrive().press("N").arrive().press("↓\n");
     stage.press("nn").arrive().press("n").arrive();
     stage.press("hg4 s\n").arrive().shows("done: be at 4 s");
     let place = &stage.class.open_lesson().unwrap().place;
@@ -505,7 +509,7 @@ fn lessons_are_chosen_from_a_list_and_left_where_they_stand() {
     stage.press("↓↓↑↓\n").arrive();
     assert_eq!(stage.class.open_lesson().unwrap().lesson.title, title(2));
     stage.press("nn").arrive().shows("2 of ");
-    stage.press("L").shows("2 of 9)");
+    stage.press("L").shows("page 2 of 9");
     stage.press("\n").arrive().shows("2 of ");
     let step = stage.step();
     stage.press("L\n").arrive().shows("2 of ");

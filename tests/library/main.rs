@@ -29,6 +29,7 @@ mod kept;
 mod keys;
 mod laws;
 mod lessons;
+mod lessons_played;
 mod lessons_taken;
 mod limits;
 mod mangled;

@@ -14,6 +14,13 @@ use gyrolab::tui::screen;
 use ratatui::layout::Rect;
 use std::sync::Arc;
 
+const WIDE: Rect = Rect {
+    x: 0,
+    y: 0,
+    width: 120,
+    height: 40,
+};
+
 /// The phases of the first step of method-2.
 fn first_step() -> Vec<Phase> {
     let mut run = Simulation::new(Arc::new(preset("method-2", &[])));
@@ -126,7 +133,14 @@ fn v_shows_the_step_and_takes_it_away_again() {
         stage.press("v");
         assert_eq!(stage.focus(), "step");
         stage.shows("No time step has been taken yet");
-        assert!(panes(&stage).contains(&Pane::ThreeD));
+        if size == LARGE {
+            assert_eq!(panes(&stage), [Pane::Step, Pane::ThreeD, Pane::Traces]);
+        } else {
+            assert_eq!(panes(&stage), [Pane::Step]);
+            stage.press("\t\t");
+            assert_eq!(panes(&stage), [Pane::ThreeD]);
+            stage.press("\t");
+        }
         stage.press("v");
         assert_eq!(panes(&stage), before);
         stage.press("v\u{1b}");
@@ -150,7 +164,8 @@ fn the_keys_go_by_phase_and_on_to_the_next_step() {
     assert_eq!(place(&stage), (1, 1, 7));
     stage.press("...");
     assert_eq!(place(&stage), (1, 4, 7));
-    stage.shows("step 1: 4 of 7, rotation").press(",");
+    stage.shows("step 0 → 1").shows("phase 4 of 7");
+    stage.shows(" 4 rotation ").press(",");
     assert_eq!(place(&stage), (1, 3, 7));
     stage.press("....");
     assert_eq!(place(&stage), (1, 7, 7));
@@ -179,7 +194,7 @@ fn the_keys_go_by_phase_and_on_to_the_next_step() {
 fn the_points_add_up_one_by_one() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.commands("pause = true").press("v.");
-    stage.shows("10 more: Down adds them up");
+    stage.shows("rim 9").shows("foot, lower axle: no mass");
     stage.press("↓").shows("the first of 14 points gives");
     stage.press("↓↓");
     stage.shows("the first 3 of 14 points add up to");
@@ -197,14 +212,15 @@ fn the_points_add_up_one_by_one() {
 #[test]
 fn commands_and_files_say_it_too() {
     let set = ["view.show=['step', 'above']", "view.phase='torque'"];
-    let mut stage = Stage::open("method-2", &set, SMALL);
+    let mut stage = Stage::open("method-2", &set, WIDE);
     stage.commands("pause = true\nstep = 3");
     stage
         .shows("from above (m)")
-        .shows("step 3: 6 of 7, torque");
+        .shows("step 2 → 3")
+        .shows("phase 6 of 7");
     stage.commands("phase = 2");
-    stage.shows("step 3: 2 of 7, angular velocity");
-    stage.commands("phase = 'last'").shows("step 3: 7 of 7");
+    stage.shows("phase 2 of 7").shows(" 2 Ω ");
+    stage.commands("phase = 'last'").shows("phase 7 of 7");
     stage.commands("phase = 'why'");
     stage.shows("why sideways, not down?");
     stage.commands("fill = 'step'\nphase = 1\nsum_to = 4");
@@ -213,11 +229,11 @@ fn commands_and_files_say_it_too() {
     stage.commands(
         "set = { 'motion.scheme' = 'rk4' }\nstep = 1\nphase = 'slope 1: at the beginning'",
     );
-    stage.shows("step 4: 1 of 6");
+    stage.shows("step 3 → 4").shows("phase 1 of 6");
     let rk4 = ["view.fill='step'", "motion.scheme='rk4'"];
     let mut filled = Stage::open("method-2", &rk4, SMALL);
     filled.commands("pause = true\nstep = 2");
-    filled.shows("step 2: 1 of 6");
+    filled.shows("step 1 → 2").shows("phase 1 of 6");
     let command = crate::support::desk::commands("phase = 'torque'");
     let refused = filled.lab.carry_out(&command[0]).unwrap_err().to_string();
     has(&refused, "rk4 has no phase torque: it has slope 1");
@@ -285,8 +301,8 @@ fn every_phase_of_every_scheme_has_a_page() {
             let count = workings.phases().count();
             for index in 0..count {
                 stage.commands(&format!("phase = {}", index + 1));
-                let start = format!("step 2: {} of {count}, ", index + 1);
-                stage.shows(&start);
+                let place = format!("phase {} of {count}", index + 1);
+                stage.shows("step 1 → 2").shows(&place);
             }
         }
     }
@@ -319,15 +335,16 @@ fn it_has_a_fixed_share_of_the_screen() {
     };
     let mut stage = Stage::open("method-2", &["view.show=['above', '3d', 'step']"], SMALL);
     stage.commands("pause = true");
-    // Beside the pane in focus, or the first.
-    assert_eq!(widths(&stage), [("step", 49), ("above", 30)]);
-    stage.press("\t\t");
-    assert_eq!(widths(&stage), [("step", 49), ("3d", 30)]);
+    // Its tables need all of 80 columns; Tab leads to the run.
+    assert_eq!(widths(&stage), [("step", 80)]);
+    stage.press("\t");
+    let beside = stage.focus();
+    assert_eq!(widths(&stage), [(beside, 80)]);
     for (width, panes) in [
-        (60, vec![("3d", 60)]),
-        (40, vec![("3d", 40)]),
-        (120, vec![("step", 74), ("above", 22), ("3d", 22)]),
-        (200, vec![("step", 84), ("above", 57), ("3d", 57)]),
+        (60, vec![(beside, 60)]),
+        (40, vec![(beside, 40)]),
+        (120, vec![("step", 74), ("above", 21), ("3d", 22)]),
+        (200, vec![("step", 84), ("above", 56), ("3d", 57)]),
     ] {
         stage.size.width = width;
         assert_eq!(widths(&stage), panes);
@@ -404,7 +421,7 @@ fn it_comes_back_with_the_session() {
     screen::fit(&mut lab, SMALL);
     lab.take_changed();
     let picture = screen::text(&lab, true, (80, 24));
-    has_all(&picture, ["6 of 7, torque", "the first 3 of 14"]);
+    has_all(&picture, ["phase 6 of 7", "the first 3 of 14"]);
     assert_eq!(lab.view().focus.id(), "step");
 }
 

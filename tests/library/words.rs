@@ -284,6 +284,6 @@ fn keys_that_play_on_are_not_offered_where_no_further_step_is_finite() {
 fn the_next_page_is_offered_where_there_is_one() {
     let mut stage = Stage::open("method-2", &[], LARGE);
     stage.lesson("halve-the-step", 1).wait(6.0);
-    stage.shows("n next page").press("L");
-    stage.shows_no("n next page");
+    stage.shows("n next").press("L");
+    stage.shows_no("n next");
 }

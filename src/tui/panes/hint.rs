@@ -1,7 +1,7 @@
 //! The note: what there is to see, and for a while a message.
 
 use super::chrome::SEPARATOR;
-use super::{wrapped_to, write};
+use super::{step, wrapped_to, write};
 use crate::engine::text::wrap::{columns, wrapped};
 use crate::lab::dialog::Dialog;
 use crate::lab::view::Pane;
@@ -128,6 +128,7 @@ fn said(lab: &Lab, width: u16) -> (String, Role) {
         (None, Some(trouble)) => (trouble.to_owned(), Role::Off),
         (None, None) => {
             let note = about_selected(lab)
+                .or_else(|| step::about_point(lab))
                 .unwrap_or_else(|| whole_sentences(&lab.note(), width).to_owned());
             (note, Role::Label)
         }

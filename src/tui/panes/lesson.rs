@@ -23,8 +23,9 @@ pub const LESSON_ROW: PaneRow = PaneRow {
     arrows: None,
 };
 
-/// Columns before the words of an answer.
+/// Columns before the words of an answer, and before those of an entry of a list.
 const CHOICE_INDENT: u16 = 4;
+const LIST_INDENT: u16 = 2;
 /// Stands for a blank at which a line must not end.
 const KEPT_BLANK: char = '\u{e000}';
 /// The units of numbers in the texts of lessons.
@@ -295,17 +296,27 @@ fn as_choice(
     for line in lines.iter_mut() {
         line.is_selected = is_selected;
         if number.is_none() {
-            line.x = 1;
+            line.x = LIST_INDENT;
         }
     }
     if let Some(last) = lines.last_mut() {
         last.mark = mark;
     }
-    if let (Some(first), Some(number)) = (lines.first_mut(), number) {
-        let label = format!("{number:<width$}", width = usize::from(CHOICE_INDENT) - 1);
-        first.x = 1;
-        let style = theme.style(Role::Heading);
-        first.pieces.insert(0, (label, style));
+    let Some(first) = lines.first_mut() else {
+        return;
+    };
+    let style = theme.style(Role::Heading);
+    match number {
+        Some(number) => {
+            let label = format!("{number:<width$}", width = usize::from(CHOICE_INDENT) - 1);
+            first.x = 1;
+            first.pieces.insert(0, (label, style));
+        }
+        None if is_selected => {
+            first.x = 0;
+            first.pieces.insert(0, ("> ".to_owned(), style));
+        }
+        None => {}
     }
 }
 

@@ -1,5 +1,5 @@
 //! One time step taken apart, a phase a page: what happens, the formula, the numbers of this step, what they change, and
-//! where that is to be seen. The numbers are those that made the step: nothing is computed here.
+//! where that is to be seen. The numbers are those that made the step: only the angle by which L turns is computed here.
 
 mod numbers;
 mod page;
@@ -22,9 +22,12 @@ use numbers::{CellFormat, TableView, is_summed};
 use page::{StepPageLine, StepPageSection};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
+use std::cmp::Ordering;
 
-/// From this height on all phases are listed above the page.
-const LISTED_FROM: u16 = 24;
+/// Columns between the names of two phases.
+const PHASE_GAP: usize = 2;
+/// The z of L has stayed where it has changed by less than this share of L: by rounding alone.
+const SAME_HEIGHT: f64 = 1e-12;
 
 /// The rank of numbers that are less important while the rows of a table are added up.
 const ASIDE: u8 = 10;
@@ -43,15 +46,10 @@ pub const STEP_ROW: PaneRow = PaneRow {
 
 fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let view = lab.view();
-    let title = pane_title(lab);
-    let inside = rule(
-        &title,
-        None,
-        view.focus == STEP_ROW.id,
-        area,
-        &view.theme,
-        buf,
-    );
+    let (title, place) = titles(lab);
+    let right = Some((place.as_str(), Role::Label)).filter(|_| !place.is_empty());
+    let has_focus = view.marks_focus_of(STEP_ROW.id);
+    let inside = rule(&title, right, has_focus, area, &view.theme, buf);
     if inside.is_empty() {
         return;
     }
@@ -76,17 +74,17 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     }
 }
 
-fn pane_title(lab: &Lab) -> String {
+/// What stands on the rule at the left and at the right: the step, and which of its phases the page is about.
+fn titles(lab: &Lab) -> (String, String) {
     let Some(explained) = lab.step_pane().shown() else {
-        return STEP_ROW.title.to_owned();
+        return (STEP_ROW.title.to_owned(), String::new());
     };
     let step = explained.step;
-    match explained.phase(lab.view().look.phase) {
-        Some((phase, number, count)) => {
-            format!("step {step}: {number} of {count}, {}", phase.name)
-        }
-        None => format!("step {step}: why sideways, not down?"),
-    }
+    let place = match explained.phase(lab.view().look.phase) {
+        Some((_, number, count)) => format!("phase {number} of {count}"),
+        None => "why sideways, not down?".to_owned(),
+    };
+    (format!("step {} → {step}", step - 1), place)
 }
 
 /// What is to be done where there is no step to take apart.
@@ -130,57 +128,65 @@ impl PhasePage<'_> {
         let text =
             |rank, text, indent, role| StepPageSection::text(rank, text, self.width, indent, role);
         let mut sections = Vec::new();
-        if room >= LISTED_FROM.into() {
-            sections.push(self.list());
-        }
+        sections.push(self.list());
         if let Some((words, _)) = &self.trial {
             let words = format!("yours has {words}");
             let section = StepPageSection::text(1, &words, self.width, 2, Role::Measured);
             sections.push(section);
         }
+        sections.push(text(1, self.phase.formula, 2, Role::Heading).apart());
+        sections.push(text(2, happens, 0, Role::Text));
         let part = self.part();
         sections.push(text(8, &part, 0, Role::Label));
-        sections.push(text(2, happens, 0, Role::Text).apart());
-        sections.push(text(1, self.phase.formula, 2, Role::Heading).apart());
         sections.extend(self.quantities());
         sections.push(self.labelled(4, "changes", changes).apart());
         sections.push(self.labelled(6, "in 3-D", seen));
-        sections.retain(|section| !section.lines.is_empty());
+        let outcome = self.outcome();
+        sections.push(text(3, &outcome, 0, Role::Text).apart());
+        sections.retain(|section| section.lines.iter().any(|line| !line.is_blank()));
         page::fit(&mut sections, room);
         self.fill_tables(&mut sections, room);
         page::spread(&mut sections, room);
         sections
     }
 
-    /// The names of all phases, the present one marked.
+    /// All phases in one row: those that are done, the present one, and those to come. Where there is no room for their names
+    /// the others have their numbers.
     fn list(&self) -> StepPageSection {
-        let mut lines = vec![StepPageLine::default()];
+        let phases: Vec<_> = self.explained.workings.phases().zip(1..).collect();
+        let named = |phase: &Phase, number: usize| format!("{number} {}", short_name(phase.name));
+        let whole = phases
+            .iter()
+            .map(|(phase, number)| columns(&named(phase, *number)) + PHASE_GAP);
+        let has_names = whole.sum::<usize>() <= self.width;
+        let mut line = StepPageLine::default();
         let mut at = 0;
-        for (phase, number) in self.explained.workings.phases().zip(1..) {
-            let (mark, role) = if number == self.number {
-                ("►", Role::Heading)
-            } else {
-                (" ", Role::Label)
+        for (phase, number) in phases {
+            let (text, role) = match number.cmp(&self.number) {
+                Ordering::Equal => (format!(" {} ", named(phase, number)), Role::Selected),
+                order => {
+                    let role = match order {
+                        Ordering::Less => Role::Text,
+                        _ => Role::Label,
+                    };
+                    let text = if has_names {
+                        named(phase, number)
+                    } else {
+                        number.to_string()
+                    };
+                    (text, role)
+                }
             };
-            let text = format!("{mark}{number} {}  ", phase.name);
-            let width = columns(&text);
-            if at + width > self.width + 2 {
-                lines.push(StepPageLine::default());
-                at = 0;
-            }
-            if let Some(line) = lines.last_mut() {
-                line.pieces.push((at, text, role));
-            }
-            at += width;
+            // The blanks beside the present one are a part of the gap.
+            let begin = at - usize::from(role == Role::Selected && at > 0);
+            at = begin + columns(&text) + PHASE_GAP - usize::from(role == Role::Selected);
+            line.pieces.push((begin, text, role));
         }
-        StepPageSection::new(9, lines)
+        StepPageSection::new(9, vec![line])
     }
 
-    /// The times of the step, and the part of it to which the phase belongs.
+    /// The part of the step to which the phase belongs; empty where there is only one.
     fn part(&self) -> String {
-        let (before, after) = &self.explained.states;
-        let [from, to] = [before, after].map(|state| significant(state.time_s, 9));
-        let whole = format!("from t = {from} s to {to} s");
         let parts = &self.explained.workings.parts;
         let mut phases = 0;
         let part = parts.iter().position(|part| {
@@ -188,11 +194,34 @@ impl PhasePage<'_> {
             phases >= self.number
         });
         let Some(part) = part.filter(|_| parts.len() > 1) else {
-            return whole;
+            return String::new();
         };
         let (number, count) = (part + 1, parts.len());
         let length_s = shortest(rounded(parts[part].length_s, 6));
-        format!("{whole}, part {number} of {count}, which is {length_s} s long")
+        format!("part {number} of {count} of the step, which is {length_s} s long")
+    }
+
+    /// What the phase has made of L, in words; empty where it leaves L as it is.
+    fn outcome(&self) -> String {
+        let [old, new] = ["L", "new L"].map(|symbol| match self.phase.value(symbol) {
+            Some(WorkedValue::Vector(vector)) => Some(*vector),
+            _ => None,
+        });
+        let Some(new) = new else {
+            return String::new();
+        };
+        let old = old.unwrap_or(self.explained.states.0.momentum);
+        let turn_deg = libm::atan2(old.cross(&new).norm(), old.dot(&new)).to_degrees();
+        let turn = significant(turn_deg, 3);
+        let rises = new.z - old.z;
+        if rises.abs() <= SAME_HEIGHT * old.norm() {
+            format!("L turns by {turn}°, and its z stays: sideways, not down.")
+        } else {
+            format!(
+                "L turns by {turn}°; its z changes by {} J s.",
+                significant(rises, 3)
+            )
+        }
     }
 
     /// A section of `text` after `label`.
@@ -324,6 +353,62 @@ impl PhasePage<'_> {
             }
         }
     }
+}
+
+/// The name of a phase in one or two words.
+const fn short_name(name: PhaseName) -> &'static str {
+    match name {
+        PhaseName::Inertia => "inertia",
+        PhaseName::AngularVelocity => "Ω",
+        PhaseName::AxisAndAngle => "axis",
+        PhaseName::Rotation => "rotation",
+        PhaseName::NewPositions => "positions",
+        PhaseName::Torque => "torque",
+        PhaseName::NewMomentum => "new L",
+        PhaseName::Friction => "friction",
+        PhaseName::Kick => "kick",
+        PhaseName::FreeMotion => "free",
+        PhaseName::SpinAboutAxle => "spin",
+        PhaseName::RoundingTakenOut => "rounding",
+        PhaseName::NewOrientation => "new Q",
+        PhaseName::Slope1AtBeginning => "slope 1",
+        PhaseName::Slope2HalfWay => "slope 2",
+        PhaseName::Slope3HalfWay => "slope 3",
+        PhaseName::Slope4AtEnd => "slope 4",
+        PhaseName::ThetaFunctions => "theta",
+        PhaseName::TaylorSeries => "series",
+    }
+}
+
+/// What the chosen point adds to the sums of the table, written out; `None` where no point is chosen.
+pub(super) fn about_point(lab: &Lab) -> Option<String> {
+    let view = lab.view();
+    let shown = lab.step_pane().shown();
+    let explained = shown.filter(|_| view.shows(Pane::Step))?;
+    let (phase, ..) = explained.phase(view.look.phase)?;
+    let table = table_of(phase)?;
+    let row = view.look.sum_to?.checked_sub(1)?;
+    let point = *table.points.get(row)?;
+    let name = name_of(&explained.scenario, point);
+    let mass_kg = explained.scenario.body.mechanics.points()[point].mass;
+    if is_summed(table) && mass_kg == 0.0 {
+        return Some(format!("{name}: it has no mass and adds nothing"));
+    }
+    let short = |number: f64| significant(number, 4);
+    let [of_x, of_y] = match (table.columns.first()?.0, table.row(row)) {
+        ("m", [m, x, y, _, xx, yy, ..]) => {
+            [("x", x, xx), ("y", y, yy)].map(|(axis, at, product)| {
+                let (m, at, product) = (short(*m), short(*at), short(*product));
+                format!("m {axis}² = {m} · ({at})² = {product} kg m²")
+            })
+        }
+        ("m x", [x, y, ..]) => [("x", x), ("y", y)].map(|(axis, product)| {
+            let (m, at, product) = (short(mass_kg), short(product / mass_kg), short(*product));
+            format!("m {axis} = {m} · {at} = {product} kg m")
+        }),
+        _ => return None,
+    };
+    Some(format!("{name}: {of_x}, {of_y}"))
 }
 
 /// What the program of `trial` does otherwise, in words, and its numbers of `phase` in its step `step`.

@@ -94,7 +94,8 @@ impl CellFormat {
 
 /// The lines of `quantity`, which is no table; `is_result` says whether the phase was about it.
 pub fn lines(quantity: &WorkedQuantity, format: CellFormat, is_result: bool) -> Vec<StepPageLine> {
-    let role = if is_result { Role::Heading } else { Role::Text };
+    let of_vector = role_of(quantity.symbol);
+    let role = if is_result { of_vector } else { Role::Text };
     let (numbers, across): (Vec<f64>, usize) = match &quantity.value {
         WorkedValue::Number(number) => (vec![*number], 1),
         WorkedValue::Vector(vector) => (vector.iter().copied().collect(), 3),
@@ -115,13 +116,23 @@ pub fn lines(quantity: &WorkedQuantity, format: CellFormat, is_result: bool) -> 
     let unit = SYMBOL + across * format.cell + 1;
     let unit = (unit, unit_of(quantity), Role::Label);
     lines[0].pieces.push(unit);
-    let symbol = StepPageLine::new(0, quantity.symbol, Role::Heading);
+    let symbol = StepPageLine::new(0, quantity.symbol, of_vector);
     if columns(quantity.symbol) < SYMBOL {
         lines[0].pieces.extend(symbol.pieces);
     } else {
         lines.insert(0, symbol);
     }
     lines
+}
+
+/// The color of a quantity: that of its arrow, if it has one.
+fn role_of(symbol: &str) -> Role {
+    match symbol {
+        "L" | "new L" => Role::AngularMomentum,
+        "Ω" => Role::AngularVelocity,
+        "τ" | "dL" | "ΔL" => Role::Torque,
+        _ => Role::Heading,
+    }
 }
 
 /// The unit of `quantity`; after an angle of more than half a turn also how many turns it is.
@@ -153,6 +164,8 @@ const MASS_DIGITS: usize = 3;
 const LEAST_CELL: usize = 9;
 /// How many numbers stand side by side where there is no room for all.
 const FEW: usize = 3;
+/// A longer table is shown without looking for points that have no mass.
+const MOST_SEARCHED: usize = 1000;
 /// Rows of a table that are kept where there is little room.
 const LEAST_ROWS: usize = 4;
 
@@ -179,13 +192,27 @@ impl TableView<'_> {
         let mut lines = self.heads(&groups);
         let rows = room.saturating_sub(lines.len() + sum.len()) / groups.len();
         let all = self.table.points.len();
-        let (shown, left) = match self.chosen() {
-            Some(last) => (last.saturating_sub(rows)..last.max(rows).min(all), 0),
-            None if all > rows => (0..rows.saturating_sub(1), all + 1 - rows.max(1)),
-            None => (0..all, 0),
+        let massless = self.massless();
+        // The points without mass share a row.
+        let entries = massless + usize::from(massless < all);
+        let (shown, has_more) = match self.chosen() {
+            Some(last) => (
+                last.saturating_sub(rows)..last.max(rows).min(entries),
+                false,
+            ),
+            None if entries > rows => (0..rows.saturating_sub(1), true),
+            None => (0..entries, false),
         };
-        lines.extend(self.rows(&groups, shown));
-        if left > 0 {
+        let own = shown.start..shown.end.min(massless);
+        let left = all - own.len().min(all);
+        lines.extend(self.rows(&groups, own));
+        if shown.end > massless {
+            let points = self.table.points[massless..].iter();
+            let names: Vec<_> = points.map(|point| (self.name)(*point)).collect();
+            let text = format!("{}: no mass", names.join(", "));
+            lines.push(StepPageLine::new(0, text, Role::Label));
+        }
+        if has_more {
             let what = if is_summed(self.table) {
                 "Down adds them up one by one"
             } else {
@@ -196,6 +223,26 @@ impl TableView<'_> {
         }
         lines.extend(sum);
         lines
+    }
+
+    /// The first of the last rows that are of points without mass, where there are several and none of them is chosen;
+    /// else the number of rows.
+    fn massless(&self) -> usize {
+        let all = self.table.points.len();
+        if !is_summed(self.table) || all > MOST_SEARCHED {
+            return all;
+        }
+        let has_mass = |row: usize| match self.table.columns.len() {
+            10 => self.table.row(row)[0] != 0.0,
+            _ => self.table.row(row).iter().any(|number| *number != 0.0),
+        };
+        let begin = (0..all).rposition(has_mass).map_or(0, |last| last + 1);
+        let is_free = self.chosen().is_none_or(|last| last <= begin);
+        if is_free && all - begin > 1 {
+            begin
+        } else {
+            all
+        }
     }
 
     /// How many rows are added up: the last of them is the chosen one.

@@ -6,6 +6,7 @@ use crate::lab::view::theme::Theme;
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
+use ratatui::style::Modifier;
 
 /// A line: texts with the columns where they begin.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -33,6 +34,10 @@ impl StepPageLine {
     pub fn and(mut self, column: usize, text: impl Into<String>, role: Role) -> Self {
         self.pieces.push((column, text.into(), role));
         self
+    }
+
+    pub fn is_blank(&self) -> bool {
+        self.pieces.iter().all(|(_, text, _)| text.is_empty())
     }
 }
 
@@ -92,7 +97,9 @@ pub fn draw(sections: &[StepPageSection], area: Rect, theme: &Theme, buf: &mut B
             write(place, (*column as u16, 0), text, theme.style(*role), buf);
         }
         if line.is_chosen {
-            buf.set_style(place, theme.style(Role::Selected));
+            let tint = theme.style(Role::WindowTint).add_modifier(Modifier::BOLD);
+            let chosen = Some(tint).filter(|tint| tint.bg.is_some());
+            buf.set_style(place, chosen.unwrap_or(theme.style(Role::Selected)));
         }
     }
 }
