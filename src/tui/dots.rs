@@ -30,7 +30,7 @@ impl Marker {
         }
     }
 
-    /// The character of a cell with these `bits` in a layer, strong, faint, under or ghost.
+    /// The character of a cell with these `bits` in a layer: strong, faint, dashed or ghost.
     pub(super) fn sign(self, layer: usize, bits: u8) -> char {
         match (self, layer) {
             (Self::Braille, _) => char::from_u32(0x2800 + u32::from(bits)).unwrap_or(' '),
@@ -38,9 +38,11 @@ impl Marker {
             (Self::HalfBlock, 0) => half_block(bits),
             (Self::Dot, 0) => '•',
             (Self::Ascii, 0) => '*',
-            (Self::Ascii, 1 | 2) => '.',
+            (Self::Ascii, 1) => '.',
+            (Self::Ascii, 2) => '-',
             (Self::Ascii, _) => ',',
-            (_, 1 | 2) => '·',
+            (_, 1) => '·',
+            (_, 2) => '╌',
             (_, _) => '°',
         }
     }

@@ -232,7 +232,7 @@ impl LayeredDots {
             .iter()
             .filter(|(.., ink)| share_cells(ink.role, top))
             .fold(0, |bits, (x, y, _)| bits | self.marker.bit(*x, *y));
-        let layer = usize::from(is_faint(top));
+        let layer = usize::from(is_faint(top) && top != Role::RunEarlier);
         Some((self.marker.sign(layer, bits), top))
     }
 }
@@ -279,6 +279,8 @@ fn large_sign(role: Role, marker: Marker) -> char {
         Role::Push => 'F',
         Role::Cursor => '@',
         Role::Text => '#',
+        Role::RunEarlier => 'o',
+        Role::Label => '+',
         Role::Previous if is_ascii => ',',
         Role::Previous => '°',
         role if is_faint(role) && is_ascii => '.',

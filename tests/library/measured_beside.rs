@@ -138,7 +138,7 @@ fn strips_show_what_was_measured_over_the_whole_run() {
     assert_eq!(names[..2], ["x (m", "tilt (°"], "{picture}");
     let window = stage.lab.view().window;
     assert_eq!((window.begin_s, window.has_overview), (0.0, false));
-    stage.press("m").shows("tilt: measured - run (°)");
+    stage.press("m").shows("tilt: data - run (°)");
 }
 
 #[test]

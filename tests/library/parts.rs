@@ -486,7 +486,7 @@ fn a_part_is_edited_in_the_pane_of_values() {
     let mut stage = Stage::open("wing-nut", &[], SMALL);
     stage.commands("pause = true").press("e/outer\n");
     stage.shows("outer radius = 0.008 m").press("0.009\n");
-    stage.shows("outer radius 9e-3 m");
+    stage.shows("outer radius 0.009 m, rerun");
     let nut = &stage.lab.player().run().scenario().file.body.part[0];
     assert_eq!(nut.outer_radius_m, Some(0.009));
     // What is refused says why and changes nothing.

@@ -192,7 +192,7 @@ fn the_exact_motion_and_the_distance_from_it() {
     let mut stage = Stage::open("method-2", &["motion.time_step_s=0.05"], SMALL);
     stage.wait(0.2).commands("pause = true");
     assert!(!names_exact(&stage));
-    stage.commands("exact = true").wait(6.0).shows(" m off");
+    stage.commands("exact = true").wait(6.0);
     assert!(names_exact(&stage), "{}", stage.picture());
     let health = &stage.lab.player().reading.readouts.health;
     let distance = health.deviation.unwrap().distance_m;

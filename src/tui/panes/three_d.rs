@@ -7,6 +7,7 @@
 mod arrows;
 mod body;
 mod fit;
+mod phase;
 
 use super::{PaneRow, PlotInputs, round_title, rule};
 use crate::engine::recording::Recording;
@@ -22,9 +23,10 @@ use crate::tui::layered_dots::{DotInk, FineDot, Layer, LayeredDots, Spot};
 use crate::tui::plane::Plane;
 use crate::tui::split::split_rows;
 use crate::tui::theme::Role;
-use arrows::{SpaceLabel, StepArrows};
+use arrows::SpaceLabel;
 use body::DrawnBody;
 use nalgebra::Vector3;
+use phase::StepArrows;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::Widget;

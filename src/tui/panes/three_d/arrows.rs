@@ -1,21 +1,16 @@
 //! The arrows of the scene, their letters, and the line that says what the letters mean. If the step pane is shown, only the
-//! arrows that its phase is about, the axis of its turn, and the body before the step.
+//! arrows that its phase is about.
 
-use super::super::step::name_of;
 use super::super::{MOST_SHOWN_PUSHES, write};
 use super::body::normal;
-use super::{LEGEND_WORD_GAP, Scene, cell_of, ink};
-use crate::engine::text::nice_numbers::at_or_below;
-use crate::engine::text::number::{decimal, significant};
+use super::phase::StepArrows;
+use super::{LEGEND_WORD_GAP, Scene, cell_of};
+use crate::engine::text::number::significant;
 use crate::engine::text::wrap::columns;
-use crate::lab::step_pane::{StepWorkings, table_of};
 use crate::lab::view::theme::Theme;
-use crate::lab::view::{Pane, View};
-use crate::physics::workings::{Phase, PhaseName, WorkedValue};
-use crate::physics::{State, observables};
-use crate::tui::dots::Dashes;
+use crate::physics::observables;
 use crate::tui::labels::{AROUND_MARK, AROUND_POINT, LabelOffset, Labels};
-use crate::tui::layered_dots::{FineDot, Layer, LayeredDots, Spot};
+use crate::tui::layered_dots::{FineDot, LayeredDots};
 use crate::tui::theme::Role;
 use nalgebra::Vector3;
 use ratatui::buffer::Buffer;
@@ -28,12 +23,8 @@ pub const TORQUE_ARROW_LENGTH: f64 = 0.42;
 const OMEGA_ARROW_LENGTH: f64 = 0.62;
 const WEIGHT_ARROW_LENGTH: f64 = 0.5;
 const PUSH_ARROW_LENGTH: f64 = 0.42;
-/// How far the axis of a turn goes on both sides of the pivot, in lengths of the axle.
-const TURN_AXIS_LENGTH: f64 = 1.2;
 /// The shortest torque that is drawn, in lengths of the axle.
 const LEAST_TORQUE_ARROW: f64 = 0.05;
-/// Directions that differ by less than this, rad, are drawn as one.
-const DISTINCT_DIRECTIONS_RAD: f64 = 0.03;
 
 /// Fine dots between the axle and an arrow beside it, and in a large picture.
 const SHIFT_DOTS: f64 = 5.0;
@@ -42,14 +33,13 @@ const LARGE_SHIFT_DOTS: f64 = 6.0;
 const OUTER_SHIFT: f64 = 1.9;
 /// An arrow that differs from the axle by a smaller angle than this on the screen, rad, is on neither of its sides.
 const SIDE_RAD: f64 = 0.06;
-const POINT_DASHES: Dashes = (2, 4);
 const HEAD_DOTS: f64 = 5.0;
 const LARGE_HEAD_DOTS: f64 = 7.0;
 /// Distances of a letter from the tip of its arrow, fine dots, the best first.
 const LETTER_DOTS: [f64; 6] = [4.0, 5.0, 6.0, 3.0, 7.0, 8.0];
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum ArrowKind {
+pub enum ArrowKind {
     Momentum,
     NewMomentum,
     AngularVelocity,
@@ -62,14 +52,14 @@ enum ArrowKind {
 
 impl ArrowKind {
     /// The arrows that are drawn without the step pane.
-    const USUAL: &[Self] = &[
+    pub const USUAL: &[Self] = &[
         Self::Momentum,
         Self::AngularVelocity,
         Self::Torque,
         Self::Push,
     ];
 
-    fn label(self) -> &'static str {
+    pub fn label(self) -> &'static str {
         match self {
             Self::Momentum => "L",
             Self::NewMomentum => "new L",
@@ -82,7 +72,7 @@ impl ArrowKind {
         }
     }
 
-    fn role(self) -> Role {
+    pub fn role(self) -> Role {
         match self {
             Self::Momentum | Self::NewMomentum => Role::AngularMomentum,
             Self::AngularVelocity | Self::TurnAxis => Role::AngularVelocity,
@@ -108,6 +98,17 @@ impl SpaceLabel {
             role,
             at,
             along: None,
+        }
+    }
+
+    /// Belongs beside a head of so many dots: another arrow begins in front of it.
+    fn beside_head(self, head_dots: f64) -> Self {
+        let (x, y) = self.along.unwrap_or((0.0, 0.0));
+        let half = 0.5 * head_dots;
+        Self {
+            at: (self.at.0 - x * half, self.at.1 - y * half),
+            along: None,
+            ..self
         }
     }
 
@@ -149,14 +150,19 @@ impl Scene<'_> {
         let pivot = Vector3::zeros();
         let mut labels = Vec::new();
         let mut momentum_tip = self.dot(&pivot);
+        let at_momentum = self.arrows_at_momentum();
         for kind in [ArrowKind::Momentum, ArrowKind::NewMomentum] {
             if let Some(along) = self.along(kind) {
                 let tip = along * (MOMENTUM_ARROW_LENGTH * self.arm);
                 let ends = self.shifted(&pivot, &tip, shifts.momentum, &shifts);
-                labels.push(self.arrow(kind, ends, dots));
+                let mut label = self.arrow(kind, ends, dots);
                 if kind == ArrowKind::Momentum {
                     momentum_tip = ends[1];
+                    if !at_momentum.is_empty() {
+                        label = label.beside_head(self.head_dots());
+                    }
                 }
+                labels.push(label);
             }
         }
         if let Some(along) = self.along(ArrowKind::AngularVelocity) {
@@ -164,23 +170,13 @@ impl Scene<'_> {
             let ends = self.shifted(&pivot, &tip, shifts.omega, &shifts);
             labels.push(self.arrow(ArrowKind::AngularVelocity, ends, dots));
         }
-        let torque = self
-            .along(ArrowKind::Torque)
-            .map(|along| along * TORQUE_ARROW_LENGTH);
-        let torque = torque.filter(|torque| torque.norm() > LEAST_TORQUE_ARROW);
-        let change = self.drawn_change();
-        for (kind, vector) in [
-            (ArrowKind::Torque, torque),
-            (ArrowKind::ChangeOfMomentum, change),
-        ] {
-            if let Some(vector) = vector {
-                let (begin, end) = (self.dot(&pivot), self.dot(&(vector * self.arm)));
-                let tip = (
-                    momentum_tip.0 + end.0 - begin.0,
-                    momentum_tip.1 + end.1 - begin.1,
-                );
-                labels.push(self.arrow(kind, [momentum_tip, tip], dots));
-            }
+        for (kind, vector) in at_momentum {
+            let (begin, end) = (self.dot(&pivot), self.dot(&(vector * self.arm)));
+            let tip = (
+                momentum_tip.0 + end.0 - begin.0,
+                momentum_tip.1 + end.1 - begin.1,
+            );
+            labels.push(self.arrow(kind, [momentum_tip, tip], dots));
         }
         for (kind, from, along) in self.forces() {
             let ends = [self.dot(&from), self.dot(&(from + along * self.arm))];
@@ -189,14 +185,32 @@ impl Scene<'_> {
         labels
     }
 
-    fn arrow(&self, kind: ArrowKind, ends: [FineDot; 2], dots: &mut LayeredDots) -> SpaceLabel {
-        let head = if self.is_large() {
+    /// The arrows that begin at the tip of L, in lengths of the axle: the torque, and the change of L.
+    fn arrows_at_momentum(&self) -> Vec<(ArrowKind, Vector3<f64>)> {
+        let torque = self.along(ArrowKind::Torque);
+        let torque = torque.map(|share| share * TORQUE_ARROW_LENGTH);
+        let of_torque = torque.filter(|torque| torque.norm() > LEAST_TORQUE_ARROW);
+        let change = self.drawn_change();
+        [
+            of_torque.map(|vector| (ArrowKind::Torque, vector)),
+            change.map(|vector| (ArrowKind::ChangeOfMomentum, vector)),
+        ]
+        .into_iter()
+        .flatten()
+        .collect()
+    }
+
+    fn head_dots(&self) -> f64 {
+        if self.is_large() {
             LARGE_HEAD_DOTS
         } else {
             HEAD_DOTS
-        };
+        }
+    }
+
+    fn arrow(&self, kind: ArrowKind, ends: [FineDot; 2], dots: &mut LayeredDots) -> SpaceLabel {
         let [from, tip] = ends;
-        dots.arrow(from, tip, head, kind.role());
+        dots.arrow(from, tip, self.head_dots(), kind.role());
         let (dx, dy) = (tip.0 - from.0, tip.1 - from.1);
         let length = libm::hypot(dx, dy).max(1.0);
         SpaceLabel {
@@ -354,177 +368,6 @@ impl Scene<'_> {
             words.push(("", "gray: before the step".to_owned(), Role::Label));
         }
         words
-    }
-}
-
-#[derive(Clone, Copy)]
-pub struct StepArrows<'a> {
-    explained: &'a StepWorkings,
-    phase: &'a Phase,
-    /// The point that was added last to the sum of the table, or chosen in it.
-    point: Option<usize>,
-}
-
-impl<'a> StepArrows<'a> {
-    /// The phase on the page of the step pane of `view`, if that is on the screen.
-    pub fn of_shown_phase(explained: Option<&'a StepWorkings>, view: &View) -> Option<Self> {
-        let shown = explained.filter(|_| view.shows(Pane::Step))?;
-        let (phase, ..) = shown.phase(view.look.phase)?;
-        let row = view.look.sum_to.and_then(|rows| rows.checked_sub(1));
-        let points = table_of(phase).map(|table| &table.points);
-        Some(Self {
-            explained: shown,
-            phase,
-            point: row
-                .zip(points)
-                .and_then(|(row, points)| points.get(row).copied()),
-        })
-    }
-
-    /// The arrows that the phase is about.
-    fn kinds(&self) -> &'static [ArrowKind] {
-        use ArrowKind::*;
-        match self.phase.name {
-            PhaseName::Inertia => &[],
-            PhaseName::AngularVelocity => &[AngularVelocity, Momentum],
-            PhaseName::Torque => &[Torque, Weight, Push],
-            PhaseName::NewMomentum | PhaseName::Kick => {
-                &[Momentum, ChangeOfMomentum, NewMomentum, Weight]
-            }
-            PhaseName::FreeMotion | PhaseName::Friction => &[Momentum],
-            name if name.is_slope() => &[AngularVelocity, Torque],
-            _ => &[TurnAxis],
-        }
-    }
-
-    /// Whether the body is drawn as it was before the step too.
-    fn has_before(&self) -> bool {
-        match self.phase.name {
-            PhaseName::AngularVelocity
-            | PhaseName::AxisAndAngle
-            | PhaseName::Torque
-            | PhaseName::NewMomentum
-            | PhaseName::Kick
-            | PhaseName::Friction => false,
-            name => !name.is_slope(),
-        }
-    }
-
-    /// The last vector of this `symbol` in the step up to this phase.
-    fn vector(&self, symbol: &str) -> Option<Vector3<f64>> {
-        let phases = self
-            .explained
-            .workings
-            .phases()
-            .rev()
-            .skip_while(|phase| !std::ptr::eq(*phase, self.phase));
-        let mut quantities = phases.flat_map(|phase| phase.quantities.iter().rev());
-        let found = quantities.find(|quantity| quantity.symbol == symbol)?;
-        match found.value {
-            WorkedValue::Vector(vector) => Some(vector),
-            _ => None,
-        }
-    }
-
-    fn direction(&self, symbol: &str) -> Option<Vector3<f64>> {
-        self.vector(symbol)?.try_normalize(f64::MIN_POSITIVE)
-    }
-
-    fn before(&self) -> &State {
-        &self.explained.states.0
-    }
-}
-
-impl Scene<'_> {
-    /// Whether arrows of this kind are drawn. If the step pane is shown, only those that its phase is about.
-    fn draws(&self, kind: ArrowKind) -> bool {
-        let kinds = self
-            .phase
-            .as_ref()
-            .map_or(ArrowKind::USUAL, StepArrows::kinds);
-        kinds.contains(&kind)
-    }
-
-    /// The axis of the turn, the body before it, and the chosen point.
-    pub(super) fn phase_marks(&self, dots: &mut LayeredDots) -> Vec<SpaceLabel> {
-        let mut labels = Vec::new();
-        let Some(shown) = &self.phase else {
-            return labels;
-        };
-        let axis = shown
-            .direction("u")
-            .filter(|_| self.draws(ArrowKind::TurnAxis));
-        if let Some(axis) = axis {
-            let end = axis * (TURN_AXIS_LENGTH * self.arm);
-            let (from, to) = (self.dot(&-end), self.dot(&end));
-            dots.line(from, to, ink(Role::AngularVelocity, Layer::Shaft));
-            let kind = ArrowKind::TurnAxis;
-            labels.push(SpaceLabel::beside(kind.label(), kind.role(), to));
-        }
-        if shown.has_before() {
-            self.body_before(shown.before(), dots);
-        }
-        let scenario = self.seen.run.scenario();
-        let points = scenario.body.mechanics.points();
-        let chosen = shown.point.filter(|index| *index < points.len());
-        if let Some(index) = chosen {
-            let before = shown.before().orientation * points[index].at;
-            let (from, to) = match shown.phase.name {
-                PhaseName::Inertia | PhaseName::Torque => {
-                    (Vector3::zeros(), self.state.orientation * points[index].at)
-                }
-                _ => (before, self.state.orientation * points[index].at),
-            };
-            let (from, to) = (self.dot(&from), self.dot(&to));
-            dots.path(
-                [from, to].into_iter(),
-                Some(POINT_DASHES),
-                f64::INFINITY,
-                ink(Role::Text, Layer::Shaft),
-            );
-            dots.spot(to, Spot::Five, ink(Role::Text, Layer::Start));
-            labels.push(SpaceLabel::beside(
-                &name_of(scenario, index),
-                Role::Heading,
-                to,
-            ));
-        }
-        labels
-    }
-
-    /// The direction of the new L, if the phase computes one that is seen to differ from the old.
-    fn new_momentum(&self) -> Option<Vector3<f64>> {
-        let shown = self.phase.as_ref()?;
-        let (old, new) = (shown.direction("L")?, shown.direction("new L")?);
-        Some(new).filter(|new| (new - old).norm() > DISTINCT_DIRECTIONS_RAD)
-    }
-
-    /// dL as it is drawn beside L, in lengths of the axle, and how much longer than L it is drawn.
-    fn stretched_change(&self) -> Option<(Vector3<f64>, f64)> {
-        let shown = self
-            .phase
-            .as_ref()
-            .filter(|_| self.draws(ArrowKind::ChangeOfMomentum))?;
-        let change = shown.vector("dL")?;
-        let momentum = shown.vector("L").unwrap_or(shown.before().momentum).norm();
-        let share = change * (MOMENTUM_ARROW_LENGTH / momentum);
-        let stretch = at_or_below(TORQUE_ARROW_LENGTH / share.norm());
-        (share.norm() > 0.0 && stretch.is_finite()).then(|| (share * stretch, stretch))
-    }
-
-    /// The change of L that is drawn, in lengths of the axle. If the phase does not give it, its direction alone.
-    fn drawn_change(&self) -> Option<Vector3<f64>> {
-        if !self.draws(ArrowKind::ChangeOfMomentum) {
-            return None;
-        }
-        let stretched = self.stretched_change().map(|(change, _)| change);
-        stretched.or(self.change.map(|change| change * TORQUE_ARROW_LENGTH))
-    }
-
-    /// Says how much longer than L dL is drawn.
-    pub(super) fn change_stretch_text(&self) -> Option<String> {
-        let (_, stretch) = self.stretched_change()?;
-        (stretch != 1.0).then(|| format!("dL {} × as long", decimal(stretch)))
     }
 }
 

@@ -1,6 +1,6 @@
 //! The axis of time under the strips, and the axis of values beside them.
 
-use crate::engine::text::number::{decimal, exponent, fixed};
+use crate::engine::text::number::{decimal, exponent, fixed, significant};
 use crate::engine::text::wrap::columns;
 use crate::lab::playback::scale::{self, StripScale};
 use crate::lab::playback::strip::Strip;
@@ -20,8 +20,13 @@ const ROWS_FOR_BETWEEN: usize = 7;
 const MANY_ROWS: usize = 9;
 /// Rows that are left free beside the ends.
 const ROWS_FROM_ENDS: usize = 2;
+/// With more digits after the point than this, a value has an exponent and so many significant digits.
+const MOST_DECIMALS: usize = 7;
+const EXPONENT_DIGITS: usize = 3;
 /// Columns for each label of the axis of time.
-const COLUMNS_PER_TIME: usize = 7;
+const COLUMNS_PER_TIME: usize = 11;
+/// As many labels are tried where there are fewer columns.
+const FEW_TIMES: usize = 3;
 /// Columns from one label to the next, at least.
 const TICK_LABEL_COLUMNS: usize = 2;
 /// What follows the first label, or the last of two.
@@ -34,7 +39,7 @@ pub fn times(strip: &Strip, width: usize) -> Vec<PlacedTick> {
     if strip.end_s() >= LONG_TIME_S {
         return both_ends(strip, width);
     }
-    let mut most = (width / COLUMNS_PER_TIME).max(2);
+    let mut most = (width / COLUMNS_PER_TIME).max(FEW_TIMES);
     loop {
         let ticks = round_values(strip.begin_s, strip.end_s(), most);
         let count = ticks.len();
@@ -124,7 +129,7 @@ pub fn values(scale: &StripScale, rows: usize) -> Vec<ValueTick> {
     let digits = scale.decimals();
     let end = |row: usize, value: f64| ValueTick {
         row,
-        label: with_minus_sign(&fixed(value, digits)),
+        label: value_text(value, digits),
         is_between: false,
     };
     let mut placed = vec![end(0, scale.high)];
@@ -142,12 +147,21 @@ pub fn values(scale: &StripScale, rows: usize) -> Vec<ValueTick> {
     };
     let between = ticks.into_iter().map(|value| ValueTick {
         row: (scale.from_top(value) * (rows - 1) as f64).round() as usize,
-        label: with_minus_sign(&fixed(value, scale::decimals(apart))),
+        label: value_text(value, scale::decimals(apart)),
         is_between: true,
     });
     placed
         .extend(between.filter(|tick| (ROWS_FROM_ENDS..rows - ROWS_FROM_ENDS).contains(&tick.row)));
     placed
+}
+
+/// Returns a value of a strip with `digits` after the point, or with an exponent where these are too many to be counted.
+pub fn value_text(value: f64, digits: usize) -> String {
+    with_minus_sign(&if digits <= MOST_DECIMALS {
+        fixed(value, digits)
+    } else {
+        significant(value, EXPONENT_DIGITS)
+    })
 }
 
 /// Returns `number` with a minus sign as wide as a plus sign.
@@ -208,7 +222,11 @@ mod tests {
     #[test]
     fn times_are_round_and_stand_under_their_place() {
         let of = |begin_s, window_s, width| line(&Strip::new(begin_s, window_s, 2 * width), width);
-        assert_eq!(of(0.0, 230.0, 25), "0 s 50   100   150  200");
+        assert_eq!(
+            of(0.0, 230.0, 56),
+            "0 s         50          100          150         200"
+        );
+        assert_eq!(of(0.0, 230.0, 25), "0 s      100        200");
         assert_eq!(of(0.0, 230.0, 12), "0 s 100  200");
         assert_eq!(of(12.0, 0.5, 30), "12.0 s   12.2         12.4");
         assert_eq!(of(0.0, 230.0, 4), "0 s");

@@ -57,7 +57,8 @@ impl Layer {
     fn sign_layer(self) -> usize {
         match self {
             Self::Now | Self::Run | Self::Earlier => 0,
-            Self::Exact | Self::Fill => 1,
+            Self::Fill => 1,
+            Self::Exact => 2,
             Self::Previous => 3,
         }
     }

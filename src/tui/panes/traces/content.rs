@@ -170,7 +170,14 @@ impl Traces<'_> {
             StripContent::Measured(_) => f64::max(SHARE_LEAST * size, f64::MIN_POSITIVE),
             StripContent::Distance => DISTANCE_LEAST * self.0.run.scenario().arm_m(),
         };
-        StripScale::of(extent, least)
+        let scale = StripScale::of(extent, least);
+        if content == StripContent::Distance && scale.low < 0.0 {
+            return StripScale {
+                low: 0.0,
+                high: scale.high - scale.low,
+            };
+        }
+        scale
     }
 
     fn value_now(&self, content: StripContent) -> f64 {

@@ -1,12 +1,11 @@
 //! A strip as it is drawn: its rule with what happens in its time, its curves, and the cursor.
 
-use super::axis::{Gutter, with_minus_sign};
+use super::axis::{Gutter, value_text};
 use super::canvas::{Canvas, Layer};
 use super::content::StripContent;
 use super::curves::{CURVE_OWNERS, rows};
 use super::{Plot, TRACES_ROW, Traces, write};
 use crate::engine::recording::{Extent, RecordedCurve};
-use crate::engine::text::number::fixed;
 use crate::engine::text::wrap::columns;
 use crate::lab::playback::marks::Marks;
 use crate::tui::panes::rule;
@@ -24,7 +23,7 @@ const EXACT_LEGEND: &str = "╌╌ exact";
 const PREVIOUS_LEGEND: &str = "··· previous run";
 const PINNED_LEGEND: &str = "-- pinned run";
 /// What the rule says of a strip with measured values.
-const RESIDUAL_SUFFIX: &str = "measured - run";
+const RESIDUAL_SUFFIX: &str = "data - run";
 pub const PUSH_BAR: &str = "━";
 pub const EDIT_MARK: &str = "┴";
 const CURSOR_LINE: char = '│';
@@ -257,9 +256,9 @@ impl Traces<'_> {
             }
         };
         let digits = plot.scale.decimals();
-        let model = value.map(|value| with_minus_sign(&fixed(value, digits)));
+        let model = value.map(|value| value_text(value, digits));
         let data = self.measured_at(plot.content, cursor.time_s);
-        let data = data.map(|point| format!("data {}", with_minus_sign(&fixed(point, digits))));
+        let data = data.map(|point| format!("data {}", value_text(point, digits)));
         let parts: Vec<_> = model.into_iter().chain(data).collect();
         let label = format!(" {} ", parts.join(", "));
         let line = self.rule_line(plot);
