@@ -69,7 +69,9 @@ pub enum SheetLineKind {
         /// What stands at the end of its row, such as that it was given.
         mark: &'static str,
     },
-    /// What came out, beside what was predicted.
+    /// What was predicted, above what came out.
+    Said,
+    /// What came out.
     Result,
     Goal {
         /// Whether it has been.

@@ -275,7 +275,15 @@ impl Writer<'_> {
             Some(source) => source.to_owned(),
             None => compare.filled(lesson, &place.predictions, self.lab, &place.kept),
         };
-        self.extend(paragraphs(&source, &SheetLineKind::Result));
+        match source.trim_end().rsplit_once(" You said: ") {
+            Some((outcome, said)) => {
+                let said = format!("You said: {said}");
+                self.extend(paragraphs(&said, &SheetLineKind::Said));
+                let outcome = format!("Came out: {outcome}");
+                self.extend(paragraphs(&outcome, &SheetLineKind::Result));
+            }
+            None => self.extend(paragraphs(&source, &SheetLineKind::Result)),
+        }
         let predict = lesson.predict(&compare.prediction);
         let is_missing = predict.is_some_and(|predict| !place.predictions.is_locked(predict));
         if is_missing && !self.overlay.is_of_teacher && !self.overlay.is_followed {

@@ -201,12 +201,9 @@ fn restarted(lab: &TheLab, _: Option<u64>) -> KeyCommands {
 }
 
 fn exact_toggled(lab: &TheLab) -> KeyCommands {
-    let is_shown = lab.player().run().shows_exact();
     match lab.view().asked() {
-        Some(_) if !is_shown => {
-            Err("the exact motion comes back when you have predicted".to_owned())
-        }
-        _ => one(Command::Exact(!is_shown)),
+        Some(_) => Err("the exact motion comes back when you have predicted".to_owned()),
+        None => one(Command::Exact(!lab.player().run().shows_exact())),
     }
 }
 

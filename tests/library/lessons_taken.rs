@@ -163,7 +163,9 @@ fn predictions_are_asked_for_once_locked_and_then_shown_beside_what_happened() {
     assert!(!stage.lab.view().hides(HideablePart::Health));
     assert!(!stage.lab.view().hides(HideablePart::Predicted));
     stage.press("n").arrive().shows("2 of 4");
-    stage.shows("It is 5.0. You said: it grows.");
+    stage
+        .shows("You said: it grows.")
+        .shows("Came out: It is 5.0.");
     stage.shows("You said: 3.5 deg.");
     assert_eq!(stage.lab.player().motion().gravity, 5.0);
     stage.press("N").arrive().shows("1 of 4");
@@ -387,6 +389,7 @@ fn is_needed(kind: &SheetLineKind) -> bool {
         kind,
         SheetLineKind::Question
             | SheetLineKind::Choice { .. }
+            | SheetLineKind::Said
             | SheetLineKind::Result
             | SheetLineKind::Goal { .. }
     )
@@ -509,7 +512,7 @@ fn lessons_are_chosen_from_a_list_and_left_where_they_stand() {
     stage.press("↓↓↑↓\n").arrive();
     assert_eq!(stage.class.open_lesson().unwrap().lesson.title, title(2));
     stage.press("nn").arrive().shows("2 of ");
-    stage.press("L").shows("page 2 of 9");
+    stage.press("L").shows("20 min, page 2");
     stage.press("\n").arrive().shows("2 of ");
     let step = stage.step();
     stage.press("L\n").arrive().shows("2 of ");

@@ -45,7 +45,7 @@ fn a_warning_stands_beside_what_there_is_to_see() {
 #[test]
 fn a_hidden_verdict_leaves_its_row_to_the_page() {
     let mut stage = Stage::open("method-2", &[], TEACHERS);
-    stage.lesson("is-the-wobble-real", 1).wait(6.0);
+    stage.lesson("is-the-wobble-real", 10).arrive().wait(6.0);
     let rows = |shown: &Stage| {
         screen::layout(&shown.lab, true, shown.size).panes[0]
             .1

@@ -194,7 +194,7 @@ fn the_keys_go_by_phase_and_on_to_the_next_step() {
 fn the_points_add_up_one_by_one() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.commands("pause = true").press("v.");
-    stage.shows("rim 9").shows("foot, lower axle: no mass");
+    stage.shows("10 more: Down adds them up");
     stage.press("↓").shows("the first of 14 points gives");
     stage.press("↓↓");
     stage.shows("the first 3 of 14 points add up to");
@@ -207,6 +207,42 @@ fn the_points_add_up_one_by_one() {
     // Another phase begins with all of its rows again.
     stage.press(".").shows_no("add up to");
     stage.press("↓").shows("no table here");
+}
+
+#[test]
+fn the_chosen_point_is_written_out_and_massless_ones_share_a_row() {
+    let mut stage = Stage::open("method-2", &[], WIDE);
+    stage.commands("pause = true\nstep = 3").press("v");
+    stage.commands("phase = 'torque'");
+    stage.shows("hub, top, foot, lower axle: no mass");
+    let at = |row: usize, stage: &Stage| {
+        let shown = stage.lab.step_pane().shown().unwrap();
+        let (phase, ..) = shown.phase(stage.lab.view().look.phase).unwrap();
+        gyrolab::lab::step_pane::table_of(phase)
+            .unwrap()
+            .row(row)
+            .to_vec()
+    };
+    stage.press("↓↓");
+    let [x, y, _] = at(1, &stage)[..] else {
+        panic!("three columns")
+    };
+    let short = |number| gyrolab::engine::text::number::significant(number, 4);
+    for (axis, product) in [("x", x), ("y", y)] {
+        let place = short(product / 0.5);
+        stage.shows(&format!(
+            "m {axis} = 0.5 · {place} = {} kg m",
+            short(product)
+        ));
+    }
+    stage.shows("rim 1: ").shows("hub, top, foot");
+    // Each of the points without mass can be chosen.
+    stage.commands("sum_to = 12");
+    stage
+        .shows("top: it has no mass")
+        .shows_no("hub, top, foot");
+    stage.commands("phase = 'new momentum'");
+    stage.shows("L turns by ").shows("sideways, not down");
 }
 
 #[test]

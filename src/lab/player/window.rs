@@ -269,11 +269,12 @@ impl Player {
                 tight
             }
         });
-        let z = self
-            .run
-            .recording()
-            .whole()
-            .map(|whole| whole.extent(RecordedCurve::Z));
+        let before_it = comparison.ghost().map(|ghost| &ghost.recording);
+        let z = [Some(self.run.recording()), before_it]
+            .into_iter()
+            .flatten()
+            .filter_map(|recording| Some(recording.whole()?.extent(RecordedCurve::Z)))
+            .reduce(Extent::and);
         let z = z.unwrap_or(Extent::single(self.run.now().value(RecordedCurve::Z)));
         let tight = widened(z, self.least_range(RecordedCurve::Z));
         let is_longer = before.overview.min >= tight.min || before.overview.max <= tight.max;

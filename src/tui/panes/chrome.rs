@@ -340,8 +340,10 @@ fn footer(lab: &Lab, goes_on: bool) -> Vec<FooterItem> {
         let keys = vec![row.keys[0]];
         Some(FooterItem { keys, word, worth })
     });
+    let is_off_page = lab.view().sheet.is_some()
+        && (lab.view().fullscreen || lab.view().focus == Pane::Parameters);
     let esc_word = match mode {
-        Mode::Lab if lab.view().fullscreen && lab.view().sheet.is_some() => Some("to the page"),
+        Mode::Lab if is_off_page => Some("to the page"),
         Mode::Lab => None,
         Mode::Help if !lab.popups().help.text.is_empty() => Some("clear"),
         Mode::Browser if !lab.popups().browser.filter.is_empty() => Some("clear"),

@@ -54,7 +54,7 @@ pub const FROM_ABOVE_ROW: PaneRow = PaneRow {
     id: Pane::Above,
     title: "from above",
     draw: |lab, area, buf| {
-        FromAbove(PlotInputs::from_lab(lab)).render(area, buf);
+        FromAbove(PlotInputs::of_path(lab)).render(area, buf);
     },
     keys: keymap::FROM_ABOVE_KEYS,
     arrows: None,

@@ -218,6 +218,7 @@ fn are_apart(before: &SheetLineKind, after: &SheetLineKind) -> bool {
     match (before, after) {
         (SheetLineKind::Goal { .. }, SheetLineKind::Goal { .. })
         | (SheetLineKind::Caption, _)
+        | (SheetLineKind::Said, SheetLineKind::Result)
         | (SheetLineKind::Question, SheetLineKind::Choice { .. }) => false,
         _ => !is_list(before) || !is_list(after),
     }
@@ -230,7 +231,9 @@ fn dressed(kind: &SheetLineKind) -> (String, u16, Role) {
     }
     match kind {
         SheetLineKind::Heading | SheetLineKind::Caption => plain("", Role::Heading),
-        SheetLineKind::Text | SheetLineKind::Question => plain("", Role::Text),
+        SheetLineKind::Text | SheetLineKind::Question | SheetLineKind::Said => {
+            plain("", Role::Text)
+        }
         SheetLineKind::Item { mark, depth } => {
             (format!("{mark} "), 2 * depth.saturating_sub(1), Role::Text)
         }

@@ -143,6 +143,13 @@ impl<'a> PlotInputs<'a> {
         }
     }
 
+    /// As [`from_lab`](Self::from_lab), for the views of the path: beside a page the run before would cover the path.
+    fn of_path(lab: &'a Lab) -> Self {
+        let inputs = Self::from_lab(lab);
+        let ghost = inputs.ghost.filter(|_| lab.view().sheet.is_none());
+        Self { ghost, ..inputs }
+    }
+
     /// The exact motion, where it is shown beside the run.
     fn overlay(&self) -> Option<&'a Overlay> {
         let overlay = self.run.overlay();

@@ -202,8 +202,24 @@ impl<'a> Overview<'a> {
                 Layer::Earlier
             }
         };
+        self.draw_run_before(&mut canvas);
         draw_run(&columns, layer, &mut canvas);
         canvas.render(&view.theme, buf);
+    }
+
+    /// Draws the edges of the run before, dotted.
+    fn draw_run_before(&self, canvas: &mut Canvas) {
+        let Some(before) = self.lab.comparison().ghost() else {
+            return;
+        };
+        let bins = self.span.bins(&before.recording);
+        let extents = bins.columns(RecordedCurve::Z, &before.marks.edits);
+        let columns = rows(&extents, &self.scale, canvas.height());
+        for (x, column) in columns.iter().enumerate().step_by(2) {
+            for edge in column.iter().flat_map(|(upper, lower)| [*upper, *lower]) {
+                canvas.upright(x, (edge, edge), Layer::Previous);
+            }
+        }
     }
 
     /// Draws the window of the traces: its background, and its edges where the cells beside it are free.

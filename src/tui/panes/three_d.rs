@@ -62,7 +62,7 @@ pub const THREE_D_ROW: PaneRow = PaneRow {
     id: Pane::ThreeD,
     title: "3-D",
     draw: |lab, area, buf| {
-        ThreeD(PlotInputs::from_lab(lab)).render(area, buf);
+        ThreeD(PlotInputs::of_path(lab)).render(area, buf);
     },
     keys: keymap::THREE_D_KEYS,
     arrows: Some(|lab, direction, times| one(lab.view().turned(direction, times))),
