@@ -4,7 +4,7 @@ use crate::support::stage::{LARGE, SMALL, Stage};
 use gyrolab::engine::recording::RecordedCurve;
 use gyrolab::lab::playback::strip::Strip;
 use gyrolab::lab::view::Pane;
-use gyrolab::lab::view::theme::{Background, Palette, Theme};
+use gyrolab::lab::view::theme::{Background, Marker, Palette, Theme};
 use gyrolab::tui::keymap::Key;
 use gyrolab::tui::mouse::{Did, Mouse, Pointer};
 use gyrolab::tui::screen;
@@ -271,6 +271,58 @@ fn the_exact_motion_is_dashed_and_named() {
         .lines()
         .any(|line| line.chars().take(50).collect::<String>().contains("exact"));
     assert!(named, "{picture}");
+}
+
+#[test]
+fn without_colors_the_exact_motion_has_its_own_sign() {
+    for (marker, sign) in [
+        (Marker::HalfBlock, '─'),
+        (Marker::Dot, '╌'),
+        (Marker::Ascii, '-'),
+    ] {
+        let mut stage = at("wobble-push", &["view.exact=true"], 900, MEDIUM);
+        (stage.lab.view_mut().marker, stage.lab.view_mut().theme) = (marker, Theme::PLAIN);
+        let picture = stage.picture();
+        // The curves, without the rules and the ticks.
+        let lines = picture.lines().skip(2).take(28);
+        let curves = lines.filter(|line| !line.contains("(m)"));
+        let cells = curves.flat_map(|line| line.chars().take(50).skip(8));
+        assert!(
+            cells.filter(|cell| *cell == sign).count() >= 20,
+            "{picture}"
+        );
+    }
+}
+
+/// A swing is seen after some steps only: what is known of the run stays known at its start.
+#[test]
+fn going_back_to_the_start_keeps_the_overview() {
+    let mut stage = at("method-2", &[], 900, MEDIUM);
+    let before = stage.lab.view().window;
+    assert!(before.has_overview);
+    for step in [10, 0, 1] {
+        stage.commands(&format!("go_to = {step}"));
+        let window = stage.lab.view().window;
+        assert!(window.has_overview, "at step {step}");
+        assert_eq!(window.length_s(), before.length_s(), "at step {step}");
+    }
+    // Another run is not known.
+    stage.commands("go_to = 0\nset = { 'start.tilt_deg' = 30 }");
+    assert!(!stage.lab.view().window.has_overview);
+}
+
+#[test]
+fn a_distance_from_the_exact_motion_is_not_negative() {
+    let mut stage = at("falling", &["view.exact=true"], 9000, LARGE);
+    let picture = stage.shows("off exact (m)").picture();
+    let below = picture
+        .lines()
+        .skip_while(|line| !line.starts_with("off exact"));
+    let ticks: String = below
+        .take(11)
+        .flat_map(|line| line.chars().take(10))
+        .collect();
+    assert!(ticks.contains("e−") && !ticks.contains(" −"), "{picture}");
 }
 
 #[test]

@@ -15,9 +15,9 @@ use nalgebra::Vector3;
 use ratatui::layout::Rect;
 
 /// Tilts are rounded to multiples of this, degrees, so that the scale does not change all the time.
-const TILT_DEG: f64 = 5.0;
+const TILT_DEG: f64 = 2.5;
 /// A tilt this near to such a multiple, degrees, may cross it: then the next one is shown too.
-const TILT_SLACK_DEG: f64 = 1.5;
+const TILT_SLACK_DEG: f64 = 0.75;
 /// The floor is this far below everything, and the circle on it at least this large, in lengths of the axle.
 const FLOOR_GAP: f64 = 0.16;
 const LEAST_FLOOR: f64 = 0.35;
