@@ -284,6 +284,7 @@ fn filled_share(picture: &Picture, has_legend: bool) -> (f64, f64) {
     )
 }
 
+/// What the body sweeps in a whole turn fits in: at one moment it takes most of the height, of a small pane of the width.
 #[test]
 fn the_scene_fills_its_pane() {
     for (preset, step) in [
@@ -294,13 +295,12 @@ fn the_scene_fills_its_pane() {
         ("falling", 10_000),
     ] {
         let stage = stage(preset, step, "");
-        for size in SIZES {
+        for (size, least) in SIZES.into_iter().zip([0.76, 0.78, 0.81]) {
             let picture = draw(Pane::Space, &stage, size);
             let (across, down) = filled_share(&picture, size.1 >= 18);
             let larger = across.max(down);
-            println!("FIT {preset} {size:?}: {across:.2} {down:.2}");
             assert!(
-                larger >= 0.75,
+                larger >= least,
                 "{preset} {size:?}: {across} {down}\n{}",
                 picture.text()
             );

@@ -224,7 +224,7 @@ mod tests {
         let of = |begin_s, window_s, width| line(&Strip::new(begin_s, window_s, 2 * width), width);
         assert_eq!(
             of(0.0, 230.0, 56),
-            "0 s         50          100          150         200"
+            "0 s        50          100         150         200"
         );
         assert_eq!(of(0.0, 230.0, 25), "0 s      100        200");
         assert_eq!(of(0.0, 230.0, 12), "0 s 100  200");
