@@ -27,7 +27,7 @@ fn sit(ground: &Ground, name: &str) -> (Terminal, String) {
 
 /// Votes for the second choice.
 fn vote(lab: &mut Terminal) {
-    lab.wait_for("2 is about fifty times smaller");
+    lab.wait_for("1 2 3 4 or ↑ ↓ choose");
     lab.ask("2", "this is my prediction");
     lab.ask("\r", "2 is about fifty times smaller you");
 }

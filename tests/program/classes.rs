@@ -30,7 +30,7 @@ fn a_prediction_survives_a_kill_and_is_handed_in() {
     resumed.press("n");
     resumed.wait_for("The run plays");
     resumed.press("n");
-    resumed.wait_for("The tilt now stays within 0.042");
+    resumed.wait_for("Came out: The tilt now stays within");
     resumed.quit();
     let output = ground.run(&["lesson", LESSON, "--answers"]);
     let text = stdout(&output);

@@ -64,8 +64,8 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let room = area.width.saturating_sub(columns(place) as u16 + 5);
     let title = shortened(title, room.into());
     let right = Some((place, Role::Label)).filter(|_| !place.is_empty());
-    let has_focus = view.marks_focus_of(LESSON_ROW.id);
-    let inside = rule(&title, right, has_focus, area, &view.theme, buf);
+    let is_marked = view.marks_focus_of(LESSON_ROW.id);
+    let inside = rule(&title, right, is_marked, area, &view.theme, buf);
     if inside.is_empty() {
         return;
     }
@@ -254,9 +254,9 @@ fn dressed(kind: &SheetLineKind) -> (String, u16, Role) {
 }
 
 fn lines_of(paragraph: &Paragraph, width: u16, theme: &Theme) -> Vec<LessonLine> {
-    let (mark, indent, role) = dressed(&paragraph.kind);
+    let (lead, indent, role) = dressed(&paragraph.kind);
     let style = theme.style(role);
-    let hanging = indent + columns(&mark) as u16;
+    let hanging = indent + columns(&lead) as u16;
     let room = width.saturating_sub(hanging).max(1) as usize;
     let text = paragraph.text();
     let texts: Vec<String> = match paragraph.kind {
@@ -268,8 +268,8 @@ fn lines_of(paragraph: &Paragraph, width: u16, theme: &Theme) -> Vec<LessonLine>
     for (index, line) in texts.iter().enumerate() {
         let mut pieces = styled_pieces(line, &mut letters, style, theme);
         let is_marked = index == 0 || paragraph.kind == SheetLineKind::Note;
-        if is_marked && !mark.is_empty() {
-            pieces.insert(0, (mark.clone(), style));
+        if is_marked && !lead.is_empty() {
+            pieces.insert(0, (lead.clone(), style));
         }
         lines.push(LessonLine {
             x: if is_marked { indent } else { hanging },

@@ -36,6 +36,9 @@ const VALUE_END: u16 = 25;
 /// Below this height a pane in focus has the list alone.
 const TABLE_FROM: u16 = 8;
 
+/// From this many columns on, dots stand for the rest of a label.
+const DOTTED_FROM: u16 = 9;
+
 pub const PARAMETERS_ROW: PaneRow = PaneRow {
     id: Pane::Parameters,
     title: "values",
@@ -124,7 +127,15 @@ impl<'a> ValuesPane<'a> {
     fn label(&self, label: &str, unit: &'static str, width: u16, area: Rect, buf: &mut Buffer) {
         let [place, _] = split_columns(area, width.saturating_sub(1));
         let theme = &self.view.theme;
-        let end = write(place, (0, 0), label, theme.style(Role::Text), buf);
+        // In few columns the letters tell more than the dots of what is cut.
+        let most = usize::from(place.width);
+        let cut: String = label.chars().take(most).collect();
+        let text = if place.width < DOTTED_FROM {
+            &cut
+        } else {
+            label
+        };
+        let end = write(place, (0, 0), text, theme.style(Role::Text), buf);
         let unit = self.unit(unit);
         if usize::from(end) + 1 + unit.chars().count() <= place.width.into() {
             write(place, (end + 1, 0), unit, theme.style(Role::Label), buf);

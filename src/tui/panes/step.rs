@@ -159,30 +159,28 @@ impl PhasePage<'_> {
             .iter()
             .map(|(phase, number)| columns(&named(phase, *number)) + PHASE_GAP);
         let has_names = whole.sum::<usize>() <= self.width;
+        let mut items: Vec<_> = phases
+            .into_iter()
+            .map(|(phase, number)| match number.cmp(&self.number) {
+                Ordering::Equal => (format!(" {} ", named(phase, number)), Role::Selected),
+                _ if has_names => (named(phase, number), role_beside(number, self.number)),
+                _ => (number.to_string(), role_beside(number, self.number)),
+            })
+            .collect();
+        // The first ones give way until the present one is in view.
+        while columns_until_present(&items) > self.width && items.len() > 1 {
+            items.remove(0);
+        }
         let mut line = StepPageLine::default();
         let mut at = 0;
-        for (phase, number) in phases {
-            let (text, role) = match number.cmp(&self.number) {
-                Ordering::Equal => (format!(" {} ", named(phase, number)), Role::Selected),
-                order => {
-                    let role = match order {
-                        Ordering::Less => Role::Text,
-                        _ => Role::Label,
-                    };
-                    let text = if has_names {
-                        named(phase, number)
-                    } else {
-                        number.to_string()
-                    };
-                    (text, role)
-                }
-            };
+        for (text, role) in items {
             // The blanks beside the present one are a part of the gap.
-            let begin = at - usize::from(role == Role::Selected && at > 0);
-            at = begin + columns(&text) + PHASE_GAP - usize::from(role == Role::Selected);
+            let blank = usize::from(role == Role::Selected);
+            let begin = at - blank.min(at);
+            at = begin + columns(&text) + PHASE_GAP - blank;
             line.pieces.push((begin, text, role));
         }
-        StepPageSection::new(9, vec![line])
+        StepPageSection::new(2, vec![line])
     }
 
     /// The part of the step to which the phase belongs; empty where there is only one.
@@ -353,6 +351,21 @@ impl PhasePage<'_> {
             }
         }
     }
+}
+
+/// The look of the phase `number` beside the `present` one: whether it is done, or to come.
+const fn role_beside(number: usize, present: usize) -> Role {
+    if number < present {
+        Role::Text
+    } else {
+        Role::Label
+    }
+}
+
+/// Columns of the phases up to the present one.
+fn columns_until_present(items: &[(String, Role)]) -> usize {
+    let shown = items.iter().take_while(|(_, role)| *role != Role::Label);
+    shown.map(|(text, _)| columns(text) + PHASE_GAP).sum()
 }
 
 /// The name of a phase in one or two words.
