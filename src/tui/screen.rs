@@ -7,7 +7,7 @@ use super::panes::{
 use crate::engine::text::wrap::columns;
 use crate::lab::Lab;
 use crate::lab::action::Direction;
-use crate::lab::view::theme::Marker;
+use crate::lab::view::theme::{Marker, Theme};
 use crate::lab::view::{HideablePart, Pane};
 use crate::tui::dots;
 use crate::tui::keymap::Mode;
@@ -68,6 +68,9 @@ pub fn draw(lab: &Lab, keys: bool, area: Rect, buf: &mut Buffer) {
     let places = layout(lab, keys, area);
     for &(pane, place) in &places.panes {
         draw_pane(lab, pane, place, buf);
+        if matches!(pane, Pane::Traces | Pane::Above) {
+            color_blanks(place, &lab.view().theme, buf);
+        }
         if lab.view().pointed_at == Some(pane) {
             point_at(lab, place, buf);
         }
@@ -92,6 +95,18 @@ pub fn draw(lab: &Lab, keys: bool, area: Rect, buf: &mut Buffer) {
         Marker::Ascii => to_ascii(area, buf),
         Marker::HalfBlock => to_console(area, buf),
         Marker::Braille | Marker::Octant | Marker::Dot => {}
+    }
+}
+
+/// Gives blank cells the color of the run, which nobody sees: without it a slow line carries two changes of color for each
+/// cell of a curve that moves.
+fn color_blanks(area: Rect, theme: &Theme, buf: &mut Buffer) {
+    let color = theme.style(Role::Run).fg.unwrap_or_default();
+    for position in area.positions() {
+        let cell = buf.cell_mut(position);
+        if let Some(cell) = cell.filter(|cell| cell.symbol() == " " && cell.modifier.is_empty()) {
+            cell.fg = color;
+        }
     }
 }
 
