@@ -136,9 +136,9 @@ fn values_are_found_by_their_names() {
 fn numbers_that_are_read_off_are_found_too() {
     let mut stage = open(SMALL);
     stage.press("/turns").shows("no editable value");
-    stage.shows("turns/st").shows_no("E error");
+    stage.shows("turns/dt").shows_no("E error");
     stage.press(ESC).press("/energy").shows("E error");
-    stage.shows_no("turns/st");
+    stage.shows_no("turns/dt");
     let mut large = open(LARGE);
     large.press("/azimuth").shows("azimuth °");
 }

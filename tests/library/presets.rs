@@ -311,7 +311,7 @@ fn the_figures_in_the_texts_are_those_of_the_runs() {
     let slow_mm = 1e3 * swing("method-2-slow");
     figure("method-2-slow", "z swings by {:.1} mm", slow_mm);
     let percent = 100.0 * swing("method-2") / 0.8;
-    figure("method-2", "It reaches {:.1} %", percent);
+    figure("method-2", "makes z swing by {:.1} %", percent);
     let fast = readouts("steady-fast");
     let rate = |name: &str| fast.number(name).unwrap();
     let ratio = rate("fast_precession_rad_per_s") / rate("slow_precession_rad_per_s");

@@ -39,7 +39,7 @@ fn the_note_says_whole_sentences() {
 fn a_warning_stands_beside_what_there_is_to_see() {
     let mut stage = Stage::open("method-2", &[], TEACHERS);
     stage.wait(1.0).commands("pause = true");
-    stage.wait(6.0).shows("NOT RELIABLE").shows("swing of z.");
+    stage.wait(6.0).shows("NOT RELIABLE").shows("z swing by");
 }
 
 #[test]

@@ -56,8 +56,18 @@ fn run_and_exact_motion_are_beside_each_other_without_t() {
         assert_eq!(row(&rows, label), shown, "{rows:#?}");
     }
     let labels = [
-        "x ", "y ", "z ", "tilt", "precess.", "nutation", "E error", "start", "tilt", "|L|",
-        "L tilt", "dt",
+        "x ",
+        "y ",
+        "z ",
+        "tilt",
+        "prec °/s",
+        "nutat s",
+        "E error",
+        "start",
+        "tilt",
+        "|L|",
+        "L tilt",
+        "dt",
     ];
     let begins = rows[1..].iter().zip(labels);
     assert!(

@@ -145,8 +145,8 @@ fn cause(health: &Health) -> Option<Phrase> {
 fn disagreement(health: &Health) -> Option<Phrase> {
     let most = distance(health.most_distance_m?);
     if health.point_holds() == Some(false) {
-        let long = format!("{most} from the exact motion");
-        return Some(Phrase::new(long, format!("{most} off")));
+        let long = format!("up to {most} from the exact motion");
+        return Some(Phrase::new(long, format!("up to {most} off")));
     }
     let swing = health.swing.filter(|swing| !swing.is_right())?;
     let long = format!("only the nutation is wrong: {swing}");

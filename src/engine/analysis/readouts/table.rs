@@ -279,7 +279,7 @@ readouts! {
     "measured_highest_tilt_deg", "deg", EveryStep, "greatest angle of the axle from +z", |r| r.extremes.tilt.highest_deg, "*θ*_{max}" => so_far(1, "tilt to").decimals(3);
     "measured_lowest_z_m", "m", EveryStep, "least z of the traced point", |r| r.extremes.lowest_z_m, "*z*_{min}" => so_far(2, "z from").decimals(4) , summary summary(Motion, 1, "z", summary_row::height);
     "measured_highest_z_m", "m", EveryStep, "greatest z of the traced point", |r| r.extremes.highest_z_m, "*z*_{max}" => so_far(3, "z to").decimals(4);
-    "turns_per_step", "", State, "turns of the body in one time step, |Omega| dt/2 pi", |r| r.health.turns_per_step => now(9, "turns per step", "turns/st").rank(3).in_unit("< 0.5", 1.0).off_by(Tolerance::UnlessReliable(0.5)) , summary summary(Further, 4, "a time step", summary_row::time_step);
+    "turns_per_step", "", State, "turns of the body in one time step, |Omega| dt/2 pi", |r| r.health.turns_per_step => now(9, "turns per step", "turns/dt").rank(3).in_unit("< 0.5", 1.0).off_by(Tolerance::UnlessReliable(0.5)) , summary summary(Further, 4, "a time step", summary_row::time_step);
     "nutation_multiplier", "", Scheme, "the report's scheme alone: its factor on a nutation's size each step; the truth is 1", |r| r.health.nutation.map(|nutation| nutation.multiplier);
     "lag_deg", "deg", State, "angle between axle and L", |r| r.health.lag_deg => so_far(5, "axle to L").decimals(3) , summary summary(Further, 5, "lag", summary_row::lag);
     "steady_lag_deg", "deg", Scheme, "the report's scheme alone: its angle between axle and L in slow steady precession at this tilt and spin, the true one times kappa psi/|1 - A|", |r| r.health.nutation.and_then(|nutation| nutation.scheme_lag_deg());
@@ -308,7 +308,7 @@ readouts! {
     "fast_precession_rad_per_s", "rad/s", Theory, "steady precession at this tilt, the fast one", |r| r.theory_about_z().and_then(|theory| theory.fast_precession), "*Ω*_{fast}";
     "fast_top_precession_rad_per_s", "rad/s", Theory, "the fast top's precession M g h/L3", |r| r.theory_about_z().and_then(|theory| theory.fast_top_precession), "*M* *g* *h*/*L*_{3}";
     "predicted_nutation_period_s", "s", Theory, "nutation period of the exact motion", |r| r.lasting_theory().and_then(|theory| theory.nutation_period_s), "*T*_{n}";
-    "measured_nutation_period_s", "s", Measured, "mean time from one greatest tilt to the next; none under friction", |r| value(r.nutation), "*T*_{n}" => now(5, "nutation", "nutation").measured(|r| r.nutation).off_by(Tolerance::OfItself) , summary summary(Motion, 3, "nutation", summary_row::nutation);
+    "measured_nutation_period_s", "s", Measured, "mean time from one greatest tilt to the next; none under friction", |r| value(r.nutation), "*T*_{n}" => now(5, "nutation", "nutat").measured(|r| r.nutation).off_by(Tolerance::OfItself) , summary summary(Motion, 3, "nutation", summary_row::nutation);
     "measured_nutation_uncertainty_s", "s", Measured, "one standard error of reading it off the steps; the error that the scheme and its time step make is not in it", |r| uncertainty(r.nutation);
     "nutation_is_resolved", "", State, "false: the time step is too long to see the nutation, what the steps show is strobed", |r| r.nutation_is_resolved();
     "predicted_precession_period_s", "s", Theory, "time of one turn of the mean precession of the exact motion about +z", |r| r.lasting_theory().and_then(Theory::precession_period_s), "*T*_{p}";

@@ -16,6 +16,8 @@ use std::iter;
 
 /// Columns of a field.
 const FIELD: u16 = 7;
+/// Columns between two lists.
+const GAP: u16 = 2;
 /// Columns of the longest number that is not rounded.
 const MOST_DIGITS: usize = 12;
 /// In fewer columns a heading is short.
@@ -90,7 +92,7 @@ impl Editor<'_, '_> {
         for list in lists {
             let [mut place, right] = split_columns(rest, area.width / columns);
             if !right.is_empty() {
-                place.width -= 1; // the columns are one apart
+                place.width = place.width.saturating_sub(GAP);
             }
             rows.extend(place.rows().zip(list));
             rest = right;

@@ -169,8 +169,8 @@ impl ValueTable<'_, '_> {
         }
     }
 
-    /// The label of `row` in a column of this width: with its unit if there is room for both. Milliseconds are never left
-    /// out: the label is cut.
+    /// The label of `row` in a column of this width: with its unit if there is room for both. The units of times and rates,
+    /// which change, are never left out: the label is cut.
     fn label(
         &self,
         row: &ValueRow,
@@ -183,11 +183,11 @@ impl ValueTable<'_, '_> {
             0 => 0,
             unit => unit + 1,
         };
-        let is_scaled = readout.unit == "s" && unit > 2;
+        let has_own_unit = ["s", "rad/s"].contains(&readout.unit);
         let is_long = width > 9 && columns(row.label) > columns(row.short_label) + 4;
         if columns(row.label) + unit <= room || (is_long && columns(row.label) <= room) {
             row.label
-        } else if is_scaled {
+        } else if has_own_unit {
             let most = room.saturating_sub(unit);
             row.short_label.get(..most).unwrap_or(row.short_label)
         } else {
