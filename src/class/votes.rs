@@ -18,7 +18,7 @@ pub const FEWEST_VOTES_SHOWN: usize = 5;
 /// The most bars of predicted numbers.
 const MOST_BARS: usize = 9;
 /// The columns of the longest bar.
-const LONGEST_BAR: usize = 20;
+const LONGEST_BAR: usize = 28;
 
 /// A seat with its record and whether somebody sits there.
 #[derive(Clone, Debug)]
@@ -206,7 +206,7 @@ pub fn drawn(bars: &[(String, usize)]) -> Paragraph {
     let width = bars.iter().map(|bar| bar.0.len()).max().unwrap_or(0);
     let mut text = String::new();
     for (name, count) in bars {
-        let bar = "█".repeat((count * LONGEST_BAR).div_ceil(most));
+        let bar = "━".repeat((count * LONGEST_BAR).div_ceil(most));
         text += &format!("{name:<width$} {bar} {count}\n");
     }
     Paragraph::new(SheetLineKind::Code, text)

@@ -199,8 +199,11 @@ impl Writer<'_> {
                 LessonBlock::Predict(predict) => {
                     let first = self.sheet.paragraphs.len();
                     self.question(predict);
+                    // The class's answers wait for one's own.
+                    let is_shown = self.overlay.is_of_teacher || !self.open.is_open(predict);
                     if let Some((name, votes)) = &self.overlay.votes
                         && *name == predict.name
+                        && is_shown
                     {
                         self.extend(votes.clone());
                         self.sheet.seen = None;

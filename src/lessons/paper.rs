@@ -237,9 +237,12 @@ fn arms(c: char) -> Option<(&'static [(f64, f64)], f64)> {
     const UP: (f64, f64) = (0.5, 0.0);
     const DOWN_STROKE: (f64, f64) = (0.5, 1.0);
     let ends: &[_] = match c {
-        '─' => &[LEFT, RIGHT],
-        '═' => return Some((&[LEFT, RIGHT], 1.5)),
-        '│' => &[UP, DOWN_STROKE],
+        '─' | '╌' => &[LEFT, RIGHT],
+        '╴' => &[LEFT],
+        '═' | '━' => return Some((&[LEFT, RIGHT], 1.5)),
+        '│' | '▏' | '▕' => &[UP, DOWN_STROKE],
+        '┃' => return Some((&[UP, DOWN_STROKE], 1.5)),
+        '┴' => &[LEFT, RIGHT, UP],
         '┌' => &[RIGHT, DOWN_STROKE],
         '┐' => &[LEFT, DOWN_STROKE],
         '└' => &[RIGHT, UP],

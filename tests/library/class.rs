@@ -302,7 +302,7 @@ fn votes_are_counted_by_round_and_late_ones_apart() {
     assert_eq!(counts(1), (vec![1, 1], 1));
     assert_eq!(counts(2), (vec![1, 2], 0));
     let drawn = Tally::count(&seats, LESSON, predict, 1).drawn().text();
-    assert!(drawn.contains("late:\n1 █"), "{drawn}");
+    assert!(drawn.contains("late:\n1 ━"), "{drawn}");
     let csv = votes::csv(&folder, &seat_statuses(&folder).unwrap()).unwrap();
     assert!(
         csv.starts_with("lesson,question,round,seat,choice,late,page,time\n"),

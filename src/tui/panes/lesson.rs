@@ -327,16 +327,19 @@ fn as_choice(
 fn wrapped_with_units(text: &str, room: usize) -> Vec<String> {
     let words: Vec<&str> = text.split_whitespace().collect();
     let mut joined = String::with_capacity(text.len());
+    let mut follows_number = false;
     for (index, word) in words.iter().enumerate() {
-        let before = index.checked_sub(1).map_or("", |before| words[before]);
-        let is_number = before.ends_with(|letter: char| letter.is_ascii_digit());
         let is_unit = UNITS.contains(&word.trim_end_matches(['.', ',', ';', ':', ')', '?']));
+        let is_kept = follows_number && is_unit;
         match index {
             0 => {}
-            _ if is_number && is_unit => joined.push(KEPT_BLANK),
+            _ if is_kept => joined.push(KEPT_BLANK),
             _ => joined.push(' '),
         }
         joined += word;
+        // A joule has its second behind it in the unit of L.
+        let is_number = word.ends_with(|letter: char| letter.is_ascii_digit());
+        follows_number = is_number || is_kept && *word == "J";
     }
     let lines = wrapped(&joined, room).into_iter();
     lines.map(|line| line.replace(KEPT_BLANK, " ")).collect()
@@ -432,6 +435,8 @@ mod tests {
     fn a_number_and_its_unit_stay_together() {
         let lines = wrapped_with_units("a push of 100 N for 20 s.", 13);
         assert_eq!(lines, ["a push of", "100 N for", "20 s."]);
+        let lines = wrapped_with_units("Take L = 36 J s, at 0.1 s.", 14);
+        assert_eq!(lines, ["Take L =", "36 J s, at", "0.1 s."]);
     }
 
     #[test]
