@@ -45,6 +45,8 @@ const MOST_TICK_DECIMALS: i64 = 4;
 
 /// Fine dots between two dots of the circle that theory predicts.
 const CIRCLE_DOTS: f64 = 3.0;
+/// Fine dots of a dash of the exact path.
+const EXACT_DASH_DOTS: f64 = 8.0;
 /// The longest line between two places of the earlier path, dots.
 const LONGEST_EARLIER_LINE: f64 = 8.0;
 /// The longest line between two places of the bright path, of the sheet's shorter side.
@@ -252,12 +254,21 @@ impl<'a> AbovePicture<'a> {
         }
     }
 
-    /// The exact path is drawn over the run: where the two agree, its dashes alternate with the run.
+    /// The exact path is drawn over the run: where the two agree, its dashes alternate with the run. The dashes belong to
+    /// places, so that those of one turn are over those of another.
     fn exact_path(&self, dots: &mut LayeredDots) {
-        if let Some(overlay) = self.seen.overlay() {
-            let places = overlay.path.dots().map(|at| self.plane.dot(at));
-            let exact = ink(Role::Exact, Layer::Exact);
-            dots.path(places, Some(dots::EXACT_DASHES), 0.0, exact);
+        let Some(overlay) = self.seen.overlay() else {
+            return;
+        };
+        let dash_m = EXACT_DASH_DOTS / self.plane.scale.1;
+        let shown_m = 0.5 * self.plane.size.1 as f64 / self.plane.scale.1;
+        let around = 2.0 * (0.5 * TAU * shown_m / dash_m).round().max(1.0);
+        for (x, y) in overlay.path.dots() {
+            let ring = libm::hypot(x, y) / dash_m;
+            let sector = libm::atan2(y, x) / TAU * around;
+            if (ring.floor() + sector.floor()).rem_euclid(2.0) == 0.0 {
+                dots.set(self.plane.dot((x, y)), ink(Role::Exact, Layer::Exact));
+            }
         }
     }
 
