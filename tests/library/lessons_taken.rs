@@ -227,6 +227,26 @@ fn an_open_question_hides_what_answers_it_and_names_its_keys() {
 }
 
 #[test]
+fn what_is_hidden_is_gone_from_every_pane() {
+    let mut stage = Stage::open("cusps", &[], LARGE);
+    stage.commands("pause = true\ngo_to = '2 s'\nexact = true");
+    stage.arrive().wait(6.0).shows("reliable:").shows("exact");
+    stage.commands("hide = ['health', 'predicted', 'look_at']");
+    stage.wait(6.0).shows_no("reliable");
+    let picture = stage.picture();
+    let row = picture
+        .lines()
+        .find(|line| line.contains(" precess"))
+        .unwrap();
+    let numbers = row
+        .split_whitespace()
+        .filter(|word| word.parse::<f64>().is_ok());
+    assert!(numbers.count() <= 1, "the run's alone: {row}");
+    stage.commands("exact = false").wait(6.0);
+    assert_eq!(stage.picture(), picture);
+}
+
+#[test]
 fn the_run_stays_in_view_whatever_is_turned_to() {
     let (mut stage, _folder, _) = taken(3);
     let panes = |shown: &Stage| {
