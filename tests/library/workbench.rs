@@ -269,7 +269,7 @@ fn resizing_at_any_moment_shows_what_there_is_room_for() {
         stage.shows(shown).shows_no(hidden);
     }
     stage.shows("lmost a circle").shows("z swing by");
-    stage.size = Rect::new(0, 0, 79, 23);
+    stage.size = Rect::new(0, 0, 75, 23);
     screen::fit(&mut stage.lab, stage.size);
     stage.shows("lmost a circle").shows("80x24 shows more");
 }
