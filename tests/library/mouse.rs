@@ -141,7 +141,7 @@ fn a_press_selects_a_pane_goes_to_a_place_and_does_a_key() {
 fn the_wheel_zooms_and_a_drag_turns_the_view_in_space() {
     let mut desk = Desk::open("method-2", LARGE);
     let traces = desk.pane("traces");
-    let length_s = |desk: &Desk| desk.stage.lab.view().window.length_s();
+    let length_s = |of: &Desk| of.stage.lab.view().window.length_s();
     let before = length_s(&desk);
     let middle = (traces.x + traces.width / 2, traces.y + 5);
     desk.does(Did::WheelUp, middle);
@@ -183,9 +183,9 @@ fn a_click_selects_a_row_of_any_list_and_a_double_click_opens_it() {
     desk.does(Did::Press, row);
     let sheet = desk.stage.lab.view().sheet.clone().unwrap();
     let mut rows = sheet.paragraphs.iter();
-    let chosen = rows.find(|row| {
+    let chosen = rows.find(|paragraph| {
         matches!(
-            row.kind,
+            paragraph.kind,
             SheetLineKind::Choice {
                 is_selected: true,
                 ..
@@ -197,17 +197,20 @@ fn a_click_selects_a_row_of_any_list_and_a_double_click_opens_it() {
     desk.does(Did::Press, row);
     let open = desk.stage.class.open_lesson().unwrap();
     assert!(open.lesson.title.starts_with(title));
-    // Two slow clicks are no double click.
+}
+
+#[test]
+fn two_slow_clicks_are_no_double_click() {
     let mut desk = Desk::open("method-2", SMALL);
     desk.stage.press("c");
-    let row = desk.place("background");
-    desk.does(Did::Press, row);
+    let setting = desk.place("background");
+    desk.does(Did::Press, setting);
     desk.stage.wait(2.0);
-    desk.does(Did::Press, row).stage.shows("dark");
-    desk.does(Did::Press, row).stage.shows("light");
+    desk.does(Did::Press, setting).stage.shows("dark");
+    desk.does(Did::Press, setting).stage.shows("light");
     desk.stage.press("\u{1b}?");
-    let row = desk.place("stop the run");
-    desk.does(Did::Press, row);
+    let of_help = desk.place("stop the run");
+    desk.does(Did::Press, of_help);
     assert_eq!(desk.stage.lab.popups().mode, Mode::Help);
 }
 

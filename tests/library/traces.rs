@@ -192,8 +192,8 @@ fn swings_that_columns_cannot_resolve_are_an_envelope() {
 fn a_window_that_passes_too_fast_is_held_for_a_second() {
     let mut stage = Stage::open("wobble-push", &[], SMALL);
     stage.wait(4.0);
-    let shown = |stage: &Stage| {
-        let (area, picture) = (place(stage, Pane::Traces), stage.picture());
+    let shown = |of: &Stage| {
+        let (area, picture) = (place(of, Pane::Traces), of.picture());
         let lines = picture.lines().skip(area.y.into()).take(area.height.into());
         let columns = lines.map(|line| line.chars().take(area.width.into()).collect::<String>());
         columns.collect::<Vec<_>>()
@@ -435,8 +435,8 @@ fn the_wheel_zooms_about_the_pointer() {
     let mut stage = at("wobble-push", &[], 900, MEDIUM);
     let area = place(&stage, Pane::Traces);
     let (x, y) = (area.x + 20, area.y + 3);
-    let time_s = |stage: &Stage| {
-        let window = &stage.lab.view().window;
+    let time_s = |of: &Stage| {
+        let window = &of.lab.view().window;
         let buf_width = f64::from(area.width) - 7.0;
         window.begin_s + (f64::from(x - area.x) - 6.5) / buf_width * window.length_s()
     };
