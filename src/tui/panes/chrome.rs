@@ -185,8 +185,8 @@ enum PhraseKind {
     Cure,
 }
 
-/// The phrases of `verdict` and `cure` in at most `room` columns: all at length, else without the hint, then in short, then
-/// with as many reasons as fit.
+/// The phrases of `verdict` and `cure` in at most `room` columns: all at length, else without the hint, then in short from the
+/// first on, then with as many reasons as fit.
 fn fitting_phrases(
     verdict: &Verdict,
     cure: Option<&Phrase>,
@@ -197,34 +197,41 @@ fn fitting_phrases(
     let hint = verdict.hint.iter().map(|it| (it, PhraseKind::Hint));
     let cure = cure.map(|it| (it, PhraseKind::Cure));
     let mut phrases: Vec<_> = reasons.chain(hint).chain(cure).collect();
-    if length_of(&phrases, true, gap) > room {
+    if length_of(&phrases, 0, gap) > room {
         phrases.retain(|(_, kind)| *kind != PhraseKind::Hint);
     }
-    while length_of(&phrases, true, gap) > room && length_of(&phrases, false, gap) > room {
+    let mut in_short = 0;
+    while length_of(&phrases, in_short, gap) > room {
         let reason = phrases
             .iter()
             .rposition(|(_, kind)| *kind != PhraseKind::Cure);
         match reason {
-            Some(last) => phrases.remove(last),
+            _ if in_short < phrases.len() => in_short += 1,
+            Some(last) => drop(phrases.remove(last)),
             None => break,
-        };
+        }
     }
-    let is_long = length_of(&phrases, true, gap) <= room;
-    phrases
-        .into_iter()
-        .map(|(phrase, kind)| {
-            let text = if is_long { &phrase.long } else { &phrase.short };
-            (text.clone(), kind)
-        })
+    let texts = phrases.into_iter().enumerate();
+    texts
+        .map(|(index, (phrase, kind))| (text_of(phrase, index < in_short).to_owned(), kind))
         .collect()
 }
 
-/// The columns of `phrases` in their long or short form, `gap` columns apart.
-fn length_of(phrases: &[(&Phrase, PhraseKind)], is_long: bool, gap: usize) -> usize {
-    let all = phrases
+fn text_of(phrase: &Phrase, is_short: bool) -> &str {
+    if is_short {
+        &phrase.short
+    } else {
+        &phrase.long
+    }
+}
+
+/// The columns of `phrases`, the first `in_short` of them in short, `gap` columns apart.
+fn length_of(phrases: &[(&Phrase, PhraseKind)], in_short: usize, gap: usize) -> usize {
+    let texts = phrases
         .iter()
-        .map(|(phrase, _)| columns(if is_long { &phrase.long } else { &phrase.short }) + gap);
-    all.sum::<usize>().saturating_sub(gap)
+        .enumerate()
+        .map(|(index, (phrase, _))| columns(text_of(phrase, index < in_short)) + gap);
+    texts.sum::<usize>().saturating_sub(gap)
 }
 
 /// Draws the keys of the mode, as many as fit.

@@ -125,7 +125,7 @@ impl<'a> ValuesPane<'a> {
 
     /// Writes `label` and, where there is room for it within `width` columns, its unit.
     fn label(&self, label: &str, unit: &'static str, width: u16, area: Rect, buf: &mut Buffer) {
-        let [place, _] = split_columns(area, width.saturating_sub(1));
+        let [place, _] = split_columns(area, width);
         let theme = &self.view.theme;
         // In few columns the letters tell more than the dots of what is cut.
         let most = usize::from(place.width);

@@ -209,7 +209,13 @@ impl Editor<'_, '_> {
             .max(FIELD.min(end));
         if let Some(field) = pane.field.filter(|_| is_selected) {
             let width = label_room.min(2 * FIELD);
-            pane.label(&label, value.unit, end - width, area, buf);
+            pane.label(
+                &label,
+                value.unit,
+                (end - width).saturating_sub(1),
+                area,
+                buf,
+            );
             let place = Rect {
                 x: area.x + end - width,
                 width,
@@ -224,7 +230,7 @@ impl Editor<'_, '_> {
         } else {
             length
         };
-        pane.label(&label, value.unit, end.saturating_sub(width), area, buf);
+        pane.label(&label, value.unit, end.saturating_sub(width + 1), area, buf);
         let role = match (is_selected, value.is_settable) {
             (true, _) => Role::Selected,
             (false, true) => Role::Editable,

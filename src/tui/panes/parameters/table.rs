@@ -178,7 +178,7 @@ impl ValueTable<'_, '_> {
         unit: &'static str,
         width: u16,
     ) -> &'static str {
-        let room = usize::from(width).saturating_sub(1);
+        let room = usize::from(width);
         let unit = match columns(self.pane.unit(unit)) {
             0 => 0,
             unit => unit + 1,
