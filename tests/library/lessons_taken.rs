@@ -191,11 +191,11 @@ fn an_open_question_hides_what_answers_it_and_names_its_keys() {
     let (mut stage, _folder, name) = with(&text);
     stage.lesson(&name, 1).arrive();
     let hidden = "The verdict and the exact motion come back when you have predicted.";
-    let keys = "1 2 3 or ↑ ↓ choose  n without one";
-    assert_eq!(rows_below(&stage), [keys, hidden]);
+    let unchosen = "1 2 3 or ↑ ↓ choose  n without one";
+    assert_eq!(rows_below(&stage), [unchosen, hidden]);
     stage.press("2").wait(0.0);
-    let keys = "1 2 3 or ↑ ↓ choose  Enter this is my prediction  n without one";
-    assert_eq!(rows_below(&stage), [keys, hidden]);
+    let chosen = "1 2 3 or ↑ ↓ choose  Enter this is my prediction  n without one";
+    assert_eq!(rows_below(&stage), [chosen, hidden]);
     // Neither the exact motion nor its numbers, nor advice; the run can be played.
     stage.shows_no("reliable");
     let picture = stage.picture();
@@ -279,7 +279,7 @@ fn the_run_stays_in_view_whatever_is_turned_to() {
     }
     stage.size = Rect::new(0, 0, 120, 40);
     gyrolab::tui::screen::fit(&mut stage.lab, stage.size);
-    let has = |stage: &Stage| panes(stage).iter().map(|it| it.0).collect::<Vec<_>>();
+    let has = |shown: &Stage| panes(shown).iter().map(|it| it.0).collect::<Vec<_>>();
     let both = [Pane::Lesson, Pane::Traces, Pane::Above, Pane::ThreeD];
     assert_eq!(has(&stage), both);
     stage.press("e");

@@ -433,10 +433,20 @@ mod tests {
 
     #[test]
     fn a_number_and_its_unit_stay_together() {
-        let lines = wrapped_with_units("a push of 100 N for 20 s.", 13);
-        assert_eq!(lines, ["a push of", "100 N for", "20 s."]);
-        let lines = wrapped_with_units("Take L = 36 J s, at 0.1 s.", 14);
-        assert_eq!(lines, ["Take L =", "36 J s, at", "0.1 s."]);
+        for (text, room, wanted) in [
+            (
+                "a push of 100 N for 20 s.",
+                13,
+                ["a push of", "100 N for", "20 s."],
+            ),
+            (
+                "Take L = 36 J s, at 0.1 s.",
+                14,
+                ["Take L =", "36 J s, at", "0.1 s."],
+            ),
+        ] {
+            assert_eq!(wrapped_with_units(text, room), wanted);
+        }
     }
 
     #[test]
