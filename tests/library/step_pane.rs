@@ -215,16 +215,11 @@ fn the_chosen_point_is_written_out_and_massless_ones_share_a_row() {
     stage.commands("pause = true\nstep = 3").press("v");
     stage.commands("phase = 'torque'");
     stage.shows("hub, top, foot, lower axle: no mass");
-    let at = |row: usize, stage: &Stage| {
-        let shown = stage.lab.step_pane().shown().unwrap();
-        let (phase, ..) = shown.phase(stage.lab.view().look.phase).unwrap();
-        gyrolab::lab::step_pane::table_of(phase)
-            .unwrap()
-            .row(row)
-            .to_vec()
-    };
     stage.press("↓↓");
-    let [x, y, _] = at(1, &stage)[..] else {
+    let shown = stage.lab.step_pane().shown().unwrap();
+    let (phase, ..) = shown.phase(stage.lab.view().look.phase).unwrap();
+    let table = gyrolab::lab::step_pane::table_of(phase).unwrap();
+    let [x, y, _] = table.row(1).to_owned()[..] else {
         panic!("three columns")
     };
     let short = |number| gyrolab::engine::text::number::significant(number, 4);
