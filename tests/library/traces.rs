@@ -336,7 +336,7 @@ fn a_magnified_strip_says_where_the_exact_motion_is() {
 fn the_cursor_is_a_line_through_every_strip_with_its_values() {
     let mut stage = at("wobble-push", &[], 900, MEDIUM);
     stage.commands("cursor = 863");
-    let cursor = stage.lab.player().cursor().unwrap().clone();
+    let cursor = *stage.lab.player().cursor().unwrap();
     let buf = colored(&mut stage);
     let color = COLORS.style(Role::Cursor).fg;
     let area = place(&stage, Pane::Traces);
