@@ -118,10 +118,7 @@ impl Canvas {
     }
 
     pub fn render(&self, theme: &Theme, buf: &mut Buffer) {
-        let width = usize::from(self.area.width.max(1));
-        let is_filled = self.filled_columns(width);
-        for (index, position) in self.area.positions().enumerate() {
-            let cell = &self.cells[index];
+        for (cell, position) in self.cells.iter().zip(self.area.positions()) {
             let top = LAYERS
                 .into_iter()
                 .rev()
@@ -131,28 +128,13 @@ impl Canvas {
             };
             let shown = top.shown_with().iter();
             let mut bits = shown.fold(0, |bits, layer| bits | cell[*layer as usize]);
-            if top >= Layer::Earlier && !is_filled[index % width] {
+            if top >= Layer::Earlier {
+                // The band has no gap below its edge, and the edge is still seen.
                 bits |= cell[Layer::Fill as usize] & self.checkered();
             }
             let sign = self.marker.sign(top.sign_layer(), bits);
             target.set_char(sign).set_style(theme.style(top.role()));
         }
-    }
-
-    /// Which columns of cells have a cell of fill alone, or are next to such a column. Elsewhere an envelope is too low for
-    /// that, and its cells are checkered.
-    fn filled_columns(&self, width: usize) -> Vec<bool> {
-        let mut has_fill = vec![false; width];
-        for (index, cell) in self.cells.iter().enumerate() {
-            let is_fill_alone = cell[Layer::Fill as usize] != 0
-                && cell[Layer::Earlier as usize..]
-                    .iter()
-                    .all(|bits| *bits == 0);
-            has_fill[index % width] |= is_fill_alone;
-        }
-        (0..width)
-            .map(|x| has_fill[x.saturating_sub(1)..(x + 2).min(width)].contains(&true))
-            .collect()
     }
 
     /// The bits of every second dot of a cell.
