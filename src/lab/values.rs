@@ -108,14 +108,25 @@ impl Values {
         nudged.map_err(|reason| format!("{} {reason}", value.label))
     }
 
-    /// Returns the value of `key` with its label and unit; the key alone where it is not listed.
+    /// Returns the value of `key` with its label and unit; a vector by the values that follow from it, as |L| and the tilt of
+    /// L; the key alone where nothing of it is listed.
     pub(super) fn in_words(&self, key: &str) -> String {
-        let mut values = self.list.values.iter();
-        let words = match values.find(|value| value.key.as_deref() == Some(key)) {
-            Some(value) => format!("{} {} {}", value.label, value.text, value.unit),
-            None => key.to_owned(),
+        let is_part = |own: &str| {
+            own.strip_prefix(key)
+                .is_some_and(|rest| rest.starts_with('.'))
         };
-        words.trim_end().to_owned()
+        let values = self.list.values.iter();
+        let of_key = values.filter(|value| {
+            let own = value.key.as_deref().unwrap_or_default();
+            own == key || value.file_key().is_none() && is_part(own)
+        });
+        let words: Vec<_> = of_key
+            .map(|value| format!("{} {} {}", value.label, value.text, value.unit))
+            .collect();
+        match &words[..] {
+            [] => key.to_owned(),
+            _ => words.join(", ").trim_end().to_owned(),
+        }
     }
 
     /// Returns whether a nudge of `key` at `now` and the nudge before it are one act.

@@ -64,7 +64,7 @@ fn an_unreliable_run_says_how_far_the_wheel_turns_and_how_far_it_is_off() {
         turns.long,
         "wheel turns 4.97 times per step (under-sampled)"
     );
-    assert_eq!(turns.short, "wheel turns 4.97 times per step");
+    assert_eq!(turns.short, "4.97 wheel turns per step");
     assert!(
         distance.long.ends_with(" m from the exact motion"),
         "{distance:?}"
@@ -127,7 +127,7 @@ fn what_mends_a_run_that_broke_down_is_told_as_soon_as_it_is_found() {
     stage
         .shows("no longer finite at step 3: a shorter time step or another scheme may mend it (e)");
     await_advice(&stage);
-    stage.wait(0.1).shows("a rerun with srkn11b, dt 0.01 s");
+    stage.wait(0.1).shows("a: rerun with srkn11b, dt 0.01 s");
 }
 
 /// A run that stands still is not read again by itself: the search has to begin as soon as it may.
@@ -142,7 +142,7 @@ fn advice_is_looked_for_where_the_lab_opens_paused() {
     stage.lab.take_advice();
     assert!(stage.lab.adviser().is_seeking());
     await_advice(&stage);
-    stage.wait(0.1).shows("a dt 0.002 s");
+    stage.wait(0.1).shows("a: dt 0.002 s");
 }
 
 #[test]
@@ -153,7 +153,7 @@ fn a_time_step_that_is_in_force_mends_from_the_start() {
     await_advice(&stage);
     stage
         .wait(0.1)
-        .shows("a rerun with dt 0.002 s from the start");
+        .shows("a: rerun with dt 0.002 s from the start");
 }
 
 #[test]

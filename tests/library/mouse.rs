@@ -253,15 +253,15 @@ fn a_mouse_outside_or_one_that_is_the_terminals_does_nothing() {
 fn health_predictions_and_all_but_two_panes_are_hidden_in_the_settings() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.wait(3.0).commands("pause = true");
-    stage.shows("times per step").shows("1.588");
-    stage.press("c\n\u{1b}").shows_no("times per step");
-    stage.press("c\n\u{1b}").shows("times per step");
+    stage.shows("turns per step").shows("1.588");
+    stage.press("c\n\u{1b}").shows_no("turns per step");
+    stage.press("c\n\u{1b}").shows("turns per step");
     stage.press("c↓→\u{1b}").shows_no("1.588");
     stage.press("c↓←\u{1b}").shows("1.588");
     stage.press("c↓↓\n\u{1b}").wait(6.0);
     stage.shows("from above").shows("z (m)");
     stage.shows("Method 2 ");
-    for words in "values,L lessons,times per step,lmost a circle,report,step 6".split(',') {
+    for words in "values,L lessons,turns per step,lmost a circle,report,step 6".split(',') {
         stage.shows_no(words);
     }
     let title = format!("Method 2{:>71}", "t     60.0 s");

@@ -347,8 +347,8 @@ fn what_would_mend_a_run_is_found_on_the_side() {
             break;
         }
     }
-    stage.shows(" m off").shows("a dt 0.002 s");
-    stage.commands("open = 'wobble-push'").shows_no("a dt ");
+    stage.shows(" m off").shows("a: dt 0.002 s");
+    stage.commands("open = 'wobble-push'").shows_no("a: dt ");
 }
 
 #[test]

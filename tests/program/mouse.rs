@@ -67,7 +67,7 @@ fn what_is_pressed_is_done() {
 fn hostile_places_do_nothing() {
     let mut lab = Terminal::open("--paused --at 10");
     lab.wait_for("L lessons");
-    lab.wait_for("a dt 0.002 s");
+    lab.wait_for("a: dt 0.002 s");
     let before = lines(&lab);
     for place in [
         "0;0",

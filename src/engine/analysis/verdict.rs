@@ -126,8 +126,8 @@ fn cause(health: &Health) -> Option<Phrase> {
             Some(Phrase::new(text.clone(), text))
         }
         WheelPicture::TooSlow | WheelPicture::Backwards => {
-            let short = format!("{body} turns {turns} times per step");
-            Some(Phrase::new(format!("{short} (under-sampled)"), short))
+            let long = format!("{body} turns {turns} times per step (under-sampled)");
+            Some(Phrase::new(long, format!("{turns} {body} turns per step")))
         }
         WheelPicture::Right | WheelPicture::Strobed => {
             let nutation = health.nutation?;

@@ -131,8 +131,8 @@ pub fn verdict(lab: &Lab, area: Rect, buf: &mut Buffer) {
         VerdictWord::Badge(word) => (format!(" {word} "), Role::Badge),
     };
     let cure = lab.adviser().offer(lab.player()).map(|offer| {
-        let long = format!("a rerun with {offer}");
-        Phrase::new(long, format!("a {offer}"))
+        let long = format!("a: rerun with {offer}");
+        Phrase::new(long, format!("a: {offer}"))
     });
     let gap = if area.width >= WIDE_FROM { 3 } else { 2 };
     let begin = columns(&word) + 1;
