@@ -319,7 +319,7 @@ fn the_line_about_the_numbers_is_right_as_soon_as_an_edit_is_made() {
         (finer, "2.49"),
         ("undo = 1\ngo_to = '40 s'", "4.97"),
     ] {
-        let turns = format!("{turns} wheel turns per step");
+        let turns = format!("wheel turns {turns} times per step");
         if is_doubted(&stage) {
             wait_for_advice(&mut stage);
         }

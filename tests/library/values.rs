@@ -60,7 +60,7 @@ fn run_and_exact_motion_are_beside_each_other_without_t() {
         "y ",
         "z ",
         "tilt",
-        "prec °/s",
+        "prec. °/s",
         "nutat s",
         "E error",
         "start",

@@ -287,7 +287,7 @@ mod tests {
         assert_eq!(other.edits[0].motion.gravity, 1.0);
         assert!((Clock::end_s(&other) - 30.0).abs() < 1e-9);
         assert_eq!(edited_motion(&run), Some("the edits of dt and scheme"));
-        assert_eq!(edited_motion(&other), None);
+        assert_eq!(edited_motion(&other), Some("the edits of the scheme"));
     }
 
     #[test]
