@@ -399,7 +399,7 @@ impl<'a> AbovePicture<'a> {
     fn label_axes(&self, labels: &mut Labels<'_>) {
         let style = self.seen.view.theme.style(Role::Label);
         let crossing = cell_of(self.crossing());
-        let right = i32::from(self.picture.width) - 1;
+        let right = i32::from(self.picture.width) - 3;
         labels.place(
             (right, crossing.1),
             &[LabelOffset::Right(0, -1), LabelOffset::Right(0, 1)],

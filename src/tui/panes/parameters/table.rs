@@ -185,7 +185,8 @@ impl ValueTable<'_, '_> {
         };
         let has_own_unit = ["s", "rad/s"].contains(&readout.unit);
         let is_long = width > 9 && columns(row.label) > columns(row.short_label) + 4;
-        if columns(row.label) + unit <= room || (is_long && columns(row.label) <= room) {
+        let unit_room = if is_long && !has_own_unit { 0 } else { unit };
+        if columns(row.label) + unit_room <= room {
             row.label
         } else if has_own_unit {
             let most = room.saturating_sub(unit);

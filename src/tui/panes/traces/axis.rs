@@ -119,8 +119,6 @@ pub struct ValueTick {
     /// The row of the strip.
     pub row: usize,
     pub label: String,
-    /// Whether it is between the ends: a dash then marks its row.
-    pub is_between: bool,
 }
 
 /// Returns the values beside a strip of `rows`: its greatest and its least value, and round values between where there is
@@ -130,7 +128,6 @@ pub fn values(scale: &StripScale, rows: usize) -> Vec<ValueTick> {
     let end = |row: usize, value: f64| ValueTick {
         row,
         label: value_text(value, digits),
-        is_between: false,
     };
     let mut placed = vec![end(0, scale.high)];
     if rows > 1 {
@@ -148,7 +145,6 @@ pub fn values(scale: &StripScale, rows: usize) -> Vec<ValueTick> {
     let between = ticks.into_iter().map(|value| ValueTick {
         row: (scale.from_top(value) * (rows - 1) as f64).round() as usize,
         label: value_text(value, scale::decimals(apart)),
-        is_between: true,
     });
     placed
         .extend(between.filter(|tick| (ROWS_FROM_ENDS..rows - ROWS_FROM_ENDS).contains(&tick.row)));
@@ -199,9 +195,6 @@ impl Gutter {
         for tick in values(scale, sheet.height.into()) {
             let before = self.width.saturating_sub(1 + columns(&tick.label) as u16);
             write(area, (before, tick.row as u16), &tick.label, style, buf);
-            if tick.is_between {
-                write(area, (self.width - 1, tick.row as u16), "╴", style, buf);
-            }
         }
     }
 }

@@ -20,6 +20,8 @@ const HELD_TEXT: &str = "every 1 s";
 const EXACT_WORD: &str = "exact";
 /// What the last strip's rule says of curves beside the run.
 const EXACT_LEGEND: &str = "╌╌ exact";
+/// The legend where the run covers it everywhere.
+const COVERED_EXACT_LEGEND: &str = "exact under run";
 const PREVIOUS_LEGEND: &str = "··· previous run";
 const PINNED_LEGEND: &str = "-- pinned run";
 /// What the rule says of a strip with measured values.
@@ -187,8 +189,13 @@ impl Traces<'_> {
         let theme = &self.0.view.theme;
         let is_named = self.name_exact(plot, buf);
         let has_exact = self.0.overlay().is_some() && !is_named;
+        let exact = if self.covers_exact(plot) {
+            COVERED_EXACT_LEGEND
+        } else {
+            EXACT_LEGEND
+        };
         let words = [
-            (has_exact, EXACT_LEGEND, Role::Exact),
+            (has_exact, exact, Role::Exact),
             (self.0.ghost.is_some(), PREVIOUS_LEGEND, Role::Previous),
             (self.0.pinned.is_some(), PINNED_LEGEND, Role::Previous),
         ];
@@ -207,6 +214,16 @@ impl Traces<'_> {
             );
             right = x;
         }
+    }
+
+    /// Returns whether the run has been so near the exact motion that its dots cover it.
+    fn covers_exact(&self, plot: &Plot) -> bool {
+        let readouts = self.0.reading.map(|reading| &reading.readouts);
+        let most_m = readouts.and_then(|readouts| readouts.health.most_distance_m);
+        let dots = f64::from(plot.sheet.height) * self.0.view.marker.dots().1 as f64;
+        most_m.is_some_and(|most_m| {
+            (plot.scale.from_top(0.0) - plot.scale.from_top(most_m)).abs() * dots < 1.0
+        })
     }
 
     /// Writes the name of the exact motion beside the end of its line, if those cells are free.
