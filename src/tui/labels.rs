@@ -24,6 +24,13 @@ pub const AROUND_POINT: &[LabelOffset] = &[
     LabelOffset::Left(2, -1), LabelOffset::Left(2, 1), LabelOffset::Right(3, 0), LabelOffset::Left(3, 0),
 ];
 
+/// Above or below the end of an axis; at the pane's edge only where nothing else is free.
+#[rustfmt::skip]
+pub const AT_AXIS_END: &[LabelOffset] = &[
+    LabelOffset::Right(0, -1), LabelOffset::Right(0, 1), LabelOffset::Right(1, -1), LabelOffset::Right(1, 1),
+    LabelOffset::Right(2, -1), LabelOffset::Right(2, 1),
+];
+
 /// Columns beside a mark and rows below it.
 #[derive(Clone, Copy, Debug)]
 pub enum LabelOffset {

@@ -18,7 +18,7 @@ use crate::lab::view::{HideablePart, Pane};
 use crate::plot::camera::Zoom;
 use crate::tui::dots::{self, Dashes};
 use crate::tui::keymap;
-use crate::tui::labels::{AROUND_MARK, AROUND_POINT, LabelOffset, Labels};
+use crate::tui::labels::{AROUND_MARK, AROUND_POINT, AT_AXIS_END, LabelOffset, Labels};
 use crate::tui::layered_dots::{DotInk, FineDot, Layer, LayeredDots, Spot};
 use crate::tui::plane::Plane;
 use crate::tui::points::{Ends, Points};
@@ -400,12 +400,7 @@ impl<'a> AbovePicture<'a> {
         let style = self.seen.view.theme.style(Role::Label);
         let crossing = cell_of(self.crossing());
         let right = i32::from(self.picture.width) - 3;
-        labels.place(
-            (right, crossing.1),
-            &[LabelOffset::Right(0, -1), LabelOffset::Right(0, 1)],
-            "x",
-            style,
-        );
+        labels.place((right, crossing.1), AT_AXIS_END, "x", style);
         labels.place((crossing.0, 0), AROUND_POINT, "y", style);
         let (step, [of_x, of_y]) = self.ticks();
         for x in of_x {
