@@ -1,5 +1,6 @@
 //! What the run is compared with: the exact motion, the run before an edit (its ghost), a pinned run, and measured data.
 
+mod column;
 mod data;
 mod own_code;
 
@@ -10,11 +11,12 @@ use super::player::{Player, RunChange, furthest_s};
 use super::runs::Reference;
 use super::view::{Pane, View};
 use crate::engine::analysis::cost;
-use crate::engine::data::{ColumnOptions, MeasuredData, doubts, find_shipped};
+use crate::engine::data::{ColumnOptions, MeasuredData, RunQuantity, doubts, find_shipped};
 use crate::engine::scenario::{Problems, Scenario};
 use crate::lab::playback::ghost::{Ghost, PendingGhost};
 use crate::lab::playback::live::LiveRun;
 use crate::studies::own_code::rows;
+pub use column::RecordedColumn;
 pub use data::DataComparison;
 pub use own_code::OwnCode;
 use std::sync::Arc;
@@ -41,6 +43,17 @@ pub struct Comparison {
     ghost: Option<Ghost>,
     pinned: Option<Pinned>,
     data: Option<DataComparison>,
+    /// The column of the CSV that a strip of the traces shows.
+    column: Option<RecordedColumn>,
+}
+
+/// The computing time for following the run of `player` in one round of the loop.
+fn computing_share(player: &Player) -> Duration {
+    if player.is_moving() {
+        MEASURED_BUDGET
+    } else {
+        CATCHING_UP
+    }
 }
 
 impl Comparison {
@@ -69,15 +82,40 @@ impl Comparison {
             .ghost
             .as_ref()
             .is_some_and(|ghost| Arc::ptr_eq(&ghost.scenario, run.scenario()));
+        let branches_at = match change {
+            RunChange::Described => return,
+            RunChange::GoesOn => Some(player.step_number()),
+            RunChange::ContinuesAt(step) => Some(step),
+            _ => None,
+        };
         if let Some(data) = &mut self.data {
-            match change {
-                RunChange::Described => {}
-                RunChange::GoesOn => data.branch(scenario, player.step_number()),
-                RunChange::ContinuesAt(step) => data.branch(scenario, step),
-                _ if is_ghost => data.begin_after_ghost(scenario),
-                _ => data.begin(scenario),
+            match branches_at {
+                Some(step) => data.branch(scenario, step),
+                None if is_ghost => data.begin_after_ghost(scenario),
+                None => data.begin(scenario),
             }
         }
+        if let Some(column) = &mut self.column {
+            match branches_at {
+                Some(step) => column.branch(scenario, step),
+                None if is_ghost => column.begin_after_ghost(scenario),
+                None => column.begin(scenario),
+            }
+        }
+    }
+
+    /// Records `quantity` of the run of `player` from its start on, or nothing.
+    pub(super) fn record_column(
+        &mut self,
+        quantity: Option<&'static RunQuantity>,
+        player: &Player,
+    ) {
+        let recorded = self.column.as_ref().map(|column| column.quantity.name);
+        if quantity.map(|quantity| quantity.name) == recorded {
+            return;
+        }
+        let scenario = player.run().scenario();
+        self.column = quantity.map(|wanted| RecordedColumn::new(wanted, scenario));
     }
 
     /// Keeps `run` as the ghost if it was played far enough, unless `keeps_ghost`. A pinned run does not become the ghost,
@@ -206,21 +244,27 @@ impl Comparison {
     /// Compares the data with the run as it goes on, for at most its share of the computing time, and takes the pictures
     /// of a pinned run once they are made again. Returns whether there was something to do.
     pub(super) fn advance(&mut self, player: &Player, clock: &mut dyn FnMut() -> Duration) -> bool {
-        self.follow(player, clock) | self.take_pinned()
+        self.follow(player, clock) | self.follow_column(player, clock) | self.take_pinned()
+    }
+
+    fn follow_column(&mut self, player: &Player, clock: &mut dyn FnMut() -> Duration) -> bool {
+        let step = player.step_number();
+        let column = self.column.as_mut();
+        let Some(column) = column.filter(|column| column.is_behind(step)) else {
+            return false;
+        };
+        let deadline = clock() + computing_share(player);
+        column.follow(step, || clock() >= deadline);
+        true
     }
 
     fn follow(&mut self, player: &Player, clock: &mut dyn FnMut() -> Duration) -> bool {
         let (step, is_moving) = (player.step_number(), player.is_moving());
-        let share = if is_moving {
-            MEASURED_BUDGET
-        } else {
-            CATCHING_UP
-        };
         let data = self.data.as_mut();
         let Some(data) = data.filter(|data| data.is_behind(step)) else {
             return false;
         };
-        let deadline = clock() + share;
+        let deadline = clock() + computing_share(player);
         data.follow(step, || clock() >= deadline);
         // While the run moves, numbers are read a few times a second.
         if !is_moving {
@@ -277,6 +321,9 @@ impl Comparison {
         if let Some(data) = &mut self.data {
             data.follow(player.step_number(), || false);
         }
+        if let Some(column) = &mut self.column {
+            column.follow(player.step_number(), || false);
+        }
     }
 
     /// Compares the data with the run as far as it has come.
@@ -297,6 +344,10 @@ impl Comparison {
 
     pub fn data(&self) -> Option<&DataComparison> {
         self.data.as_ref()
+    }
+
+    pub fn column(&self) -> Option<&RecordedColumn> {
+        self.column.as_ref()
     }
 
     pub(super) fn measured(&self) -> Option<Arc<MeasuredData>> {

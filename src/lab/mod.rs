@@ -165,6 +165,8 @@ impl Lab {
         self.player.read(self.now, &self.view);
         self.comparison.compare(&self.player);
         self.view.measured = self.comparison.data().is_some();
+        let column = self.view.look.detail_of.column();
+        self.comparison.record_column(column, &self.player);
         self.step_pane.read(&mut self.player, &self.view);
         self.adviser.look(&self.player);
         self.choose_window();

@@ -282,7 +282,7 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Lab], &[Char('e')], Action::Parameters, "edit", "to the values of the scenario: Up, Down choose, Left, Right nudge").found_by("parameters dt time step scheme mass gravity friction change").to(CHANGE_GROUP).worth(FooterPriority::Useful),
     does(&[Lab], &[Char('a')], |lab, _| advice_taken(lab), "fix", "take the advice: rerun from the start with the time step or scheme that fixes the run"),
     does(&[Lab], &[Char('r')], restarted, "restart", "back to step 0; what was done stays").to(PLAY),
-    does(&[Lab], &[Char('j')], |lab, count| one(lab.view().other_fourth_strip(repeated(count))), "", "traces: a fourth strip: tilt, distance from the exact motion, or none").found_by("column strip tilt distance off"),
+    does(&[Lab], &[Char('j')], |lab, count| one(lab.view().other_fourth_strip(repeated(count))), "", "traces: a fourth strip: tilt, distance from the exact motion, none, or a column of the CSV").found_by("column strip tilt distance off energy L"),
     does(&[Lab], &[Char('w')], other_window, "window", "traces: a few swings, or the whole run; 20w shows twenty swings"),
     row(&[Lab], &[Char('o')], Action::Browse, "open", "open a preset or a file").to(OPEN_GROUP).worth(FooterPriority::Useful),
     row(&[Lab], &[Char('L')], Action::Lesson(LessonKey::List), "lessons", "the list of lessons").worth(FooterPriority::Kept),

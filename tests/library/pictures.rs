@@ -71,6 +71,7 @@ fn seen_alone<'a>(run: &'a LiveRun, view: &'a View) -> PlotInputs<'a> {
         ghost: None,
         pinned: None,
         measured: None,
+        column: None,
         reading: None,
         explained: None,
         cursor: None,

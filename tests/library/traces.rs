@@ -1,7 +1,9 @@
 //! The strips of the traces and the overview: what a person sees of a run.
 
 use crate::support::stage::{LARGE, SMALL, Stage};
+use gyrolab::engine::data::QUANTITIES;
 use gyrolab::engine::recording::RecordedCurve;
+use gyrolab::engine::scenario::screen::DETAILS;
 use gyrolab::lab::playback::strip::Strip;
 use gyrolab::lab::view::Pane;
 use gyrolab::lab::view::theme::{Background, Marker, Palette, Theme};
@@ -484,7 +486,7 @@ fn a_fourth_strip_shows_the_tilt_or_the_distance_from_exact() {
         .press("j")
         .shows("tilt (°) ─")
         .shows_no("y (m) ─");
-    small.press("jjj").shows_no("tilt (°) ─").shows("y (m) ─");
+    small.press("jj").shows_no("tilt (°) ─").shows("y (m) ─");
 }
 
 #[test]
@@ -516,4 +518,39 @@ fn columns_have_the_extremes_of_their_steps() {
             .unwrap();
         assert!(column.min <= inside.min + 1e-12 && inside.max <= column.max + 1e-12);
     }
+}
+
+#[test]
+fn any_column_of_the_csv_takes_the_place_of_a_strip() {
+    let mut stage = at("method-2", &[], 400, LARGE);
+    stage.commands("detail_of = 'energy_J'").wait(1.0);
+    stage.arrive().shows("energy (J) ").shows_no("tilt (°)");
+    let recorded = |shown: &Stage| {
+        let column = shown.lab.comparison().column().unwrap();
+        column.recording().whole().unwrap().samples()
+    };
+    assert_eq!(recorded(&stage), 401);
+    // It follows the run back, and another run from its start.
+    stage.commands("go_to = 'start'\nstep = 3");
+    stage.arrive().wait(0.5);
+    stage.press("/dt\n0.05\n").arrive().wait(1.0);
+    assert!(stage.lab.comparison().column().unwrap().before().is_some());
+    stage.commands("detail_of = 'none'").shows_no("energy (J)");
+    assert!(stage.lab.comparison().column().is_none());
+}
+
+#[test]
+fn every_column_can_be_chosen_as_a_strip() {
+    let of_run = QUANTITIES.iter().map(|quantity| quantity.name);
+    let of_strips: Vec<_> = RecordedCurve::ALL.map(RecordedCurve::column).into();
+    let others = of_run.filter(|name| !of_strips.contains(name));
+    assert_eq!(others.collect::<Vec<_>>(), DETAILS[7..]);
+    // j goes through them all and comes back.
+    let mut stage = at("method-2", &[], 10, LARGE);
+    let first = stage.lab.view().look.detail_of;
+    for _ in 0..4 + DETAILS[7..].len() {
+        stage.press("j");
+    }
+    assert_eq!(stage.lab.view().look.detail_of, first);
+    stage.press("3j").press("jj").shows("Ly (J s) ");
 }

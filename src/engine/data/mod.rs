@@ -27,7 +27,7 @@ pub use doubts::doubts;
 pub use hint::map_option;
 pub use of_run::{RunReader, at_times, is_within_reach};
 pub use places::{MeasuredPlace, places};
-pub use quantity::RunQuantity;
+pub use quantity::{QUANTITIES, RunQuantity};
 pub use reading::{SHIPPED, find_shipped, open, open_with, read, read_with, text};
 pub use sigma::{ColumnOptions, ColumnSigma};
 pub use spellings::{name_columns, time_like};

@@ -99,7 +99,7 @@ pub const KEYS: &[SchemaRow] = &[
     may("view.next", Line, "one line: what to try after the run (default, for a preset: its own)"),
     may("view.window_s", Number(Positive), "length of time that the overview spans, s (default: the whole run)"),
     may("view.detail_s", ValueKind::By(is_window), "length of time that the traces show, s, or auto: a few swings of the axle, or the whole run if it has few").or(DefaultValue::Word("auto")),
-    may("view.detail_of", OneOf(&DETAILS), "the strip of the traces below those of x, y and z; distance: from the exact motion; auto: that or the tilt, on a large screen").or(DefaultValue::Word("auto")),
+    may("view.detail_of", OneOf(&DETAILS), "the strip of the traces below those of x, y and z: a column of the CSV, or tilt; distance: from the exact motion; auto: that or the tilt, on a large screen").or(DefaultValue::Word("auto")),
     may("view.exact", Flag, "whether the exact motion is drawn beside the run").or(DefaultValue::Flag(false)),
     may("view.show", Panes(&[]), "the panes that share the screen, where it has room for them; empty: as many as there is room for, without those that are shown on request only (default)"),
     may("view.hide", Panes(&HIDEABLE), "what is not shown: panes, the line about the numbers' health, theory's predicted numbers, the line look_at (default: empty)"),

@@ -77,9 +77,14 @@ impl<'de> Deserialize<'de> for Pane {
 /// the line that says what there is to see.
 pub const HIDEABLE: [&str; 3] = ["health", "predicted", "look_at"];
 
-/// What the fourth strip of the traces can show; distance: how far the run is from the exact motion; auto: that, or the
-/// tilt, if the screen is large.
-pub const DETAILS: [&str; 7] = [AUTO, "none", "x", "y", "z", "tilt", "distance"];
+/// What the fourth strip of the traces can show: distance is how far the run is from the exact motion; auto is that, or the
+/// tilt, if the screen is large; the others after it are columns of the run's CSV.
+#[rustfmt::skip]
+pub const DETAILS: [&str; 20] = [
+    AUTO, "none", "x", "y", "z", "tilt", "distance",
+    "Lx_Js", "Ly_Js", "Lz_Js", "wx_rad_per_s", "wy_rad_per_s", "wz_rad_per_s", "azimuth_deg", "energy_J",
+    "spin_rpm", "L_axle_Js", "w1_rad_per_s", "w2_rad_per_s", "w3_rad_per_s",
+];
 pub const AUTO: &str = "auto";
 
 /// The page of the step pane after those of the phases.

@@ -2,6 +2,8 @@
 
 use super::swings;
 use super::{FourthStrip, Pane, View};
+use crate::engine::data::QUANTITIES;
+use crate::engine::recording::RecordedCurve;
 use crate::engine::run::Simulation;
 use crate::engine::scenario::screen::AUTO;
 use crate::engine::text::number::short;
@@ -44,7 +46,7 @@ impl View {
                     return too_short("traces show", least_s);
                 }
                 "detail_s" => Some(self.window_in_words(look.detail_s)),
-                "detail_of" => Some(fourth_strip_in_words(look.detail_of).to_owned()),
+                "detail_of" => Some(fourth_strip_in_words(look.detail_of)),
                 "phase" => {
                     step_pane.may_show(look.phase, player)?;
                     None
@@ -220,19 +222,24 @@ impl View {
 
     /// The command that shows another fourth strip in the traces.
     pub fn other_fourth_strip(&self, times: i32) -> Command {
-        const CHOICES: [(FourthStrip, &str); 4] = [
-            (FourthStrip::Auto, AUTO),
-            (FourthStrip::Tilt, "tilt"),
-            (FourthStrip::Distance, "distance"),
-            (FourthStrip::None, "none"),
+        let fixed = [
+            FourthStrip::Auto,
+            FourthStrip::Tilt,
+            FourthStrip::Distance,
+            FourthStrip::None,
         ];
-        let now = CHOICES
+        let of_point = RecordedCurve::ALL.map(RecordedCurve::column);
+        let columns = QUANTITIES
             .iter()
-            .position(|(choice, _)| *choice == self.look.detail_of);
+            .filter(|quantity| !of_point.contains(&quantity.name))
+            .map(|quantity| FourthStrip::Column(quantity.name));
+        let choices: Vec<_> = fixed.into_iter().chain(columns).collect();
+        let mut strips = choices.iter();
+        let now = strips.position(|choice| *choice == self.look.detail_of);
         let next = now.map_or(1, |now| {
-            (now as i32 + times).rem_euclid(CHOICES.len() as i32)
+            (now as i64 + i64::from(times)).rem_euclid(choices.len() as i64)
         });
-        Command::look("detail_of", CHOICES[next as usize].1)
+        Command::look("detail_of", choices[next as usize].name())
     }
 
     pub fn moved_cursor(&self, fiftieths: i32, player: &Player) -> Command {
@@ -299,17 +306,21 @@ impl View {
     }
 }
 
-fn fourth_strip_in_words(strip: FourthStrip) -> &'static str {
-    match strip {
+fn fourth_strip_in_words(strip: FourthStrip) -> String {
+    let words = match strip {
         FourthStrip::Auto => "a large screen has a fourth strip: tilt, or distance from exact",
         FourthStrip::Tilt => "a strip shows the tilt",
         FourthStrip::Distance => {
             "a strip shows the distance from the exact motion, while t shows it"
         }
+        FourthStrip::Column(name) => {
+            return format!("a strip shows {name}; j shows the next column");
+        }
         FourthStrip::None | FourthStrip::X | FourthStrip::Y | FourthStrip::Z => {
             "the strips show x, y and z"
         }
-    }
+    };
+    words.to_owned()
 }
 
 /// Refuses a length of time that is less than two time steps.

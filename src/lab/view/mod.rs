@@ -13,11 +13,13 @@ pub mod theme;
 pub mod window;
 
 use super::sheet::{AskedAnswer, Sheet};
+use crate::engine::data::RunQuantity;
+use crate::engine::scenario::screen::AUTO;
 use crate::engine::scenario::{Scenario, keys};
 use crate::plot::camera::{Camera, Zoom};
 pub use pane::{HideablePart, Pane};
-use serde::de::DeserializeOwned;
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::de::{DeserializeOwned, Error};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::sync::Arc;
 use step::StepPageChoice;
 use theme::{Marker, Theme};
@@ -66,8 +68,7 @@ pub struct ViewSettings {
 }
 
 /// The strip of the traces below those of x, y and z.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FourthStrip {
     /// The distance from the exact motion if that is shown, or else the tilt; on a large screen only.
     #[default]
@@ -79,6 +80,58 @@ pub enum FourthStrip {
     Tilt,
     /// From the exact motion.
     Distance,
+    /// The column of the run's CSV with this name.
+    Column(&'static str),
+}
+
+impl FourthStrip {
+    /// Those that are no column of the CSV, and x, y, z and the tilt, with the names that files give them.
+    const NAMED: [(Self, &str); 7] = [
+        (Self::Auto, AUTO),
+        (Self::None, "none"),
+        (Self::X, "x"),
+        (Self::Y, "y"),
+        (Self::Z, "z"),
+        (Self::Tilt, "tilt"),
+        (Self::Distance, "distance"),
+    ];
+
+    /// Returns the name that files give it.
+    pub fn name(self) -> &'static str {
+        let mut named = Self::NAMED.iter();
+        match self {
+            Self::Column(name) => name,
+            _ => named
+                .find(|(own, _)| *own == self)
+                .map_or(AUTO, |(_, name)| name),
+        }
+    }
+
+    /// Returns the quantity of its column; `None` for what is recorded in any case.
+    pub fn column(self) -> Option<&'static RunQuantity> {
+        match self {
+            Self::Column(name) => RunQuantity::find(name),
+            _ => None,
+        }
+    }
+}
+
+impl Serialize for FourthStrip {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
+}
+
+impl<'de> Deserialize<'de> for FourthStrip {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let name = String::deserialize(deserializer)?;
+        let named = Self::NAMED.iter().find(|(_, own)| *own == name);
+        match (named, RunQuantity::find(&name)) {
+            (Some((strip, _)), _) => Ok(*strip),
+            (None, Some(quantity)) => Ok(Self::Column(quantity.name)),
+            (None, None) => Err(D::Error::custom(format!("there is no column {name}"))),
+        }
+    }
 }
 
 /// What a value says, or `None` for a word such as "auto" or "all".

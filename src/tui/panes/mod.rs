@@ -22,7 +22,7 @@ use crate::engine::run::Sample;
 use crate::engine::text::printable::printable;
 use crate::engine::text::wrap::{columns, wrapped};
 use crate::lab::action::{Action, Direction, repeated};
-use crate::lab::comparison::DataComparison;
+use crate::lab::comparison::{DataComparison, RecordedColumn};
 use crate::lab::playback::ghost::Ghost;
 use crate::lab::playback::live::{LiveRun, Overlay};
 use crate::lab::playback::reading::Reading;
@@ -120,6 +120,8 @@ pub struct PlotInputs<'a> {
     /// The run that was pinned as the reference, unless it is the present one.
     pub pinned: Option<&'a Ghost>,
     pub measured: Option<&'a DataComparison>,
+    /// The column of the CSV that a strip shows.
+    pub column: Option<&'a RecordedColumn>,
     /// The latest reading of the run, if it is read at all. Its precession says which turn is the last. The scene in space
     /// is that of its time: a turning wheel changes most of the picture, which would load a slow line in every frame.
     pub reading: Option<&'a Reading>,
@@ -137,6 +139,7 @@ impl<'a> PlotInputs<'a> {
             ghost: comparison.ghost(),
             pinned: comparison.pinned(),
             measured: comparison.data(),
+            column: comparison.column(),
             reading: Some(&player.reading),
             explained: lab.step_pane().shown(),
             cursor: player.cursor(),

@@ -26,6 +26,8 @@ pub(super) enum StripContent {
     Measured(usize),
     /// The distance from the exact motion.
     Distance,
+    /// The column of the CSV that is recorded beside the run.
+    Column,
 }
 
 impl Traces<'_> {
@@ -64,6 +66,7 @@ impl Traces<'_> {
             }
             FourthStrip::Distance => (None, false),
             FourthStrip::Tilt => (Some(tilt), true),
+            FourthStrip::Column(_) => (Some(StripContent::Column), true),
             FourthStrip::X | FourthStrip::Y | FourthStrip::Z => (None, false),
         };
         let fewest = match self.0.view.sheet {
@@ -99,7 +102,7 @@ impl Traces<'_> {
     fn index(&self, content: StripContent) -> Option<usize> {
         match content {
             StripContent::Measured(index) => Some(index),
-            StripContent::Distance => None,
+            StripContent::Distance | StripContent::Column => None,
             StripContent::Curve(curve) => {
                 let mut quantities = self.0.measured?.quantities();
                 quantities.position(|quantity| quantity.name == curve.column())
@@ -120,6 +123,9 @@ impl Traces<'_> {
             StripContent::Curve(RecordedCurve::Tilt) => ("tilt".to_owned(), "°"),
             StripContent::Curve(curve) => (curve.name().to_owned(), curve.unit()),
             StripContent::Distance => ("off exact".to_owned(), "m"),
+            StripContent::Column => self.0.column.map_or_else(Default::default, |column| {
+                (column.quantity.words(), column.quantity.unit())
+            }),
             StripContent::Measured(index) => {
                 let quantities = self.0.measured.map(DataComparison::quantities);
                 let quantity = quantities.and_then(|mut quantities| quantities.nth(index));
@@ -160,14 +166,18 @@ impl Traces<'_> {
             .reduce(Extent::and);
         let curve = match content {
             StripContent::Curve(curve) => Some(window.range(curve)),
-            StripContent::Measured(_) | StripContent::Distance => self.recorded_extent(content),
+            StripContent::Measured(_) | StripContent::Distance | StripContent::Column => {
+                self.recorded_extent(content)
+            }
         };
         let all = [curve, points].into_iter().flatten().reduce(Extent::and);
         let extent = all.unwrap_or(Extent::single(0.0));
         let size = extent.max.abs().max(extent.min.abs());
         let least = match content {
             StripContent::Curve(_) => 0.0,
-            StripContent::Measured(_) => f64::max(SHARE_LEAST * size, f64::MIN_POSITIVE),
+            StripContent::Measured(_) | StripContent::Column => {
+                f64::max(SHARE_LEAST * size, f64::MIN_POSITIVE)
+            }
             StripContent::Distance => DISTANCE_LEAST * self.0.run.scenario().arm_m(),
         };
         let scale = StripScale::of(extent, least);
@@ -185,7 +195,7 @@ impl Traces<'_> {
         match (self.0.cursor, content) {
             (Some(cursor), StripContent::Curve(curve)) => curve.at(cursor),
             (None, StripContent::Curve(curve)) => now.value(curve),
-            (_, StripContent::Measured(_) | StripContent::Distance) => {
+            (_, StripContent::Measured(_) | StripContent::Distance | StripContent::Column) => {
                 self.value_at(content, now.time_s).unwrap_or(0.0)
             }
         }

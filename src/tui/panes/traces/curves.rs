@@ -104,6 +104,12 @@ impl Traces<'_> {
             (CurveOwner::Run, StripContent::Distance) => {
                 Some((&self.0.overlay()?.distance, RecordedCurve::X))
             }
+            (CurveOwner::Run, StripContent::Column) => {
+                Some((self.0.column?.recording(), RecordedCurve::X))
+            }
+            (CurveOwner::Previous, StripContent::Column) => {
+                Some((self.0.ghost.and(self.0.column)?.before()?, RecordedCurve::X))
+            }
             (CurveOwner::Previous, StripContent::Curve(curve)) => {
                 Some((&self.0.ghost?.recording, curve))
             }
@@ -119,7 +125,7 @@ impl Traces<'_> {
             (CurveOwner::Previous, StripContent::Distance)
             | (
                 CurveOwner::Pinned | CurveOwner::Exact,
-                StripContent::Measured(_) | StripContent::Distance,
+                StripContent::Measured(_) | StripContent::Distance | StripContent::Column,
             ) => None,
         }
     }

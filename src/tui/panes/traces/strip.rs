@@ -110,7 +110,7 @@ impl Traces<'_> {
         let now = self.0.run.now();
         let value = match plot.content {
             StripContent::Curve(curve) => Some(now.value(curve)),
-            StripContent::Measured(_) | StripContent::Distance => {
+            StripContent::Measured(_) | StripContent::Distance | StripContent::Column => {
                 self.value_at(plot.content, now.time_s)
             }
         };
@@ -268,7 +268,7 @@ impl Traces<'_> {
         cursor_line(x, plot.sheet, style, buf);
         let value = match plot.content {
             StripContent::Curve(curve) => Some(curve.at(cursor)),
-            StripContent::Measured(_) | StripContent::Distance => {
+            StripContent::Measured(_) | StripContent::Distance | StripContent::Column => {
                 self.value_at(plot.content, cursor.time_s)
             }
         };
