@@ -179,7 +179,7 @@ impl Editor<'_, '_> {
         }
     }
 
-    /// A rule with `heading`; on the first one the key that edits, or in focus the place of the selected value.
+    /// A rule with `heading`; on the first one the key that finds a value, or in focus the place of the selected value.
     fn heading(&self, heading: &str, area: Rect, buf: &mut Buffer) {
         let pane = self.pane;
         let title = match heading {
@@ -192,7 +192,7 @@ impl Editor<'_, '_> {
             .is_some_and(|value| value.group == heading);
         let hint = match (pane.has_focus(), heading == MAIN_GROUPS[0]) {
             (true, _) if is_of_selected => place_in_list(pane.list),
-            (false, true) => "e edit".to_owned(),
+            (false, true) => "/ find".to_owned(),
             _ => String::new(),
         };
         let right = Some((hint.as_str(), Role::Label)).filter(|(hint, _)| !hint.is_empty());
