@@ -100,6 +100,18 @@ pub fn claim(folder: &ClassFolder, typed: &str, now_unix_s: u64) -> Result<(Seat
     }
 }
 
+/// Returns the seat whose word is `typed`.
+///
+/// # Errors
+/// Why there is none, in words for the student.
+pub fn find(folder: &ClassFolder, typed: &str, now_unix_s: u64) -> Result<Seat, String> {
+    let word = typed.trim().to_lowercase();
+    match name_of(&word) {
+        Some(name) => come_back(folder, &word, name, now_unix_s),
+        None => Err("type the word of your seat, such as anna-471108".to_owned()),
+    }
+}
+
 fn begin(folder: &ClassFolder, name: &str) -> Result<Seat, String> {
     if all_seats(folder)?.len() >= MOST_SEATS {
         return Err(format!(

@@ -13,7 +13,7 @@
 //! lab computes what the teacher's shows.
 //!
 //! - [`folder`]: the folders, and the teacher's [`ClassState`]; [`seat`]: the files of a seat; [`login`]: taking a seat.
-//! - [`votes`]: the votes of a question, counted; as CSV and as bars.
+//! - [`votes`]: the votes of a question, counted; as CSV and as bars. [`table`]: the table for a gradebook.
 //! - [`teacher`] and [`student`]: the [`ClassRole`] of a lab in a class; [`board`]: the class on a second terminal.
 
 pub mod board;
@@ -21,6 +21,7 @@ pub mod folder;
 pub mod login;
 pub mod seat;
 pub mod student;
+pub mod table;
 pub mod teacher;
 pub mod votes;
 

@@ -61,7 +61,8 @@ pub fn present(seats: &[SeatStatus]) -> (usize, String) {
 }
 
 impl SeatStatus {
-    fn read(seat: Seat) -> Self {
+    /// Reads the file of `seat`.
+    pub fn read(seat: Seat) -> Self {
         let (places, trouble) = match seat.places() {
             Ok(places) => (places, None),
             Err(trouble) => (<(SeatRecord, KeptLessons)>::default(), Some(trouble)),
@@ -240,18 +241,12 @@ pub fn csv(folder: &ClassFolder, seats: &[SeatStatus]) -> Result<String, csv::Er
                 .or_insert_with(|| opening::open_again(name).ok());
             for (question, given) in place.predictions.all() {
                 let predict = lesson.as_ref().and_then(|lesson| lesson.predict(question));
-                let number = predict.and_then(|predict| predict.asked.number(&given.answer));
-                let choice = match (&given.answer, number) {
-                    (PredictionAnswer::Choice(words), None) => printable(words).into_owned(),
-                    (PredictionAnswer::Number(number), _) => shortest(*number),
-                    (_, Some(number)) => shortest(number),
-                };
                 writer.write_record([
                     printable(folder.short(name)).as_ref(),
                     printable(question).as_ref(),
                     &given.round.to_string(),
                     &status.seat.word,
-                    &choice,
+                    &answer_in_words(predict, given),
                     &given.late.to_string(),
                     &given.page.to_string(),
                     &time(given),
@@ -263,6 +258,17 @@ pub fn csv(folder: &ClassFolder, seats: &[SeatStatus]) -> Result<String, csv::Er
         .into_inner()
         .map_err(csv::IntoInnerError::into_error)?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+/// Returns `given` as a number: that of its choice, from 1, or the number that was predicted. A choice that `predict` does
+/// not have is told in its words.
+pub(super) fn answer_in_words(predict: Option<&Predict>, given: &LockedAnswer) -> String {
+    match &given.answer {
+        PredictionAnswer::Number(number) => shortest(*number),
+        PredictionAnswer::Choice(words) => predict
+            .and_then(|predict| predict.asked.number(&given.answer))
+            .map_or_else(|| printable(words).into_owned(), shortest),
+    }
 }
 
 /// Returns the time of `given`, as RFC 3339 writes it.

@@ -219,6 +219,10 @@ pub(super) struct ClassArgs {
     #[arg(long, group = "instead")]
     pub(super) votes: bool,
 
+    /// Print a table for a gradebook as CSV: a row for each seat, a column for each question, round and task
+    #[arg(long, group = "instead")]
+    pub(super) table: bool,
+
     /// Write what each seat has predicted beside what came out, a Markdown file a seat
     #[arg(long, group = "instead", requires = "output")]
     pub(super) answers: bool,

@@ -1,21 +1,20 @@
 //! `gyrolab class` and `gyrolab --seat`: a class in a folder.
 
-use super::args::{ClassArgs, DisplayArgs, WorkbenchArgs};
+use super::args::{ClassArgs, WorkbenchArgs};
 use super::lesson::admit;
-use super::new_lab::{DEFAULT, new_lab, refused};
+use super::new_lab::DEFAULT;
 use super::workbench::open_at;
-use super::{print, progress, sessions, tell};
+use super::{answers, print, sessions, tell};
 use crate::class::folder::ClassFolder;
 use crate::class::student::Student;
 use crate::class::teacher::Teacher;
 use crate::class::votes::{self, SeatStatus, seat_statuses};
-use crate::class::{Seat, board, login};
-use crate::engine::export::Destination;
+use crate::class::{Seat, board, login, table};
 use crate::engine::text::printable::{PrintablePath, printable};
 use crate::lab::storage::confined::{Confined, MOST_OF_SEAT};
 use crate::lab::storage::session;
 use crate::lessons::clock::unix_s;
-use crate::lessons::{handout, opening};
+use crate::lessons::opening;
 use crate::tui;
 use anyhow::{Context, bail, ensure};
 use rustix::process::{Pid, Resource, Signal};
@@ -36,17 +35,20 @@ const PENALTY: Duration = Duration::from_secs(1);
 pub(super) fn class(args: &ClassArgs) -> anyhow::Result<ExitCode> {
     let at = || ClassFolder::at(&args.folder).map_err(anyhow::Error::msg);
     if args.votes {
-        return print_votes(&at()?);
+        return print_csv(&at()?, votes::csv);
+    }
+    if args.table {
+        return print_csv(&at()?, table::csv);
     }
     if args.board {
         return show_board(&at()?);
     }
     if let (true, Some(output)) = (args.answers, &args.output) {
-        return answers(&at()?, output, args.force, args.look);
+        return answers::write_all(&at()?, output, args.force, args.look);
     }
     ensure!(
         io::stdin().is_terminal() && io::stdout().is_terminal(),
-        "a class needs a terminal for the teacher's lab; --board, --votes and --answers do not"
+        "a class needs a terminal for the teacher's lab; --board, --votes, --table and --answers do not"
     );
     teach(args)
 }
@@ -89,14 +91,18 @@ fn teach(args: &ClassArgs) -> anyhow::Result<ExitCode> {
     open_at(&workbench, DEFAULT, Some(confined), page, Some(teacher))
 }
 
-fn print_votes(folder: &ClassFolder) -> anyhow::Result<ExitCode> {
+/// Prints what `csv` makes of the seats in `folder`.
+fn print_csv(
+    folder: &ClassFolder,
+    csv: fn(&ClassFolder, &[SeatStatus]) -> Result<String, csv::Error>,
+) -> anyhow::Result<ExitCode> {
     let seats = seat_statuses(folder).map_err(anyhow::Error::msg)?;
-    print(&votes::csv(folder, &seats)?)?;
+    print(&csv(folder, &seats)?)?;
     Ok(unread(&seats))
 }
 
 /// Says which files of `seats` cannot be read. Returns the exit code.
-fn unread(seats: &[SeatStatus]) -> ExitCode {
+pub(super) fn unread(seats: &[SeatStatus]) -> ExitCode {
     let mut code = ExitCode::SUCCESS;
     for trouble in seats.iter().filter_map(|seat| seat.trouble.as_ref()) {
         tell(format_args!("gyrolab: {}", printable(trouble)));
@@ -115,57 +121,13 @@ fn show_board(folder: &ClassFolder) -> anyhow::Result<ExitCode> {
     Ok(unread(&seat_statuses(folder).map_err(anyhow::Error::msg)?))
 }
 
-/// Writes what each seat has predicted beside what came out: a file for each in the folder `output`.
-fn answers(
-    folder: &ClassFolder,
-    output: &Path,
-    force: bool,
-    look: DisplayArgs,
-) -> anyhow::Result<ExitCode> {
-    std::fs::create_dir_all(output).with_context(|| PrintablePath(output).to_string())?;
-    let interruption = progress::interruption()?;
-    let mut files = 0;
-    let seats = seat_statuses(folder).map_err(anyhow::Error::msg)?;
-    let mut code = unread(&seats);
-    for SeatStatus { seat, lessons, .. } in seats {
-        let mut text = String::new();
-        for (name, place) in lessons {
-            if place.predictions.is_empty() {
-                continue;
-            }
-            let lesson = match opening::open_again(&name) {
-                Ok(lesson) => lesson,
-                Err(problems) => {
-                    let (word, why) = (&seat.word, problems.in_one_line());
-                    tell(format_args!(
-                        "gyrolab: {word}: answers left out: {}",
-                        printable(&why)
-                    ));
-                    code = ExitCode::FAILURE;
-                    continue;
-                }
-            };
-            let mut meter = interruption.meter();
-            text += &handout::answers(&lesson, &place, new_lab(look)?, &mut meter)
-                .map_err(|problem| refused(&lesson, problem))?;
-            interruption.may_act_at_once()?;
-        }
-        if !text.is_empty() {
-            let path = output.join(format!("{}.md", seat.word));
-            let file = Destination::open_file(&path, force)?;
-            file.write_and_keep(format!("<!-- seat {} -->\n{text}", seat.word).as_bytes())?;
-            files += 1;
-        }
-    }
-    tell(format_args!(
-        "gyrolab: the answers of {files} seats are in {}",
-        PrintablePath(output)
-    ));
-    Ok(code)
-}
-
 /// Asks for a seat of the class in `dir`, and opens its lab.
 pub(super) fn seat(args: &WorkbenchArgs, dir: &Path) -> anyhow::Result<ExitCode> {
+    // sshd sets this where the student's ssh names a command.
+    if let Ok(command) = std::env::var("SSH_ORIGINAL_COMMAND") {
+        let folder = ClassFolder::open(dir).map_err(anyhow::Error::msg)?;
+        return answers::fetch(&folder, &command, args.look);
+    }
     ensure!(
         io::stdin().is_terminal() && io::stdout().is_terminal(),
         "--seat needs a terminal: it asks for a name"

@@ -5,6 +5,7 @@
 //!
 //! Data goes to stdout, talk to stderr. Exit codes: 0 done (a closed pipe too), 1 failed, 2 wrong usage, 130 Ctrl-C.
 
+mod answers;
 mod args;
 mod argument_values;
 mod cast;

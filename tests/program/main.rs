@@ -12,6 +12,7 @@ mod support;
 
 mod cast;
 mod class;
+mod class_answers;
 mod classes;
 mod cli;
 mod commands;
