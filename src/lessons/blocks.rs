@@ -1,18 +1,25 @@
 //! The TOML in the blocks of a lesson.
 
-use super::lesson::{AnswerKind, Check, Compare, Keep, PREDICTION, Predict, Right, Setup, WITH};
+mod head;
+
+use super::lesson::{
+    AnswerKind, Check, Compare, DrawnAnswer, Keep, PREDICTION, Predict, Right, Setup, WITH,
+};
 use super::names::KeptNames;
 use super::structure::on_line;
 use super::text::LessonText;
+use crate::engine::data::QUANTITIES;
 use crate::engine::journal::expression::Expression;
 use crate::engine::scenario::dotted::join;
 use crate::engine::scenario::kind::Range::{Any, Positive};
-use crate::engine::scenario::kind::ValueKind::{self, By, Line, Lines, Number, Paragraph, Whole};
+use crate::engine::scenario::kind::ValueKind::{self, By, Line, Lines, Number, Paragraph};
 use crate::engine::scenario::problem::nearest;
 use crate::engine::scenario::schema::{Schema, UNKNOWN_KEY, may, must};
+use crate::engine::scenario::screen::ABOVE;
 use crate::engine::scenario::{Document, Problem, Problems, float};
 use crate::lab::command::{COMMANDS, Command, LocatedCommand, RERUN, SET};
 use crate::lab::view;
+pub(super) use head::head;
 use toml::{Table, Value};
 
 /// A block that means something in a lesson.
@@ -59,7 +66,6 @@ const RUN_UNTIL: &str = "run_until";
 const KEEP_KEY: &str = "keep";
 /// The most choices of a prediction.
 const MOST_CHOICES: usize = 9;
-const LONGEST_LESSON: i64 = 600;
 const MOST_BLOCK_PROBLEMS: usize = 20;
 
 /// Text of one or several lines, not empty: Markdown, an expression.
@@ -67,11 +73,6 @@ const TEXT: ValueKind = By(|value| match value.as_str() {
     Some("") => Err("must not be empty".to_owned()),
     _ => Paragraph.check(value),
 });
-
-const HEAD: Schema = Schema(&[&[
-    may("about", Line, "what the lesson is about"),
-    may("minutes", Whole(1, LONGEST_LESSON), "how long it takes"),
-]]);
 
 #[rustfmt::skip]
 const PREDICT: Schema = Schema(&[&[
@@ -81,6 +82,9 @@ const PREDICT: Schema = Schema(&[&[
     may("unit", By(is_unit), "the unit of a number"),
     may("right", Number(Any), "the number that comes out, or of the choice"),
     may("within", Number(Positive), "how far off is right too"),
+    may("expected", TEXT, "the common wrong answer, for the teacher"),
+    may("explain", TEXT, "what to say if few are right, for the teacher"),
+    may("draw", By(is_drawn), "what a worksheet has axes for"),
 ]]);
 
 const COMPARE: Schema = Schema(&[&[
@@ -126,6 +130,17 @@ fn is_goal(value: &Value) -> Result<(), String> {
         Value::Array(_) => Lines.check(value),
         _ => Line.check(value),
     }
+}
+
+/// What can be drawn as an answer.
+fn is_drawn(value: &Value) -> Result<(), String> {
+    let name = value.as_str().unwrap_or_default();
+    if DrawnAnswer::named(name).is_some() {
+        return Ok(());
+    }
+    let names = QUANTITIES.iter().map(|quantity| quantity.name);
+    let near = nearest(name, [ABOVE].into_iter().chain(names));
+    Err(format!("must be {ABOVE} or a column of the CSV: {near}"))
 }
 
 type BlockResult<T> = Result<T, Vec<Problem>>;
@@ -272,14 +287,6 @@ fn expression(
     Ok(expression)
 }
 
-/// Returns what the lesson is about, and how many minutes it takes.
-pub(super) fn head(reader: &BlockReader<'_>) -> BlockResult<(String, Option<u32>)> {
-    let content = BlockContent::read(reader, HEAD)?;
-    let whole = content.keys.get("minutes").and_then(Value::as_integer);
-    let minutes = whole.and_then(|minutes| u32::try_from(minutes).ok());
-    Ok((content.text("about"), minutes))
-}
-
 /// Returns what the lab does: a `lab` or `task` block of page `page`, whose kept numbers are known from the page
 /// `known_from` on.
 pub(super) fn setup(
@@ -409,6 +416,9 @@ pub(super) fn predict(
         ask,
         asked,
         right,
+        expected: content.text("expected"),
+        explain: content.text("explain"),
+        draw: DrawnAnswer::named(&content.text("draw")),
     })
 }
 

@@ -2,7 +2,9 @@
 
 use super::names::KeptNumbers;
 use super::text::LessonText;
+use crate::engine::data::RunQuantity;
 use crate::engine::journal::expression::Expression;
+use crate::engine::scenario::screen::ABOVE;
 use crate::lab::command::{Command, LocatedCommand};
 use crate::lab::view::HideablePart;
 use serde::{Deserialize, Serialize};
@@ -18,10 +20,54 @@ pub struct Lesson {
     /// What it is about, one line; empty where the file does not say it.
     pub about: String,
     pub minutes: Option<u32>,
+    /// What a teacher plans with.
+    pub guide: LessonGuide,
     /// The blocks before the first page: text, code that is shown as it is, and notes.
     pub introduction: Vec<LessonBlock>,
     /// The pages; never empty. The page with the number N (from 1) is `pages[N - 1]`.
     pub pages: Vec<LessonPage>,
+}
+
+/// What a teacher wants to know before the lesson is chosen, and in front of the class. Empty where the file does not say it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LessonGuide {
+    pub level: Option<LessonLevel>,
+    /// Names of lessons to take first, and tools such as Python.
+    pub needs: Vec<String>,
+    /// What a student can do or explain afterwards.
+    pub goals: Vec<String>,
+    /// What a real top does and the model does not.
+    pub leaves_out: Vec<String>,
+    /// Minutes of each page, in order; they add up to the minutes of the lesson.
+    pub page_minutes: Vec<u32>,
+}
+
+/// What a lesson takes for granted, from little to much.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum LessonLevel {
+    /// Forces, and curves over time.
+    School,
+    /// Vectors, torque, and derivatives.
+    FirstYear,
+    /// The inertia tensor and Euler's equations.
+    MechanicsCourse,
+}
+
+impl LessonLevel {
+    pub const ALL: [Self; 3] = [Self::School, Self::FirstYear, Self::MechanicsCourse];
+
+    /// Returns its name in lesson files and lists.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::School => "school",
+            Self::FirstYear => "first year",
+            Self::MechanicsCourse => "mechanics course",
+        }
+    }
+
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|level| level.name() == name)
+    }
 }
 
 /// A page: a level-2 heading and all that stands below it.
@@ -79,6 +125,31 @@ pub struct Predict {
     pub asked: AnswerKind,
     /// What comes out, for the teacher; where the file says it.
     pub right: Option<Right>,
+    /// For the teacher: which wrong answer is common, and why. Empty where the file does not say it.
+    pub expected: String,
+    /// For the teacher: what to show or say if few are right. Empty where the file does not say it.
+    pub explain: String,
+    /// On paper: the axes in which the answer can be drawn.
+    pub draw: Option<DrawnAnswer>,
+}
+
+/// The picture that answers a question.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DrawnAnswer {
+    /// The path of the traced point from above.
+    FromAbove,
+    /// The column of the CSV with this name, over time.
+    OverTime(&'static str),
+}
+
+impl DrawnAnswer {
+    /// Returns the picture with this name: `above`, or a column of the CSV.
+    pub fn named(name: &str) -> Option<Self> {
+        match name {
+            ABOVE => Some(Self::FromAbove),
+            column => RunQuantity::find(column).map(|quantity| Self::OverTime(quantity.name)),
+        }
+    }
 }
 
 #[derive(Clone, Debug, PartialEq)]

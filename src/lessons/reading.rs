@@ -79,6 +79,8 @@ struct Assembly {
     predictions: BTreeSet<String>,
     compares: Vec<Compare>,
     has_head: bool,
+    /// The line of the `lesson` block.
+    head_line: usize,
     found: Problems,
 }
 
@@ -260,7 +262,12 @@ impl Assembly {
         }
         self.has_head = true;
         match blocks::head(reader) {
-            Ok(head) => (self.lesson.about, self.lesson.minutes) = head,
+            Ok(head) => {
+                self.lesson.about = head.about;
+                self.lesson.minutes = head.minutes;
+                self.lesson.guide = head.guide;
+                self.head_line = line;
+            }
             Err(problems) => self.refuse_all(problems),
         }
     }
@@ -299,6 +306,14 @@ impl Assembly {
         if self.lesson.pages.is_empty() {
             let rule = "has no page: each begins with ## and its heading";
             self.refuse(1, Problem::at("", rule));
+        }
+        let (timed, pages) = (
+            self.lesson.guide.page_minutes.len(),
+            self.lesson.pages.len(),
+        );
+        if ![0, pages].contains(&timed) {
+            let rule = format!("has {timed} numbers, and the lesson has {pages} pages");
+            self.refuse(self.head_line, Problem::at("lesson.page_minutes", rule));
         }
         if self.found.list.is_empty() {
             return Ok(self.lesson);
