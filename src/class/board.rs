@@ -1,12 +1,12 @@
 //! The board: the class on a second terminal, for the teacher. Seats, votes, notes, and the clock.
 
 use super::folder::{ClassFolder, ClassState, VoteStage};
-use super::votes::{SeatStatus, Tally, present, seat_statuses};
+use super::votes::{self, SeatStatus, Tally, in_order, present, seat_statuses};
 use super::{login, unix_ms};
 use crate::engine::text::number::counted;
 use crate::engine::text::wrap::{columns, wrapped};
 use crate::lessons::page::for_teacher;
-use crate::lessons::{Predict, opening};
+use crate::lessons::{Lesson, LessonPage, Predict, opening};
 use chrono::Local;
 
 /// Returns the lines of the board, at most `width` columns wide.
@@ -37,12 +37,18 @@ pub fn lines(folder: &ClassFolder, width: usize) -> Vec<String> {
             } else if !folder.is_teacher_alive() {
                 let resumes = "the teacher's lab is gone: gyrolab class --resume --folder DIR";
                 board.push(resumes.to_owned());
-            } else if state.shown.is_none() {
-                board.push("the class does not follow: k 3 in the teacher's lab".to_owned());
+            } else if !state.is_followed {
+                let alone = "the students go on alone: k 3 in the teacher's lab ends that";
+                board.push(alone.to_owned());
             }
-            board.extend(page_lines(&state, &seats));
+            let lesson = opening::open_again(&state.lesson);
+            match &lesson {
+                Ok(lesson) => board.extend(page_lines(lesson, &state, &seats)),
+                Err(problems) => board.extend(problems.to_string().lines().map(str::to_owned)),
+            }
             board.push(String::new());
-            board.extend(seat_lines(&state, &seats, width));
+            let page = lesson.as_ref().ok().and_then(|it| it.page(state.page));
+            board.extend(seat_lines(&state, page, &seats, width));
         }
     }
     let mut lines = Vec::new();
@@ -57,13 +63,10 @@ pub fn lines(folder: &ClassFolder, width: usize) -> Vec<String> {
 }
 
 /// Returns the page in words, with the votes on its questions.
-fn page_lines(state: &ClassState, seats: &[SeatStatus]) -> Vec<String> {
-    let told = match opening::open_again(&state.lesson) {
-        Ok(lesson) => for_teacher(&lesson, state.page, |predict| {
-            round_lines(predict, state, seats)
-        }),
-        Err(problems) => problems.to_string(),
-    };
+fn page_lines(lesson: &Lesson, state: &ClassState, seats: &[SeatStatus]) -> Vec<String> {
+    let told = for_teacher(lesson, state.page, |predict| {
+        round_lines(predict, state, seats)
+    });
     told.lines().map(str::to_owned).collect()
 }
 
@@ -74,7 +77,13 @@ fn round_lines(predict: &Predict, state: &ClassState, seats: &[SeatStatus]) -> S
     for round in 1..=question.round() {
         let tally = Tally::count(seats, &state.lesson, predict, round);
         let votes = counted(tally.votes as u64, "vote");
-        text += &format!("  round {round}: {votes}, {} late\n", tally.late);
+        let end = match question.seconds_left(unix_ms()) {
+            _ if round < question.round() => String::new(),
+            Some(left) => format!(", closes in {left} s"),
+            None if question.is_closed => ", closed".to_owned(),
+            None => String::new(),
+        };
+        text += &format!("  round {round}: {votes}, {} late{end}\n", tally.late);
         if round < question.round() || question.stage != VoteStage::Counted {
             text += &tally.drawn().text();
             text.extend(tally.advice.map(|advice| advice + "\n"));
@@ -83,23 +92,33 @@ fn round_lines(predict: &Predict, state: &ClassState, seats: &[SeatStatus]) -> S
     text
 }
 
-/// Returns the seats in columns.
-fn seat_lines(state: &ClassState, seats: &[SeatStatus], width: usize) -> Vec<String> {
+/// Returns the seats in columns, those that have not answered first. `page` is the class's.
+fn seat_lines(
+    state: &ClassState,
+    page: Option<&LessonPage>,
+    seats: &[SeatStatus],
+    width: usize,
+) -> Vec<String> {
+    let asked = page.and_then(|page| votes::question(page, state));
+    let ordered = in_order(seats, state, asked.as_ref());
     let mut cells = Vec::new();
-    for seat in seats {
-        let place = seat.lessons.get(&state.lesson);
+    for (standing, status) in &ordered {
+        let place = status.lessons.get(&state.lesson);
         let votes = place.map_or(0, |place| place.predictions.all().count());
-        cells.push(format!(
-            "{}, {}",
-            seat.in_words(state),
-            counted(votes as u64, "vote")
+        let count = counted(votes as u64, "vote");
+        cells.push((
+            *standing,
+            format!("{}, {count}", status.in_words(*standing)),
         ));
     }
-    let widest = cells.iter().map(|cell| columns(cell)).max().unwrap_or(0) + 2;
+    let cell_widths = cells.iter().map(|(_, cell)| columns(cell));
+    let widest = cell_widths.max().unwrap_or(0) + 2;
     let mut rows = Vec::new();
-    for row in cells.chunks((width / widest).max(1)) {
-        let padded: String = row.iter().map(|cell| format!("{cell:<widest$}")).collect();
-        rows.push(padded.trim_end().to_owned());
+    for group in cells.chunk_by(|(one, _), (next, _)| one == next) {
+        for row in group.chunks((width / widest).max(1)) {
+            let padded = row.iter().map(|(_, cell)| format!("{cell:<widest$}"));
+            rows.push(padded.collect::<String>().trim_end().to_owned());
+        }
     }
     rows
 }

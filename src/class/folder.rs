@@ -48,11 +48,15 @@ pub struct ClassState {
     pub has_arrived: bool,
     /// The seats that the teacher has closed.
     pub closed: BTreeSet<String>,
+    /// When the teacher last gathered the class, ms since 1970: seats that left it before follow it again.
+    pub gathered_ms: u64,
     /// By LESSON and then by the question's name.
     pub questions: BTreeMap<String, BTreeMap<String, QuestionState>>,
     /// The numbers that the lesson has kept.
     pub kept: KeptNumbers,
-    /// What is shown; `None` where the class does not follow.
+    /// Whether the students' labs follow; otherwise the students go on alone.
+    pub is_followed: bool,
+    /// The run that is shown; `None` where its file is too long.
     pub shown: Option<PresentedRun>,
 }
 
@@ -63,6 +67,10 @@ pub struct QuestionState {
     /// The present round, less 1.
     pub earlier_rounds: u32,
     pub stage: VoteStage,
+    /// Whether the teacher has closed the round. Votes that come now are late.
+    pub is_closed: bool,
+    /// When a countdown closes the round, ms since 1970.
+    pub closes_at_ms: Option<u64>,
     /// When the round began, ms since 1970.
     pub since_ms: u64,
     /// The bars, where all may see them.
@@ -79,8 +87,6 @@ pub enum VoteStage {
     /// The teacher sees bars.
     Teacher,
     All,
-    /// Votes that come now are late.
-    Closed,
 }
 
 /// The run that the class follows.
@@ -130,6 +136,31 @@ impl ClassFolder {
     /// Forgets the wrong codes that were typed for the seat `word`.
     pub(super) fn forget_wrong_codes(&self, word: &str) {
         let _ = fs::remove_file(self.wrong().join(word)); // where it stays, it counts on
+    }
+
+    /// Keeps seats, votes and state of the class in a folder of their own, `name`, which is then the folder of that class:
+    /// `--votes`, `--answers` and `--board` read it. Afterwards this folder has no seats. Returns that folder; `None` where
+    /// there was nothing to keep.
+    ///
+    /// # Errors
+    /// When a folder cannot be made or moved.
+    pub fn keep_as_earlier(&self, name: &str) -> Result<Option<PathBuf>, String> {
+        let has_seats = fs::read_dir(self.seats()).is_ok_and(|mut seats| seats.next().is_some());
+        if !has_seats && !self.state_file().exists() {
+            return Ok(None);
+        }
+        let earlier = self.own().join("earlier");
+        let group = earlier.join(name);
+        let inside = group.join(SESSIONS);
+        for path in [&earlier, &group, &inside] {
+            make(path, OF_TEACHER)?;
+        }
+        for moved in [self.seats(), self.wrong(), self.teacher()] {
+            let to = inside.join(moved.file_name().unwrap_or_default());
+            fs::rename(&moved, to)
+                .map_err(|error| format!("{}: {error}", PrintablePath(&moved)))?;
+        }
+        Ok(Some(group))
     }
 
     /// Returns the folder of the teacher, for the state and the sessions.
@@ -205,6 +236,31 @@ impl QuestionState {
     /// Returns the present round, from 1.
     pub fn round(&self) -> u32 {
         self.earlier_rounds.saturating_add(1)
+    }
+
+    /// Returns whether the round is closed at `now_ms`: by the teacher, or because its countdown is over.
+    pub fn is_closed_at(&self, now_ms: u64) -> bool {
+        self.is_closed || self.closes_at_ms.is_some_and(|at_ms| at_ms <= now_ms)
+    }
+
+    /// Returns the seconds until the countdown closes the round; `None` where none is running.
+    pub fn seconds_left(&self, now_ms: u64) -> Option<u64> {
+        let at_ms = self.closes_at_ms.filter(|_| !self.is_closed_at(now_ms))?;
+        Some((at_ms - now_ms).div_ceil(1000))
+    }
+
+    /// Closes the round. The bars stay where they are seen.
+    pub(super) fn close(&mut self) {
+        (self.is_closed, self.closes_at_ms) = (true, None);
+    }
+
+    /// Begins the next round.
+    pub(super) fn ask_again(&mut self) {
+        *self = Self {
+            earlier_rounds: self.round(),
+            since_ms: unix_ms(),
+            ..Self::default()
+        };
     }
 }
 

@@ -7,6 +7,7 @@
 //! DIR/.gyrolab/seats/anna-471108/           a seat: its exports
 //! DIR/.gyrolab/seats/anna-471108/.gyrolab/  seat (place and votes), open (who has it open, heartbeat), its session
 //! DIR/.gyrolab/wrong/anna-471108            wrong codes that count for that seat, and when the last was typed
+//! DIR/.gyrolab/earlier/DATE/.gyrolab/       the same of an earlier group: DIR/.gyrolab/earlier/DATE is the folder of its class
 //! ```
 //!
 //! Each file is written whole by one account and read by the other, three times a second. A run is deterministic: a student's
@@ -14,11 +15,15 @@
 //!
 //! - [`folder`]: the folders, and the teacher's [`ClassState`]; [`seat`]: the files of a seat; [`login`]: taking a seat.
 //! - [`votes`]: the votes of a question, counted; as CSV and as bars. [`table`]: the table for a gradebook.
-//! - [`teacher`] and [`student`]: the [`ClassRole`] of a lab in a class; [`board`]: the class on a second terminal.
+//! - [`teacher`], [`student`] and [`projector`]: the [`ClassRole`] of a lab in a class; `following`: what the last two share;
+//!   [`board`]: the class on a second terminal; [`rehearsal`]: players for a teacher who practices.
 
 pub mod board;
 pub mod folder;
+mod following;
 pub mod login;
+pub mod projector;
+pub mod rehearsal;
 pub mod seat;
 pub mod student;
 pub mod table;

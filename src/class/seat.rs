@@ -43,6 +43,8 @@ pub struct SeatRecord {
     pub format: u32,
     /// Whether it has stepped aside from a class that follows.
     pub is_aside: bool,
+    /// When it stepped aside, ms since 1970.
+    pub aside_since_ms: u64,
     /// The lessons with the answers to their questions, as a session keeps them.
     pub lessons: toml::Table,
 }

@@ -1,61 +1,96 @@
 //! A student's lab: it follows the teacher's, and keeps in the files of its seat where it stands and what was voted.
+//!
+//! An answer that is marked, but not locked, counts as a vote when its round ends: when the teacher turns the page, closes
+//! the round or asks again, or when the countdown is over. Nothing is locked when a student turns the page.
 
-use super::folder::{ClassFolder, ClassState, PresentedRun, VoteStage};
+use super::folder::{ClassFolder, ClassState};
+use super::following::{ClassChange, Follower, Shown};
 use super::seat::{Seat, SeatRecord};
 use super::{CLASS_POLL_INTERVAL, ClassRole, LEAST_WAIT, unix_ms, votes};
-use crate::engine::scenario::Scenario;
+use crate::lab::Lab;
 use crate::lab::action::LessonKey;
-use crate::lab::command::{Command, SeekTarget};
+use crate::lab::command::Command;
 use crate::lab::playback::pace::Speed;
-use crate::lab::storage::shared;
-use crate::lab::view::HideablePart;
-use crate::lab::{Lab, Player, Snapshot};
+use crate::lab::sheet::{Paragraph, SheetLineKind};
+use crate::lessons::Lessons;
 use crate::lessons::open_lesson::OpenLesson;
 use crate::lessons::page::ClassOverlay;
-use crate::lessons::predictions::Predictions;
-use crate::lessons::{Lessons, Setup};
 use std::ops::ControlFlow;
-use std::sync::Arc;
-use std::time::{Duration, SystemTime};
+use std::time::Duration;
 use toml::Table;
 
-/// A run that plays is put right where it is more than this off, s of wall time.
-const OFF_S: f64 = 0.6;
+const GO_ON_ALONE: &str = "your teacher lets you go on alone: n and N turn pages";
 
 #[derive(Debug, Default)]
 pub struct Student {
-    folder: ClassFolder,
+    follower: Follower,
     seat: Seat,
     /// The word under which this process has the seat open.
     lock_token: String,
     record: SeatRecord,
     /// Whether the record is to be written.
     is_new: bool,
-    state: Option<ClassState>,
-    seen: Option<SystemTime>,
-    /// Whether the teacher's lab was open at the last look.
-    is_on: bool,
-    /// What of the teacher's run is shown.
-    shown: PresentedView,
     last_snapshot: Option<PlaybackSnapshot>,
     /// Whether a run that was played aside is pinned.
     has_pinned: bool,
     /// Whether a class was on in this lab.
     has_begun: bool,
+    waiting: WaitingPage,
+    /// The rounds that were open at the last look.
+    open_rounds: Option<OpenRounds>,
+    /// Whether the teacher let the students go on alone at the last look.
+    is_alone: bool,
     /// Why the lab ends, where it does.
     ended: Option<&'static str>,
     next_look: Duration,
     trouble: Option<String>,
 }
 
-#[derive(Debug, Default)]
-struct PresentedView {
-    /// The run file, and the scenario as the lab has it.
-    run: Option<(String, Arc<Scenario>)>,
-    look: Table,
-    hidden: Vec<HideablePart>,
-    exact: Option<bool>,
+/// Whether the page is open on which a seat waits for its class: the list of lessons, with words above it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum WaitingPage {
+    /// It was not shown yet.
+    #[default]
+    Unseen,
+    Open,
+    Left,
+}
+
+/// The questions of the class's page whose rounds are open.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct OpenRounds {
+    lesson: String,
     page: usize,
+    /// The names of the questions, with their rounds.
+    rounds: Vec<(String, u32)>,
+}
+
+impl OpenRounds {
+    /// Returns those of `state`, if its lesson is the one that is open.
+    fn of(state: &ClassState, lessons: &Lessons) -> Option<Self> {
+        let open = lessons.open_lesson();
+        let lesson = &open.filter(|open| open.lesson.name == state.lesson)?.lesson;
+        let now_ms = unix_ms();
+        let mut rounds = Vec::new();
+        for predict in lesson.page(state.page)?.predicts() {
+            let question = state.question(&predict.name);
+            if !question.is_closed_at(now_ms) {
+                rounds.push((predict.name.clone(), question.round()));
+            }
+        }
+        Some(Self {
+            lesson: state.lesson.clone(),
+            page: state.page,
+            rounds,
+        })
+    }
+
+    /// Returns those of its rounds that are over, now that `open` are open.
+    fn ended<'a>(&'a self, open: Option<&'a Self>) -> impl Iterator<Item = &'a (String, u32)> {
+        let same_page = open.filter(|open| (&open.lesson, open.page) == (&self.lesson, self.page));
+        let is_open = move |round| same_page.is_some_and(|same| same.rounds.contains(round));
+        self.rounds.iter().filter(move |round| !is_open(round))
+    }
 }
 
 /// What a key changes that leads away from the class's run or page: run, step, goal, whether it plays, speed, page.
@@ -86,7 +121,7 @@ impl Student {
     /// holds.
     pub fn new(folder: ClassFolder, seat: Seat, lock_token: String, record: SeatRecord) -> Self {
         Self {
-            folder,
+            follower: Follower::new(folder),
             seat,
             lock_token,
             record,
@@ -97,14 +132,9 @@ impl Student {
 
     /// Returns whether the lab shows what the teacher's shows.
     fn follows(&self) -> bool {
-        let state = self.state.as_ref();
-        let is_followed = state.is_some_and(|state| state.shown.is_some());
-        self.is_on && is_followed && !self.record.is_aside
-    }
-
-    /// Returns the state of the class, while it is on.
-    fn class(&self) -> Option<&ClassState> {
-        self.state.as_ref().filter(|_| self.is_on)
+        let class = self.follower.class();
+        let is_led = class.is_some_and(|state| state.is_followed && state.shown.is_some());
+        is_led && !self.record.is_aside
     }
 
     /// Takes note of the place in the lessons, with what was answered.
@@ -117,156 +147,182 @@ impl Student {
     }
 
     /// Looks at the files: whether the seat is still this lab's, and what the teacher shows.
-    fn look(&mut self, lab: &mut Lab) {
+    fn look(&mut self, lab: &mut Lab, lessons: &mut Lessons) {
         if !self.seat.is_held(&self.lock_token) {
             self.ended =
                 Some("this seat was opened in another lab, which goes on from here, or it is gone");
         }
-        let seen = shared::modified(&self.folder.state_file());
-        if seen != self.seen {
-            let read = self.folder.state();
-            self.state = read.unwrap_or_else(|reason| {
-                lab.tell(reason);
-                None
-            });
-            self.seen = seen;
-        }
-        let state = self.state.as_ref();
+        let change = self.follower.look(lab);
+        let state = self.follower.state();
         if state.is_some_and(|state| state.closed.contains(&self.seat.word)) {
             let closed =
                 "your teacher has closed this seat: once it is open again, its word leads back";
             self.ended = Some(closed);
         }
-        let was_on = self.is_on;
-        let is_over = state.is_some_and(|state| !state.is_on);
-        self.is_on = state.is_some() && !is_over && self.folder.is_teacher_alive();
-        if self.is_on && !was_on {
-            lab.refuse("the class is on");
-            self.has_begun = true;
-        } else if was_on && !self.is_on && self.state.is_some() {
-            let what = if is_over {
-                "the class is over"
-            } else {
-                "the teacher's lab is gone"
-            };
-            lab.tell(format!("{what}: n and N turn pages"));
+        match change {
+            ClassChange::Nothing => {}
+            ClassChange::Begun => {
+                self.has_begun = true;
+                if self.record.is_aside {
+                    lab.tell("the class is on: k brings you to its page");
+                } else {
+                    lab.refuse("the class is on");
+                }
+            }
+            ClassChange::Over => lab.tell("the class is over: n and N turn pages"),
+            ClassChange::Gone => lab.tell("the teacher's lab is gone: n and N turn pages"),
         }
-        if !self.is_on {
-            self.shown = PresentedView::default();
+        self.end_rounds(lab, lessons);
+        self.note_whether_alone(lab);
+        let gathered_ms = self.follower.class().map(|class| class.gathered_ms);
+        if self.record.is_aside && gathered_ms > Some(self.record.aside_since_ms) {
+            self.come_back("your teacher has gathered the class", lab);
         }
     }
 
-    /// Shows what the teacher shows.
-    fn show_presented(&mut self, lab: &mut Lab, lessons: &mut Lessons) {
-        let Some(state) = self.state.clone() else {
-            return;
-        };
-        let Some(run) = &state.shown else { return };
-        match &self.shown.run {
-            Some((_, shown)) if !Arc::ptr_eq(shown, lab.player().run().scenario()) => {
-                return self.step_aside(lab); // the run was changed here
-            }
-            Some((file, _)) if *file == run.snapshot.run => {}
-            _ => {
-                if lab.show_run(&run.snapshot).is_err() {
-                    return lab.tell("the teacher's run cannot be read: n and N turn pages");
-                }
-                let shown = Arc::clone(lab.player().run().scenario());
-                self.shown = PresentedView {
-                    run: Some((run.snapshot.run.clone(), shown)),
-                    page: self.shown.page,
-                    ..PresentedView::default()
-                };
+    /// Locks answers that are marked for rounds which have ended since the last look, before the page is turned here too.
+    fn end_rounds(&mut self, lab: &mut Lab, lessons: &mut Lessons) {
+        if self.follower.class().is_none() && !self.follower.is_over() {
+            return; // the teacher's lab is gone: its rounds go on when it is back
+        }
+        let class = self.follower.class();
+        let open = class.and_then(|state| OpenRounds::of(state, lessons));
+        let before = std::mem::replace(&mut self.open_rounds, open);
+        let Some(before) = before else { return };
+        for (name, round) in before.ended(self.open_rounds.as_ref()) {
+            let page = (before.lesson.as_str(), before.page);
+            if let Some(answer) = lessons.lock_chosen(page, name, *round, lab) {
+                lab.tell(format!("the round is over: your answer {answer} counts"));
             }
         }
-        if self.shown.page != state.page {
-            let is_turned = std::mem::replace(&mut self.shown.page, state.page) != 0;
-            if is_turned && std::mem::take(&mut self.has_pinned) {
+    }
+
+    /// Takes note of whether the teacher lets the students go on alone, and says so.
+    fn note_whether_alone(&mut self, lab: &mut Lab) {
+        let class = self.follower.class();
+        let is_alone = class.is_some_and(|state| !state.is_followed);
+        let was_alone = std::mem::replace(&mut self.is_alone, is_alone);
+        if is_alone && !was_alone && !self.record.is_aside {
+            self.follower.forget_shown();
+            lab.tell(GO_ON_ALONE);
+        } else if was_alone && self.follows() {
+            self.come_back("your teacher goes on with the class", lab);
+        }
+    }
+
+    /// Shows the page on which a seat waits, and takes note of whether it was left for homework: who is at homework comes to
+    /// the class with one key.
+    fn wait_for_class(&mut self, lab: &mut Lab, lessons: &mut Lessons) {
+        if self.waiting == WaitingPage::Unseen && !self.has_begun {
+            lessons.set_overlay(self.overlay(lessons), lab);
+            lessons.on_key(LessonKey::List, lab);
+        }
+        let waits = lessons.is_listing();
+        match (self.waiting, waits) {
+            (WaitingPage::Open, false) => {
+                self.set_aside(true);
+                self.waiting = WaitingPage::Left;
+                if lessons.open_lesson().is_none() {
+                    lab.tell("a free lab, for homework: k leads back to the waiting page");
+                }
+            }
+            (WaitingPage::Unseen | WaitingPage::Left, true) => {
+                self.set_aside(false);
+                self.waiting = WaitingPage::Open;
+            }
+            (WaitingPage::Open, true) | (_, false) => {}
+        }
+    }
+
+    /// Returns the words above the list of lessons while no class is on.
+    fn waiting_words(&self) -> Vec<Paragraph> {
+        let word = &self.seat.word;
+        let seat = format!("Your seat is {word}.");
+        let starts = "The class starts here when your teacher starts it.";
+        let offer = "Until then, Enter opens a lesson as homework, and Esc opens a free lab. Ctrl-C leaves.";
+        vec![
+            Paragraph::new(SheetLineKind::Heading, seat),
+            Paragraph::new(SheetLineKind::Text, starts),
+            Paragraph::new(SheetLineKind::Hint, offer),
+        ]
+    }
+
+    /// Shows the run, the page and the view of the teacher's lab.
+    fn show_presented(&mut self, lab: &mut Lab, lessons: &mut Lessons) {
+        match self.follower.show(lab, lessons) {
+            Ok(Shown::ChangedHere) => self.step_aside(lab),
+            Ok(Shown::NewPage) if std::mem::take(&mut self.has_pinned) => {
                 let _ = lab.carry_out(&Command::Pin(false)); // it belongs to the page before
             }
-        }
-        let is_there = sync_to_presenter(run, lab);
-        if let Err(reason) = lessons.show_class_page(&state.followed(is_there), lab) {
-            lab.tell(reason.lines().next().unwrap_or_default());
-        }
-        self.show_as(&run.snapshot, lab, lessons);
-        lab.set_undo_floor(true); // undo would lead to a run that was shown before
-    }
-
-    /// Shows the run as the teacher does, where that has changed.
-    fn show_as(&mut self, presented: &Snapshot, lab: &mut Lab, lessons: &Lessons) {
-        // What stands so already is left out: a key may be refused where it has no use.
-        let own = Table::try_from(&lab.view().look).unwrap_or_default();
-        let look = Table::try_from(&presented.look).unwrap_or_default();
-        let mut patch = look.clone();
-        patch.retain(|key, value| {
-            let known = [self.shown.look.get(key), own.get(key)];
-            key != "hide" && !known.contains(&Some(value))
-        });
-        if !patch.is_empty() {
-            let _ = lab.carry_out(&Command::Look(patch)); // what suits another screen may not suit this one
-        }
-        self.shown.look = look;
-        let shows_exact = presented.shows_exact;
-        if self.shown.exact.replace(shows_exact) != Some(shows_exact) {
-            let _ = lab.carry_out(&Command::Exact(shows_exact));
-        }
-        let hidden = hidden(&presented.look.hide, lessons.open_lesson());
-        if hidden != self.shown.hidden {
-            let _ = lab.carry_out(&Command::look("hide", &hidden));
-            self.shown.hidden = hidden;
+            Ok(Shown::NewPage | Shown::SamePage) => {}
+            Err(reason) => lab.tell(reason),
         }
     }
 
     /// Returns what the class adds to the page.
     fn overlay(&self, lessons: &Lessons) -> ClassOverlay {
-        let Some(open) = lessons.open_lesson().filter(|_| self.has_begun) else {
-            return ClassOverlay::default();
-        };
-        let Some(state) = self.class() else {
+        let Some(state) = self.follower.class() else {
             return ClassOverlay {
-                framed: self.title(open, false),
+                framed: self.title_without_class(lessons),
+                waiting: Some(self.waiting_words()),
                 ..ClassOverlay::default()
             };
+        };
+        let Some(open) = lessons.open_lesson() else {
+            return ClassOverlay::default();
         };
         let page = open.page().filter(|_| open.lesson.name == state.lesson);
         let asked = page.and_then(|page| votes::question(page, state));
         let mut overlay = ClassOverlay {
-            framed: self.title(open, asked.is_some()),
+            framed: self.title(open, state, asked.is_some()),
             is_followed: self.follows(),
             ..ClassOverlay::default()
         };
         if overlay.is_followed {
             overlay.border = "k: step aside".to_owned();
         }
+        let now_ms = unix_ms();
         for (name, question) in state.questions.get(&open.lesson.name).into_iter().flatten() {
-            let is_closed = question.stage == VoteStage::Closed;
-            let round = (question.round(), is_closed);
+            let round = (question.round(), question.is_closed_at(now_ms));
             overlay.rounds.insert(name.clone(), round);
         }
-        if let Some((predict, question)) = asked
-            && !question.bars.is_empty()
-        {
-            overlay.votes = Some((predict.name.clone(), vec![votes::drawn(&question.bars)]));
+        if let Some((predict, question)) = asked {
+            if let Some(left) = question.seconds_left(now_ms) {
+                overlay.border = format!("the round closes in {left} s");
+            } else if question.is_closed_at(now_ms) && open.is_open(predict) {
+                overlay.border = "closed: an answer now counts as late".to_owned();
+            }
+            if !question.bars.is_empty() {
+                overlay.votes = Some((predict.name.clone(), vec![votes::drawn(&question.bars)]));
+            }
         }
         overlay
     }
 
+    /// Returns the title of the page while no class is on; empty where none was.
+    fn title_without_class(&self, lessons: &Lessons) -> String {
+        let Some(open) = lessons.open_lesson().filter(|_| self.has_begun) else {
+            return String::new();
+        };
+        let gone = if self.follower.is_over() {
+            "class over"
+        } else {
+            "teacher's lab gone"
+        };
+        let (page, pages) = (open.place.page, open.lesson.pages.len());
+        format!("{gone} · {page} of {pages}")
+    }
+
     /// Returns the title of the page, a form a line; `asks` says whether the page has a question.
-    fn title(&self, open: &OpenLesson, asks: bool) -> String {
+    fn title(&self, open: &OpenLesson, state: &ClassState, asks: bool) -> String {
         let page = open.place.page;
         let of = format!("{page} of {}", open.lesson.pages.len());
-        let Some(state) = self.class() else {
-            let is_over = self.state.as_ref().is_some_and(|state| !state.is_on);
-            let gone = ["teacher's lab gone", "class over"][usize::from(is_over)];
-            return format!("{gone} · {of}");
-        };
         let on = format!("the class is on {}", state.page);
-        if self.record.is_aside && state.shown.is_some() {
+        if self.record.is_aside {
             let short = format!("aside, k: back · {page}, class on {}", state.page);
             format!("aside, k: back · {of} · {on}\n{short}\naside, k: back · {page}")
         } else if !self.follows() {
-            format!("not followed · {of} · {on}\n{of} · {on}")
+            format!("on your own · {of} · {on}\n{of} · {on}")
         } else if state.page == page && asks {
             let counts = format!("following · {of} · {}", state.answered);
             format!("{counts} of {} answered\n{counts} answered", state.here)
@@ -275,37 +331,49 @@ impl Student {
         }
     }
 
+    fn set_aside(&mut self, is_aside: bool) {
+        if self.record.is_aside != is_aside {
+            self.record.is_aside = is_aside;
+            self.record.aside_since_ms = unix_ms();
+            self.is_new = true;
+        }
+    }
+
     fn step_aside(&mut self, lab: &mut Lab) {
-        (self.record.is_aside, self.is_new) = (true, true);
-        self.shown = PresentedView::default();
+        self.set_aside(true);
+        self.follower.forget_shown();
         self.next_look = Duration::ZERO;
         lab.tell("you have stepped aside: k leads back to the class");
     }
 
-    /// Follows again. A run of one's own that was played meanwhile stays, pinned.
-    fn come_back(&mut self, lab: &mut Lab) {
-        (self.record.is_aside, self.is_new) = (false, true);
+    /// Follows again, for the reason `why`. A run of one's own that was played meanwhile stays, pinned.
+    fn come_back(&mut self, why: &str, lab: &mut Lab) {
+        self.set_aside(false);
+        self.follower.forget_shown();
         let player = lab.player();
         let own = player.run().scenario().to_toml();
-        let shown = self.state.as_ref().and_then(|state| state.shown.as_ref());
+        let shown = self.follower.state().and_then(|state| state.shown.as_ref());
         let is_own = lab.runs().is_above_floor()
             && player.step_number() > 0
             && shown.is_some_and(|shown| shown.snapshot.run != own);
         if is_own && lab.carry_out(&Command::Pin(true)).is_ok() {
             self.has_pinned = true;
-            let pinned =
-                "back in the class; your own run is pinned beside its run: i takes it away";
-            return lab.tell(pinned);
+            return lab.tell(format!(
+                "{why}; your own run is pinned beside its run: i takes it away"
+            ));
         }
-        lab.refuse("back in the class");
+        lab.refuse(why);
     }
 
     /// Returns what the header of an export says: the seat, and the page beside which it was made.
     fn note_for_exports(&self, lessons: &Lessons) -> Option<String> {
         let open = lessons.open_lesson().filter(|_| self.record.is_aside)?;
         let (page, lesson) = (open.place.page, &open.lesson.name);
-        let (seat, lesson) = (&self.seat.word, self.folder.short(lesson));
-        Some(format!("seat {seat}, beside page {page} of {lesson}"))
+        let lesson = self.follower.folder.short(lesson);
+        Some(format!(
+            "seat {}, beside page {page} of {lesson}",
+            self.seat.word
+        ))
     }
 }
 
@@ -322,12 +390,23 @@ impl ClassRole for Student {
         self.note(lessons);
         if now >= self.next_look || self.is_new && !was_new {
             self.next_look = now + CLASS_POLL_INTERVAL;
-            self.look(lab);
+            if self.waiting != WaitingPage::Unseen && self.follower.class().is_none() {
+                self.wait_for_class(lab, lessons); // what keys have done since the last look
+            }
+            self.look(lab, lessons);
             if self.follows() {
                 self.show_presented(lab, lessons);
+            } else if self.follower.class().is_none() {
+                self.wait_for_class(lab, lessons);
+            } else if self.record.is_aside
+                && lessons.open_lesson().is_none()
+                && lab.notice().is_none()
+            {
+                lab.tell("the class is on: k brings you to its page");
             }
             lab.files_mut().note = self.note_for_exports(lessons);
             lessons.set_overlay(self.overlay(lessons), lab);
+            self.note(lessons); // an answer that was marked may be locked now
             if self.is_new && self.ended.is_none() {
                 self.trouble = self.seat.save(&self.record).err();
                 self.is_new = self.trouble.is_some();
@@ -340,21 +419,21 @@ impl ClassRole for Student {
         ControlFlow::Continue(())
     }
 
-    fn on_class_key(&mut self, lab: &mut Lab, _lessons: &mut Lessons) {
-        if self.class().is_none() {
-            lab.refuse("no class is on");
+    fn on_class_key(&mut self, lab: &mut Lab, lessons: &mut Lessons) {
+        if self.follower.class().is_none() {
+            lessons.on_key(LessonKey::List, lab);
         } else if self.record.is_aside {
-            self.come_back(lab);
+            self.come_back("back in the class", lab);
         } else if self.follows() {
             self.step_aside(lab);
         } else {
-            lab.refuse("the class is not followed now: n and N turn pages");
+            lab.refuse(GO_ON_ALONE);
         }
         self.next_look = Duration::ZERO;
     }
 
     fn intercept(&mut self, key: LessonKey, lab: &mut Lab, _lessons: &Lessons) -> bool {
-        let is_of_teacher = key == LessonKey::Notes && self.is_on;
+        let is_of_teacher = key == LessonKey::Notes && self.follower.class().is_some();
         if is_of_teacher {
             lab.refuse("the notes are the teacher's");
         }
@@ -394,66 +473,4 @@ impl ClassRole for Student {
         })?;
         Ok(back)
     }
-}
-
-/// Returns what is hidden where the teacher's lab hides `presented`: what the page hides stays so until the predictions
-/// here are locked, whatever the teacher sees.
-fn hidden(presented: &[HideablePart], open: Option<&OpenLesson>) -> Vec<HideablePart> {
-    let page = open.and_then(|open| Some((open.page()?, &open.place.predictions)));
-    let Some((page, predictions)) = page.filter(|(page, _)| page.predicts().next().is_some())
-    else {
-        return presented.to_vec();
-    };
-    let mut hidden = Predictions::hidden_after_lock(page, presented);
-    if !predictions.are_locked_on(page) {
-        hidden.extend(page.lab().map(Setup::hides).unwrap_or_default());
-    }
-    hidden
-}
-
-/// Returns the step at which `run` is by now, and how many steps it may be off.
-fn expected_step(run: &PresentedRun, player: &Player, time_step_s: f64) -> (u64, f64) {
-    let since_s = unix_ms().saturating_sub(run.at_ms) as f64 / 1000.0;
-    let (ahead, off) = match run.snapshot.speed {
-        _ if !run.is_running => (0.0, 0.0),
-        Speed::Top => (0.0, f64::INFINITY),
-        Speed::Times(speed) => (
-            speed * since_s / time_step_s,
-            speed * OFF_S / time_step_s + 1.0,
-        ),
-    };
-    let step = run.snapshot.step.saturating_add(ahead as u64);
-    (step.min(player.end_step()), off)
-}
-
-/// Brings the run of `lab` to where `run` is by now. Returns whether it stands or plays there. A command that is refused
-/// leaves it where it is.
-fn sync_to_presenter(run: &PresentedRun, lab: &mut Lab) -> bool {
-    let player = lab.player();
-    if player.steps_to_go().is_some() {
-        return false;
-    }
-    let (step, off) = expected_step(run, player, player.motion().time_step_s);
-    let is_off = step.abs_diff(player.step_number()) as f64 > off;
-    let speed = run.snapshot.speed;
-    if player.speed() != speed {
-        let _ = lab.carry_out(&Command::Speed(speed));
-    }
-    if is_off {
-        let _ = lab.carry_out(&Command::GoTo(SeekTarget::Step(step)));
-    }
-    let there = lab.player();
-    if there.steps_to_go().is_some() {
-        return false;
-    }
-    let is_running = run.is_running && there.step_number() < there.end_step();
-    if is_running != there.is_running() {
-        let command = if is_running {
-            Command::Run
-        } else {
-            Command::Pause
-        };
-        let _ = lab.carry_out(&command);
-    }
-    true
 }

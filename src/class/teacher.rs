@@ -1,8 +1,10 @@
 //! The teacher's lab: what it shows goes to the class, and the votes of the class come to its pages.
 
+mod menu;
+
 use super::folder::{CLASS_VERSION, ClassFolder, ClassState, LONGEST_RUN, PresentedRun, VoteStage};
 use super::votes::{self, FEWEST_VOTES_SHOWN, SeatStatus, Tally, present, seat_statuses};
-use super::{CLASS_POLL_INTERVAL, ClassRole, LEAST_WAIT, login, unix_ms};
+use super::{CLASS_POLL_INTERVAL, ClassRole, LEAST_WAIT, unix_ms};
 use crate::engine::data::find_shipped;
 use crate::engine::scenario::Scenario;
 use crate::engine::text::printable::PrintablePath;
@@ -12,6 +14,8 @@ use crate::lab::{Lab, Snapshot};
 use crate::lessons::open_lesson::OpenLesson;
 use crate::lessons::page::ClassOverlay;
 use crate::lessons::{LessonPage, Lessons};
+use menu::ClassMenu;
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Duration;
@@ -24,27 +28,33 @@ pub struct Teacher {
     published: Option<ClassState>,
     is_followed: bool,
     menu: ClassMenu,
+    next_page: NextPageQuestion,
     seats: Vec<SeatStatus>,
     /// The run that was shown last, and its file.
     run: Option<(Arc<Scenario>, String)>,
     next_look: Duration,
     trouble: Option<String>,
+    /// If this is a rehearsal: what the teacher is told of it.
+    rehearsal: Option<Rehearsal>,
 }
 
-/// What the class's key has opened.
+/// What the teacher is told of a rehearsal.
+#[derive(Clone, Debug)]
+pub struct Rehearsal {
+    /// At its begin, and in the menu.
+    pub about: String,
+    /// When it is left.
+    pub at_end: String,
+}
+
+/// What `n` has asked for, where the class is not ready for the next page.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum ClassMenu {
+enum NextPageQuestion {
     #[default]
-    Closed,
-    Open,
-    /// The list of the seats, of which one is selected.
-    Seats(usize),
-}
-
-/// A line of the list of the seats.
-enum SeatEntry<'a> {
-    Waiting(login::WaitingSeat),
-    Seat(&'a SeatStatus),
+    NotAsked,
+    /// The key that is handled now has asked.
+    JustAsked,
+    Asked,
 }
 
 impl Teacher {
@@ -60,6 +70,14 @@ impl Teacher {
             state,
             is_followed: true,
             ..Self::default()
+        }
+    }
+
+    /// Makes it the teacher of a rehearsal.
+    pub fn rehearsing(self, rehearsal: Rehearsal) -> Self {
+        Self {
+            rehearsal: Some(rehearsal),
+            ..self
         }
     }
 
@@ -91,7 +109,9 @@ impl Teacher {
             self.state.kept.clone_from(&open.place.kept);
             self.state.has_arrived = !open.is_under_way();
         }
-        self.state.shown = self.is_followed.then(|| self.shown(lab)).flatten();
+        self.close_in_time();
+        self.state.is_followed = self.is_followed;
+        self.state.shown = self.shown(lab);
         self.state.here = present(&self.seats).0;
         self.state.answered = 0;
         let page = lessons.open_lesson().and_then(|open| open.page());
@@ -154,22 +174,13 @@ impl Teacher {
             format!("{of} · {counts} · {title}\n{of} · {counts}\n{of} · {here} here")
         });
         let page = lessons.open_lesson().and_then(|open| open.page());
-        let border = match (self.menu, self.is_followed) {
-            (ClassMenu::Closed, _) => "k: show, again, follow, seats\nk: class",
-            (ClassMenu::Open, true) => "1 show 2 again 3 unfollow 4 seats",
-            (ClassMenu::Open, false) => "1 show 2 again 3 follow 4 seats",
-            (ClassMenu::Seats(_), _) => "Enter closes, opens; Esc: back",
-        };
         ClassOverlay {
             framed: framed.unwrap_or_default(),
-            border: border.to_owned(),
+            border: self.menu.border().to_owned(),
             is_of_teacher: true,
-            asks_digit: self.menu == ClassMenu::Open,
+            asks_digit: matches!(self.menu, ClassMenu::Open(_)),
             votes: page.and_then(|page| self.votes(page)),
-            instead: match self.menu {
-                ClassMenu::Seats(selected) => Some(self.list(selected)),
-                _ => None,
-            },
+            instead: self.menu_page(page),
             ..ClassOverlay::default()
         }
     }
@@ -187,14 +198,18 @@ impl Teacher {
                 " · students see no bars: under 5 votes"
             }
             VoteStage::All => " · shown",
-            VoteStage::Closed => " · closed",
+        };
+        let end = match question.seconds_left(unix_ms()) {
+            Some(left) => format!(" · closes in {left} s"),
+            None if question.is_closed => " · closed".to_owned(),
+            None => String::new(),
         };
         let late = match tally.late {
             0 => String::new(),
             late => format!(" · {late} late"),
         };
-        let counted = format!("round {round} · {answered} of {here}");
-        let line = format!("{counted} · {minutes}:{seconds:02}{late}{seen}");
+        let counted = format!("round {round} · {answered} of {here} answered");
+        let line = format!("{counted} · {minutes}:{seconds:02}{late}{seen}{end}");
         let mut lines = vec![Paragraph::new(SheetLineKind::Note, line)];
         if question.stage != VoteStage::Counted {
             lines.push(tally.drawn());
@@ -204,89 +219,56 @@ impl Teacher {
         Some((predict.name.clone(), lines))
     }
 
-    /// Returns the seats that accept no code, then all seats.
-    fn entries(&self) -> Vec<SeatEntry<'_>> {
-        let waiting = login::waiting(&self.folder, unix_ms() / 1000).into_iter();
-        let seats = self.seats.iter().map(SeatEntry::Seat);
-        waiting.map(SeatEntry::Waiting).chain(seats).collect()
+    /// Closes the questions whose countdowns are over.
+    fn close_in_time(&mut self) {
+        let now_ms = unix_ms();
+        let lessons = self.state.questions.values_mut();
+        for question in lessons.flat_map(BTreeMap::values_mut) {
+            if question.is_closed_at(now_ms) {
+                question.close();
+            }
+        }
     }
 
-    fn list(&self, selected: usize) -> Vec<Paragraph> {
-        let mut list = vec![Paragraph::new(SheetLineKind::Heading, "The seats")];
-        for (index, entry) in self.entries().into_iter().enumerate() {
-            let (text, is_closed) = match entry {
-                SeatEntry::Waiting(seat) => (seat.in_words(), true),
-                SeatEntry::Seat(status) => (
-                    status.in_words(&self.state),
-                    self.state.closed.contains(&status.seat.word),
-                ),
-            };
-            let kind = SheetLineKind::Choice {
-                number: None,
-                is_selected: index == selected,
-                mark: if is_closed { "closed" } else { "" },
-            };
-            list.push(Paragraph::new(kind, text));
+    /// Returns what keeps the class from the next page, in words for the teacher: votes that are missing, or a run that
+    /// still plays.
+    fn why_wait(&self, lab: &Lab, open: &OpenLesson) -> Option<String> {
+        let page = open.page()?;
+        if let Some((predict, question)) = votes::question(page, &self.state)
+            && !question.is_closed
+        {
+            let here = self.seats.iter().filter(|status| status.is_here());
+            let (lesson, round) = (&open.lesson.name, question.round());
+            let (mut answered, mut all) = (0, 0);
+            for status in here {
+                all += 1;
+                answered += usize::from(status.vote(lesson, predict, round).is_some());
+            }
+            if answered < all {
+                return Some(format!(
+                    "{answered} of {all} have answered; press n again to go on"
+                ));
+            }
         }
-        let legend = if self.seats.is_empty() {
-            "No seat is taken yet."
+        let next = if open.plays() {
+            "jump to its end"
         } else {
-            "Enter opens a seat that is closed. lost: no sign for 10 s; away: left."
+            "go on"
         };
-        list.push(Paragraph::new(SheetLineKind::Hint, legend));
-        list
+        (self.is_followed && lab.player().is_running())
+            .then(|| format!("the run is still playing for the class; press n again to {next}"))
     }
 
-    /// Does what the menu has under `digit`.
-    fn choose(&mut self, digit: u8, lab: &mut Lab, open: Option<&OpenLesson>) {
-        self.menu = ClassMenu::Closed;
-        match digit {
-            1 | 2 => {
-                let page = open.and_then(OpenLesson::page);
-                let asked = page.and_then(|page| votes::question(page, &self.state));
-                let Some((predict, _)) = asked else {
-                    return lab.refuse("this page asks nothing");
-                };
-                let is_seen = open.is_some_and(|it| it.place.seen.contains(&predict.name));
-                let question = self.state.question_mut(&predict.name);
-                if digit == 2 {
-                    question.earlier_rounds = question.round();
-                    (question.stage, question.since_ms) = (VoteStage::Counted, unix_ms());
-                    let round = format!("round {}: the class votes again", question.round());
-                    let late = "; its outcome was seen, so votes count apart, as late";
-                    return lab.refuse(round + if is_seen { late } else { "" });
-                }
-                question.stage = match question.stage {
-                    VoteStage::Counted => VoteStage::Teacher,
-                    VoteStage::Teacher => VoteStage::All,
-                    VoteStage::All => VoteStage::Closed,
-                    VoteStage::Closed => return lab.refuse("closed: k 2 asks it again"),
-                };
-            }
-            3 => {
-                self.is_followed = !self.is_followed;
-                lab.refuse(if self.is_followed {
-                    "the class follows"
-                } else {
-                    "the class does not follow: k 3 lets it follow again"
-                });
-            }
-            4 => self.menu = ClassMenu::Seats(0),
-            _ => lab.refuse("1 shows the votes, 2 asks again, 3 lets the class follow, 4: seats"),
-        }
-    }
-
-    /// Closes the selected seat, or opens it; ends the wait of a seat that accepts no code.
-    fn close_or_open(&mut self, selected: usize, lab: &mut Lab) {
-        let word = match self.entries().into_iter().nth(selected) {
-            None => return,
-            Some(SeatEntry::Waiting(seat)) => return self.folder.forget_wrong_codes(&seat.word),
-            Some(SeatEntry::Seat(status)) => status.seat.word.clone(),
+    /// Asks before the page is turned while votes are missing or a run plays. Returns whether it asks.
+    fn asks_before_next(&mut self, lab: &mut Lab, lessons: &Lessons) -> bool {
+        let is_confirmed = self.next_page == NextPageQuestion::Asked;
+        let open = lessons.open_lesson().filter(|_| !is_confirmed);
+        let Some(why) = open.and_then(|open| self.why_wait(lab, open)) else {
+            return false;
         };
-        if !self.state.closed.remove(&word) {
-            lab.refuse(format!("{word} is closed: Enter opens it again"));
-            self.state.closed.insert(word);
-        }
+        self.next_page = NextPageQuestion::JustAsked;
+        lab.refuse(why);
+        true
     }
 }
 
@@ -296,6 +278,9 @@ impl ClassRole for Teacher {
             (&open.lesson.name, open.place.page) != (&self.state.lesson, self.state.page)
         });
         if now >= self.next_look || is_new {
+            if let Some(rehearsal) = self.rehearsal.as_ref().filter(|_| self.published.is_none()) {
+                lab.tell(rehearsal.about.clone());
+            }
             self.next_look = now + CLASS_POLL_INTERVAL;
             self.trouble = None;
             self.look(lab, lessons);
@@ -307,7 +292,7 @@ impl ClassRole for Teacher {
 
     fn on_class_key(&mut self, lab: &mut Lab, lessons: &mut Lessons) {
         self.menu = match self.menu {
-            ClassMenu::Closed => ClassMenu::Open,
+            ClassMenu::Closed => ClassMenu::Open(0),
             _ => ClassMenu::Closed,
         };
         lessons.set_overlay(self.overlay(lessons), lab);
@@ -315,26 +300,17 @@ impl ClassRole for Teacher {
     }
 
     fn intercept(&mut self, key: LessonKey, lab: &mut Lab, lessons: &Lessons) -> bool {
-        match (self.menu, key) {
-            (ClassMenu::Closed, _) => return false,
-            (ClassMenu::Open, LessonKey::Digit(digit)) => {
-                self.choose(digit, lab, lessons.open_lesson());
-            }
-            (ClassMenu::Seats(selected), LessonKey::Move(direction)) => {
-                let last = self.entries().len().saturating_sub(1);
-                let moved = selected.saturating_add_signed(direction.rows(10));
-                self.menu = ClassMenu::Seats(moved.min(last));
-            }
-            (ClassMenu::Seats(selected), LessonKey::Take) => self.close_or_open(selected, lab),
-            (_, key) => {
-                self.menu = ClassMenu::Closed;
-                return key == LessonKey::Leave;
-            }
+        if self.menu == ClassMenu::Closed {
+            return key == LessonKey::Next && self.asks_before_next(lab, lessons);
         }
-        true
+        self.on_menu_key(key, lab, lessons.open_lesson())
     }
 
     fn after_keys(&mut self, _lab: &mut Lab, _lessons: &Lessons) {
+        self.next_page = match self.next_page {
+            NextPageQuestion::JustAsked => NextPageQuestion::Asked,
+            _ => NextPageQuestion::NotAsked,
+        };
         self.next_look = Duration::ZERO;
     }
 
@@ -349,6 +325,9 @@ impl ClassRole for Teacher {
     fn leave(&mut self) -> Result<String, String> {
         self.state.is_on = false;
         self.folder.publish(&self.state)?;
+        if let Some(rehearsal) = &self.rehearsal {
+            return Ok(rehearsal.at_end.clone());
+        }
         let root = PrintablePath(&self.folder.root);
         Ok(format!("gyrolab class --resume --folder {root} goes on"))
     }

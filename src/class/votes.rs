@@ -1,7 +1,7 @@
 //! The votes of a question, counted: as bars, as advice to the teacher, and as CSV.
 
 use super::ClassFolder;
-use super::folder::{ClassState, QuestionState, VoteStage};
+use super::folder::{ClassState, QuestionState};
 use super::seat::{Presence, Seat, SeatRecord, all_seats};
 use crate::engine::text::number::{shortest, significant};
 use crate::engine::text::printable::printable;
@@ -92,23 +92,84 @@ impl SeatStatus {
         place.predictions.in_round(of, round)
     }
 
-    /// Its word, and how it is there, as the lists of the teacher have it.
-    pub fn in_words(&self, state: &ClassState) -> String {
-        let word = &self.seat.word;
-        let is_there = match self.presence {
-            _ if state.closed.contains(word) => "closed",
-            Presence::Away => "away",
-            Presence::Lost => "lost",
-            Presence::Here if self.is_aside => "aside",
-            Presence::Here => "here",
+    /// Returns how the seat stands with the class, while the class is at the question `asked`.
+    pub fn standing(
+        &self,
+        state: &ClassState,
+        asked: Option<&(&Predict, QuestionState)>,
+    ) -> SeatStanding {
+        match (self.presence, asked) {
+            _ if state.closed.contains(&self.seat.word) => SeatStanding::Closed,
+            (Presence::Away, _) => SeatStanding::Away,
+            (Presence::Lost, _) => SeatStanding::Lost,
+            (Presence::Here, None) => SeatStanding::Here,
+            (Presence::Here, Some((predict, question))) => {
+                let vote = self.vote(&state.lesson, predict, question.round());
+                if vote.is_some() {
+                    SeatStanding::Answered
+                } else {
+                    SeatStanding::NotAnswered
+                }
+            }
+        }
+    }
+
+    /// Its word, and how it stands, as the lists of the teacher have it.
+    pub fn in_words(&self, standing: SeatStanding) -> String {
+        let aside = if self.is_aside && standing.is_here() {
+            ", aside"
+        } else {
+            ""
         };
         let unread = if self.trouble.is_some() {
             ", its file cannot be read"
         } else {
             ""
         };
-        format!("{word}: {is_there}{unread}")
+        let word = &self.seat.word;
+        format!("{word}: {}{aside}{unread}", standing.words())
     }
+}
+
+/// How a seat stands with the class, in the order of the teacher's lists.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum SeatStanding {
+    NotAnswered,
+    Answered,
+    /// Somebody sits there, and the page asks nothing.
+    Here,
+    Lost,
+    Away,
+    Closed,
+}
+
+impl SeatStanding {
+    pub fn is_here(self) -> bool {
+        matches!(self, Self::NotAnswered | Self::Answered | Self::Here)
+    }
+
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::NotAnswered => "not answered",
+            Self::Answered => "answered",
+            Self::Here => "here",
+            Self::Lost => "lost",
+            Self::Away => "away",
+            Self::Closed => "closed",
+        }
+    }
+}
+
+/// Returns `seats` with their standings: who has not answered first, then who has, then the rest; by name within each.
+pub fn in_order<'a>(
+    seats: &'a [SeatStatus],
+    state: &ClassState,
+    asked: Option<&(&Predict, QuestionState)>,
+) -> Vec<(SeatStanding, &'a SeatStatus)> {
+    let standings = seats.iter().map(|seat| (seat.standing(state, asked), seat));
+    let mut ordered: Vec<_> = standings.collect();
+    ordered.sort_by_key(|(standing, _)| *standing); // stable
+    ordered
 }
 
 /// The votes of one round of a question.
@@ -219,7 +280,7 @@ pub fn question<'a>(
     state: &ClassState,
 ) -> Option<(&'a Predict, QuestionState)> {
     let mut all = page.predicts();
-    let open = all.find(|it| state.question(&it.name).stage != VoteStage::Closed);
+    let open = all.find(|it| !state.question(&it.name).is_closed);
     let asked = open.or_else(|| page.predicts().next())?;
     Some((asked, state.question(&asked.name)))
 }

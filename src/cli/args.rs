@@ -1,6 +1,7 @@
 //! Arguments that several commands have, and the scenario that they mean.
 
 use super::argument_values::{frames, length, one_or_more, positive, setting, steps};
+use crate::class::rehearsal::MOST_PLAYERS;
 use crate::engine::data::{ColumnOptions, ColumnSigma};
 use crate::engine::run::Simulation;
 use crate::engine::scenario::csv::{Renaming, renaming};
@@ -200,12 +201,23 @@ impl LengthArgs {
 #[derive(Debug, Args)]
 pub(super) struct ClassArgs {
     /// A shipped lesson's name, or a file (.md) in the folder
-    #[arg(required_unless_present = "instead", conflicts_with = "instead")]
+    #[arg(required_unless_present_any = ["instead", "new"], conflicts_with = "instead")]
     pub(super) lesson: Option<String>,
 
     /// The folder of the class
-    #[arg(long, value_name = "DIR")]
-    pub(super) folder: PathBuf,
+    #[arg(long, value_name = "DIR", required_unless_present = "rehearse")]
+    pub(super) folder: Option<PathBuf>,
+
+    /// Begin with a new group: keep seats and votes of the group before in DIR/.gyrolab/earlier
+    #[arg(long, conflicts_with = "instead")]
+    pub(super) new: bool,
+
+    /// Practice alone: this many players, 1 to 30, take seats and answer
+    ///
+    /// In a folder of its own, which is removed at the end; or in DIR, which must be empty, and is kept.
+    #[arg(long, value_name = "PLAYERS", requires = "lesson", conflicts_with = "new",
+          value_parser = clap::value_parser!(u64).range(1..=MOST_PLAYERS))]
+    pub(super) rehearse: Option<u64>,
 
     /// Go on where the class was left: page, rounds and votes
     #[arg(long, group = "instead")]
@@ -214,6 +226,10 @@ pub(super) struct ClassArgs {
     /// Show the class on a second terminal: seats, votes, notes, the clock
     #[arg(long, group = "instead")]
     pub(super) board: bool,
+
+    /// Show the class's page, run and bars to all: nothing that only the teacher may see
+    #[arg(long, group = "instead")]
+    pub(super) projector: bool,
 
     /// Print all votes as CSV
     #[arg(long, group = "instead")]

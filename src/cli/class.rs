@@ -1,22 +1,24 @@
 //! `gyrolab class` and `gyrolab --seat`: a class in a folder.
 
-use super::args::{ClassArgs, WorkbenchArgs};
+use super::args::{ClassArgs, DisplayArgs, WorkbenchArgs};
 use super::lesson::admit;
-use super::new_lab::DEFAULT;
-use super::workbench::open_at;
-use super::{answers, print, sessions, tell};
+use super::new_lab::{DEFAULT, of_workbench};
+use super::workbench::{furnish, open_at};
+use super::{answers, print, rehearsal, sessions, settings, tell};
 use crate::class::folder::ClassFolder;
+use crate::class::projector::Projector;
 use crate::class::student::Student;
-use crate::class::teacher::Teacher;
+use crate::class::teacher::{Rehearsal, Teacher};
 use crate::class::votes::{self, SeatStatus, seat_statuses};
 use crate::class::{Seat, board, login, table};
 use crate::engine::text::printable::{PrintablePath, printable};
 use crate::lab::storage::confined::{Confined, MOST_OF_SEAT};
 use crate::lab::storage::session;
 use crate::lessons::clock::unix_s;
-use crate::lessons::opening;
+use crate::lessons::{Lessons, opening};
 use crate::tui;
 use anyhow::{Context, bail, ensure};
+use chrono::Local;
 use rustix::process::{Pid, Resource, Signal};
 use std::fs::{File, TryLockError};
 use std::io::{self, BufRead, IsTerminal, Read, Write};
@@ -33,7 +35,12 @@ const LONGEST_SEAT_LINE: u64 = 200;
 const PENALTY: Duration = Duration::from_secs(1);
 
 pub(super) fn class(args: &ClassArgs) -> anyhow::Result<ExitCode> {
-    let at = || ClassFolder::at(&args.folder).map_err(anyhow::Error::msg);
+    if let Some(players) = args.rehearse {
+        return rehearsal::rehearse(args, players);
+    }
+    // clap asks for the folder.
+    let dir = args.folder.as_deref().unwrap_or(Path::new("."));
+    let at = || ClassFolder::at(dir).map_err(anyhow::Error::msg);
     if args.votes {
         return print_csv(&at()?, votes::csv);
     }
@@ -46,32 +53,76 @@ pub(super) fn class(args: &ClassArgs) -> anyhow::Result<ExitCode> {
     if let (true, Some(output)) = (args.answers, &args.output) {
         return answers::write_all(&at()?, output, args.force, args.look);
     }
+    if args.projector {
+        return project(at()?, args.look);
+    }
+    if args.new {
+        begin_anew(dir)?;
+    }
+    match &args.lesson {
+        None if args.new => Ok(ExitCode::SUCCESS),
+        lesson => teach(args, dir, lesson.as_deref(), None),
+    }
+}
+
+pub(super) fn ensure_terminal() -> anyhow::Result<()> {
     ensure!(
         io::stdin().is_terminal() && io::stdout().is_terminal(),
         "a class needs a terminal for the teacher's lab; --board, --votes, --table and --answers do not"
     );
-    teach(args)
+    Ok(())
 }
 
-/// Opens the teacher's lab.
-fn teach(args: &ClassArgs) -> anyhow::Result<ExitCode> {
-    let folder = ClassFolder::open(&args.folder).map_err(anyhow::Error::msg)?;
+/// The teacher's folder, which only one lab may have open. The file is open as long as it has.
+fn lock_class(folder: &ClassFolder) -> anyhow::Result<File> {
     folder.make_teacher().map_err(anyhow::Error::msg)?;
-    let confined = Confined::enter(&args.folder)
-        .with_context(|| sessions::named(&args.folder))?
-        .keeping_in(folder.teacher());
-    let sessions = session::list(&folder.teacher())?;
-    let turn = File::open(folder.teacher())?; // held until the lab is left
+    let turn = File::open(folder.teacher())?;
     ensure!(
         !matches!(turn.try_lock(), Err(TryLockError::WouldBlock)),
         "a class is on in {}: its board is gyrolab class --board --folder DIR",
         PrintablePath(&folder.root)
     );
+    Ok(turn)
+}
+
+/// Keeps the seats and the votes in `dir` for the teacher, so that a new group begins with none.
+fn begin_anew(dir: &Path) -> anyhow::Result<()> {
+    let folder = ClassFolder::open(dir).map_err(anyhow::Error::msg)?;
+    let _turn = lock_class(&folder)?;
+    let name = Local::now().format("%Y-%m-%d_%H-%M-%S").to_string();
+    match folder.keep_as_earlier(&name).map_err(anyhow::Error::msg)? {
+        None => tell(format_args!(
+            "gyrolab: no group was in {}: there is nothing to keep",
+            PrintablePath(dir)
+        )),
+        Some(group) => tell(format_args!(
+            "gyrolab: the group before is kept in {group}\n\
+             gyrolab: its votes: gyrolab class --votes --folder {group}",
+            group = PrintablePath(&group)
+        )),
+    }
+    Ok(())
+}
+
+/// Opens the teacher's lab of the class in `dir`, or of a rehearsal.
+pub(super) fn teach(
+    args: &ClassArgs,
+    dir: &Path,
+    lesson: Option<&str>,
+    rehearsal: Option<Rehearsal>,
+) -> anyhow::Result<ExitCode> {
+    ensure_terminal()?;
+    let folder = ClassFolder::open(dir).map_err(anyhow::Error::msg)?;
+    let _turn = lock_class(&folder)?; // held until the lab is left
+    let confined = Confined::enter(dir)
+        .with_context(|| sessions::named(dir))?
+        .keeping_in(folder.teacher());
+    let sessions = session::list(&folder.teacher())?;
     let before = match folder.state() {
         Err(reason) if args.resume => bail!(reason),
         state => state.ok().flatten().unwrap_or_default(),
     };
-    let (name, page) = match &args.lesson {
+    let (name, page) = match lesson {
         Some(name) => (opening::full_name(name), 1),
         None if before.lesson.is_empty() => {
             bail!("no class has begun here: gyrolab class LESSON --folder DIR")
@@ -79,16 +130,48 @@ fn teach(args: &ClassArgs) -> anyhow::Result<ExitCode> {
         None => (before.lesson.clone(), before.page.max(1)),
     };
     admit(&name, &confined).context("the lesson of a class lies in its folder")?;
-    let lesson = opening::open(&name)?;
+    let opened = opening::open(&name)?;
     let workbench = WorkbenchArgs {
         paused: true,
         look: args.look,
         resume: (args.resume && !sessions.is_empty()).then(String::new),
         ..WorkbenchArgs::default()
     };
-    let page = Some((&lesson, page.min(lesson.pages.len())));
-    let teacher = Box::new(Teacher::new(folder, before));
-    open_at(&workbench, DEFAULT, Some(confined), page, Some(teacher))
+    let page = Some((&opened, page.min(opened.pages.len())));
+    let teacher = Teacher::new(folder, before);
+    let teacher = match rehearsal {
+        Some(rehearsal) => teacher.rehearsing(rehearsal),
+        None => teacher,
+    };
+    open_at(
+        &workbench,
+        DEFAULT,
+        Some(confined),
+        page,
+        Some(Box::new(teacher)),
+    )
+}
+
+/// Shows the class in `folder` to all of it.
+fn project(folder: ClassFolder, look: DisplayArgs) -> anyhow::Result<ExitCode> {
+    ensure!(
+        io::stdin().is_terminal() && io::stdout().is_terminal(),
+        "--projector needs a terminal"
+    );
+    let args = WorkbenchArgs {
+        paused: true,
+        look,
+        ..WorkbenchArgs::default()
+    };
+    let settings_in = sessions::folder_of(None);
+    let chosen = settings::read(settings_in.as_deref().ok(), false);
+    let args = chosen.complete(&args);
+    let mut lab = of_workbench(&args, DEFAULT)?;
+    furnish(&mut lab, &args, None)?;
+    let mut projector = Projector::new(folder);
+    tui::projector::run(&mut lab, &mut Lessons::default(), &mut projector)
+        .context("the terminal cannot be used")?;
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Prints what `csv` makes of the seats in `folder`.
@@ -152,10 +235,9 @@ pub(super) fn seat(args: &WorkbenchArgs, dir: &Path) -> anyhow::Result<ExitCode>
         .map_err(anyhow::Error::msg)
         .with_context(|| format!("the file of the seat {}", seat.word))?;
     let has_session = session::list(&sessions).is_ok_and(|sessions| !sessions.is_empty());
-    let is_on = folder.is_teacher_alive();
     let args = WorkbenchArgs {
         resume: has_session.then(String::new),
-        paused: is_on || args.paused,
+        paused: true, // the class's run comes, or the page on which it is waited for
         ..args.clone()
     };
     let student = Box::new(Student::new(folder, seat, lock_token, record));

@@ -21,6 +21,7 @@ mod manual;
 mod new_lab;
 mod notes;
 mod progress;
+mod rehearsal;
 mod run;
 mod sessions;
 mod settings;

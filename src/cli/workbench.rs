@@ -131,7 +131,11 @@ pub(super) fn open_at(
 }
 
 /// Gives `lab` its folder, its measured data, and what the terminal can do.
-fn furnish(lab: &mut Lab, args: &WorkbenchArgs, confined: Option<Confined>) -> anyhow::Result<()> {
+pub(super) fn furnish(
+    lab: &mut Lab,
+    args: &WorkbenchArgs,
+    confined: Option<Confined>,
+) -> anyhow::Result<()> {
     if let Some(folder) = confined {
         lab.files_mut().confine(folder);
     }

@@ -4,6 +4,7 @@
 use super::answer::{ActionResult, Done};
 use super::player::{Halt, MOST_UNTIL, Player};
 use super::runs::Runs;
+use super::sheet::AskedAnswer;
 use super::view::{HideablePart, View};
 use crate::engine::journal::changed;
 use crate::engine::scenario::presets;
@@ -182,10 +183,14 @@ pub(super) fn next<'a>(view: &'a View, runs: &'a Runs, player: &'a Player) -> Op
 
 /// Returns the line about what there is to see in the run.
 pub(super) fn note<'a>(view: &'a View, runs: &'a Runs, player: &'a Player) -> Cow<'a, str> {
+    if view.asked() == Some(AskedAnswer::Elsewhere) {
+        return "".into();
+    }
     if view.asked().is_some() {
         return "The verdict and the exact motion come back when you have predicted.".into();
     }
-    if view.hides(HideablePart::LookAt) {
+    let is_alone = view.sheet.as_ref().is_some_and(|sheet| sheet.is_alone);
+    if is_alone || view.hides(HideablePart::LookAt) {
         return "".into();
     }
     let set = view.look.look_at.as_deref();

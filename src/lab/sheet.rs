@@ -22,6 +22,8 @@ pub struct Sheet {
     pub has_next: bool,
     /// Whether it is a list that what is typed filters.
     pub is_list: bool,
+    /// Whether it has the whole screen: nothing of the run is shown.
+    pub is_alone: bool,
     /// What stands on its rule instead of the title, where that is not empty: it may change while the page stays.
     pub framed: String,
     /// What stands in its last row.
@@ -38,6 +40,8 @@ pub enum AskedAnswer {
         is_chosen: bool,
     },
     Number,
+    /// It is given in other labs.
+    Elsewhere,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -94,6 +98,19 @@ pub enum Emphasis {
     Strong,
     /// Keys, names and formulas.
     Code,
+}
+
+impl SheetLineKind {
+    /// Returns whether it is the selected one of several choices.
+    pub fn is_selected(&self) -> bool {
+        matches!(
+            self,
+            Self::Choice {
+                is_selected: true,
+                ..
+            }
+        )
+    }
 }
 
 impl Paragraph {

@@ -24,6 +24,8 @@ pub struct ClassOverlay {
     pub border: String,
     /// Whether the page may be turned though its question is open, and whether a digit is the class's.
     pub is_of_teacher: bool,
+    /// Whether the page is the projector's: the votes stand below an open question, and no key answers it.
+    pub is_of_projector: bool,
     pub asks_digit: bool,
     /// Whether the class is followed.
     pub is_followed: bool,
@@ -33,6 +35,8 @@ pub struct ClassOverlay {
     pub votes: Option<(String, Vec<Paragraph>)>,
     /// What stands there instead of the page.
     pub instead: Option<Vec<Paragraph>>,
+    /// What stands above the list of lessons where no class is on; the list then has the whole screen.
+    pub waiting: Option<Vec<Paragraph>>,
 }
 
 /// Returns the list of the lessons called `names`, those that match `filter`, of which one is `selected`; `left` tells where
@@ -42,6 +46,7 @@ pub(super) fn list(
     filter: &str,
     selected: usize,
     left: &BTreeMap<String, LessonProgress>,
+    overlay: &ClassOverlay,
 ) -> Sheet {
     let mut sheet = Sheet {
         title: match filter {
@@ -50,6 +55,8 @@ pub(super) fn list(
         },
         enter: "open",
         is_list: true,
+        is_alone: overlay.waiting.is_some(),
+        paragraphs: overlay.waiting.clone().unwrap_or_default(),
         ..Sheet::default()
     };
     for (index, name) in names.iter().enumerate() {
@@ -88,6 +95,15 @@ pub(super) fn list(
     sheet
 }
 
+/// Returns a sheet of `paragraphs` that has the whole screen.
+pub(super) fn alone(paragraphs: Vec<Paragraph>) -> Sheet {
+    Sheet {
+        is_alone: true,
+        paragraphs,
+        ..Sheet::default()
+    }
+}
+
 /// Returns the page of `open`; `now` is the time since the lab was opened.
 pub(super) fn sheet(open: &OpenLesson, overlay: &ClassOverlay, now: Duration, lab: &Lab) -> Sheet {
     let lesson = &open.lesson;
@@ -108,6 +124,10 @@ pub(super) fn sheet(open: &OpenLesson, overlay: &ClassOverlay, now: Duration, la
     };
     if let Some(paragraphs) = &overlay.instead {
         writer.extend(paragraphs.clone());
+        writer.sheet.takes_digits = overlay.asks_digit;
+        writer.sheet.enter = "do it";
+        let selected = paragraphs.iter().position(|it| it.kind.is_selected());
+        writer.sheet.seen = selected.map(|at| (at, at));
         return writer.sheet;
     }
     writer.notes(now);
@@ -197,17 +217,19 @@ impl Writer<'_> {
                     self.extend(paragraphs(&source, &SheetLineKind::Text));
                 }
                 LessonBlock::Predict(predict) => {
-                    let first = self.sheet.paragraphs.len();
                     self.question(predict);
                     // The class's answers wait for one's own.
-                    let is_shown = self.overlay.is_of_teacher || !self.open.is_open(predict);
+                    let is_shown = self.overlay.is_of_teacher
+                        || self.overlay.is_of_projector
+                        || !self.open.is_open(predict);
                     if let Some((name, votes)) = &self.overlay.votes
                         && *name == predict.name
                         && is_shown
                     {
+                        let below = self.sheet.paragraphs.len();
                         self.extend(votes.clone());
                         self.sheet.seen = None;
-                        self.is_seen_from(first);
+                        self.is_seen_from(below);
                     }
                     if self.open.is_open(predict) {
                         return true;
@@ -324,8 +346,9 @@ impl Writer<'_> {
         }
         self.rounds_of(predict);
         if is_open {
-            self.sheet.takes_digits = true;
+            self.sheet.takes_digits = !self.overlay.is_of_projector;
             self.sheet.asked = Some(match &predict.asked {
+                _ if self.overlay.is_of_projector => AskedAnswer::Elsewhere,
                 AnswerKind::Choice(choices) => AskedAnswer::Choice {
                     count: choices.len(),
                     is_chosen: chosen.is_some(),

@@ -131,6 +131,11 @@ impl Lessons {
         Ok(())
     }
 
+    /// Returns whether the list of lessons is shown.
+    pub fn is_listing(&self) -> bool {
+        matches!(self.shown, LessonDialog::List { .. })
+    }
+
     pub fn open_lesson(&self) -> Option<&OpenLesson> {
         match &self.shown {
             LessonDialog::Lesson(open) => Some(open),
@@ -291,6 +296,24 @@ impl Lessons {
         self.show(lab);
     }
 
+    /// Locks the answer that is chosen for the question `name`, as the vote of `round`, which is over; only if the open
+    /// page is `page` of that lesson. Returns the answer in short.
+    pub fn lock_chosen(
+        &mut self,
+        (lesson, page): (&str, usize),
+        name: &str,
+        round: u32,
+        lab: &mut Lab,
+    ) -> Option<String> {
+        let LessonDialog::Lesson(open) = &mut self.shown else {
+            return None;
+        };
+        let is_here = (open.lesson.name.as_str(), open.place.page) == (lesson, page);
+        let locked = is_here.then(|| open.lock_chosen(name, round, lab))??;
+        self.show(lab);
+        Some(locked)
+    }
+
     /// Brings the page up to date with the lab and the file; `now` is the time since the lab was opened.
     pub fn update(&mut self, now: Duration, lab: &mut Lab) {
         let second = now.as_secs() != self.now.as_secs();
@@ -323,10 +346,14 @@ impl Lessons {
     fn sheet(&mut self, lab: &Lab) -> Option<Sheet> {
         let names = self.listed();
         match &mut self.shown {
-            LessonDialog::Nothing => None,
-            LessonDialog::List { selected, filter } => {
-                Some(page::list(&names, filter, *selected, &self.left))
-            }
+            LessonDialog::Nothing => self.overlay.instead.clone().map(page::alone),
+            LessonDialog::List { selected, filter } => Some(page::list(
+                &names,
+                filter,
+                *selected,
+                &self.left,
+                &self.overlay,
+            )),
             LessonDialog::Lesson(open) => Some(page::sheet(open, &self.overlay, self.now, lab)),
         }
     }

@@ -70,7 +70,7 @@ pub fn run(
 }
 
 /// Advances run, class and lessons. Returns whether the run has arrived where it was to go, and whether the lab is to end.
-fn advance_all(
+pub(super) fn advance_all(
     lab: &mut Lab,
     lessons: &mut Lessons,
     role: &mut dyn ClassRole,
@@ -112,7 +112,7 @@ fn panic_if_asked(elapsed: Duration) {
 }
 
 /// How long to wait for events, if the next frame is due in `to_frame`.
-fn idle_time(lab: &Lab, lessons: &Lessons, to_frame: Duration) -> Duration {
+pub(super) fn idle_time(lab: &Lab, lessons: &Lessons, to_frame: Duration) -> Duration {
     if lab.player().is_flat_out() {
         Duration::ZERO
     } else if lab.player().is_busy() || lab.has_changed() {

@@ -7,30 +7,30 @@ use super::screen::to_ascii;
 use super::terminal::{Event, Screen};
 use super::theme::marker;
 use crate::engine::text::printable::printable;
+use crate::lab::action::Direction;
 use crate::lab::view::theme::Marker;
-use ratatui::style::Style;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::style::{Modifier, Style};
 use std::io;
 use std::time::Duration;
 
 /// How often the lines are written anew.
 const BOARD_INTERVAL: Duration = Duration::from_millis(500);
 
-/// Shows `lines`, which are given the width of the screen, until q, Esc or Ctrl-C.
+/// Shows `lines`, which are given the width of the screen, until q, Esc or Ctrl-C. Where they are more than the screen has
+/// rows, arrows and page keys scroll them.
 pub fn run(lines: impl Fn(usize) -> Vec<String>) -> io::Result<()> {
     let mut screen = Screen::enter()?;
     let is_ascii = marker(|name| std::env::var(name).ok()) == Marker::Ascii;
+    let mut first = 0;
     loop {
-        let shown = lines(screen.size()?.width.into());
+        let size = screen.size()?;
+        let shown = lines(size.width.into());
+        let rows = rows_of(&shown, size);
+        first = first.min(shown.len() - rows);
         screen.draw(|area, buf| {
-            for (line, y) in shown.iter().zip(area.top()..area.bottom()) {
-                buf.set_stringn(
-                    area.left(),
-                    y,
-                    printable(line),
-                    area.width.into(),
-                    Style::new(),
-                );
-            }
+            draw(&shown, first, area, buf);
             if is_ascii {
                 to_ascii(area, buf);
             }
@@ -40,11 +40,61 @@ pub fn run(lines: impl Fn(usize) -> Vec<String>) -> io::Result<()> {
                 Event::Typed(Typed::Key(Key::Char('q') | Key::Esc | Key::Ctrl('c'))) => {
                     return Ok(());
                 }
+                Event::Typed(Typed::Key(key)) => {
+                    let by = direction(key).map_or(0, |it| it.rows(rows as isize));
+                    first = first.saturating_add_signed(by).min(shown.len() - rows);
+                }
                 Event::Suspend if can_be_resumed() => screen.suspend(false)?,
                 Event::Resumed => screen.resume()?,
                 Event::Resized => screen.forget()?,
                 Event::Suspend | Event::Typed(_) => {}
             }
         }
+    }
+}
+
+/// How many of `lines` a screen of this size shows. Where it has no room for all, its last row names the keys.
+fn rows_of(lines: &[String], size: Rect) -> usize {
+    let rows = usize::from(size.height);
+    if lines.len() <= rows {
+        lines.len()
+    } else {
+        rows.saturating_sub(1)
+    }
+}
+
+/// Returns the direction in which `key` scrolls, if it does.
+pub(super) fn direction(key: Key) -> Option<Direction> {
+    Some(match key {
+        Key::Up => Direction::Up,
+        Key::Down => Direction::Down,
+        Key::PageUp => Direction::PageUp,
+        Key::PageDown | Key::Char(' ') => Direction::PageDown,
+        Key::Home => Direction::First,
+        Key::End => Direction::Last,
+        _ => return None,
+    })
+}
+
+fn draw(lines: &[String], first: usize, area: Rect, buf: &mut Buffer) {
+    let rows = rows_of(lines, area);
+    let shown = lines.iter().skip(first).take(rows);
+    let mut write = |text: &str, y: u16, style: Style| {
+        buf.set_stringn(area.left(), y, printable(text), area.width.into(), style);
+    };
+    for (line, y) in shown.zip(area.top()..) {
+        write(line, y, Style::new());
+    }
+    if rows < lines.len() && !area.is_empty() {
+        let (last, all) = (first + rows, lines.len());
+        let text = format!(
+            "lines {} to {last} of {all}; arrows and PgDn scroll; q leaves",
+            first + 1
+        );
+        write(
+            &text,
+            area.bottom() - 1,
+            Style::new().add_modifier(Modifier::DIM),
+        );
     }
 }

@@ -79,6 +79,9 @@ impl ScreenLayout {
     /// Returns the layout of `area`, with a note that needs `note_rows`; `keys` says whether there is a row of keys.
     pub fn new(area: Rect, view: &View, note_rows: u16, keys: bool) -> Self {
         let mut rest = area;
+        if view.sheet.as_ref().is_some_and(|sheet| sheet.is_alone) {
+            return Self::of_sheet_alone(rest, keys);
+        }
         let header = cut_top(&mut rest, u16::from(area.height >= 3));
         if view.look.bare {
             // A message is in the last row, over the panes.
@@ -123,6 +126,19 @@ impl ScreenLayout {
         self.panes
             .iter()
             .find_map(|&(other, place)| (other == pane).then_some(place))
+    }
+
+    /// Returns the layout where a sheet has the screen alone: it, the row of messages, and the keys.
+    fn of_sheet_alone(mut rest: Rect, keys: bool) -> Self {
+        let height = rest.height;
+        let keys = cut_bottom(&mut rest, u16::from(keys && height >= 6));
+        let note = cut_bottom(&mut rest, u16::from(height >= 5));
+        Self {
+            panes: vec![(Pane::Lesson, rest)],
+            note,
+            keys,
+            ..Self::default()
+        }
     }
 
     /// Returns the panes that are side by side while none fills the screen.

@@ -17,7 +17,7 @@
 //!   slide; [`layout`] says which places those are, [`theme`] has the styles of all roles, [`dots`] says what dots
 //!   look like, [`points`] what was measured, [`layered_dots`] lines that cross, [`labels`] their names; [`plane`] takes metres to dots and cells,
 //!   [`split`] a part of the screen to two.
-//! - [`board`] shows lines without a lab. [`job_control`] tells whether Ctrl-Z may stop the program.
+//! - [`board`] shows lines without a lab, [`projector`](mod@projector) a lab that no key changes. [`job_control`] tells whether Ctrl-Z may stop the program.
 
 pub mod app;
 pub mod board;
@@ -35,6 +35,7 @@ pub mod panes;
 pub mod plane;
 pub mod points;
 pub mod press;
+pub mod projector;
 pub mod screen;
 pub mod split;
 pub mod svg;

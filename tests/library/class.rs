@@ -408,7 +408,8 @@ fn a_question_closes_and_the_state_comes_back() {
     };
     let questions = state.questions.entry(LESSON.to_owned()).or_default();
     let question = questions.entry("finer".to_owned()).or_default();
-    (question.earlier_rounds, question.stage) = (1, VoteStage::Closed);
+    (question.earlier_rounds, question.stage) = (1, VoteStage::All);
+    question.is_closed = true;
     folder.publish(&state).unwrap();
     let back = folder.state().unwrap().unwrap();
     assert_eq!(back, state);

@@ -69,7 +69,7 @@ fn a_class_follows_votes_and_loses_nothing() {
     back.wait_for_end();
     assert!(back.sent_text().contains("opened in another lab"));
     // A second round, and a teacher's lab that is killed.
-    teacher.ask("k", "1 show 2 again");
+    teacher.ask("k", "ask again: round 2");
     teacher.press("2");
     vote(&mut again);
     teacher.wait_for("round 2 · 1 of 2");
@@ -110,7 +110,7 @@ fn a_seat_reaches_nothing_of_another() {
     let seat = ground.file(&format!(".gyrolab/seats/{word}/mine.csv"));
     assert!(seat.exists());
     // The teacher closes it.
-    teacher.ask("k", "4 seats");
+    teacher.ask("k", "list the seats");
     teacher.ask("4", &format!("{word}: here"));
     teacher.press("\r");
     anna.wait_for_end();

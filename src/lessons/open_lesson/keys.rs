@@ -196,10 +196,39 @@ impl OpenLesson {
         }
     }
 
-    /// Locks `answer`. Once nothing on the page is open, what it hides is shown.
+    /// Locks `answer`, as the vote of the present round.
     fn lock(&mut self, predict: &Predict, answer: PredictionAnswer, lab: &mut Lab) {
         let class_round = self.rounds.get(&predict.name).copied();
         let (round, is_closed) = class_round.unwrap_or((1, false));
+        self.lock_in_round(predict, answer, (round, is_closed), lab);
+    }
+
+    /// Locks the answer that is chosen for the question `name` of the page, as a vote of `round` that came in time. Returns
+    /// its number, if one is chosen.
+    pub(in crate::lessons) fn lock_chosen(
+        &mut self,
+        name: &str,
+        round: u32,
+        lab: &mut Lab,
+    ) -> Option<String> {
+        let predict = self.page()?.predicts().find(|it| it.name == name)?.clone();
+        let AnswerKind::Choice(choices) = &predict.asked else {
+            return None;
+        };
+        let at = self.chosen.get(name).copied()?;
+        let answer = PredictionAnswer::Choice(choices.get(at)?.clone());
+        self.lock_in_round(&predict, answer, (round, false), lab);
+        Some((at + 1).to_string())
+    }
+
+    /// Locks `answer` in a round, which may be closed. Once nothing on the page is open, what it hides is shown.
+    fn lock_in_round(
+        &mut self,
+        predict: &Predict,
+        answer: PredictionAnswer,
+        (round, is_closed): (u32, bool),
+        lab: &mut Lab,
+    ) {
         let given = LockedAnswer {
             round,
             answer,

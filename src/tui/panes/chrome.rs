@@ -155,6 +155,7 @@ pub fn verdict(lab: &Lab, area: Rect, buf: &mut Buffer) {
 /// Draws the keys that answer the open question of a page.
 fn answer_keys(asked: AskedAnswer, theme: &Theme, area: Rect, buf: &mut Buffer) {
     let (numbers, mut keys) = match asked {
+        AskedAnswer::Elsewhere => return,
         AskedAnswer::Number => (String::new(), vec![("Enter", "type your prediction")]),
         AskedAnswer::Choice { count, is_chosen } => {
             let numbers: Vec<_> = (1..=count).map(|number| number.to_string()).collect();

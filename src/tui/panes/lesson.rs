@@ -54,7 +54,7 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     };
     let framed = longest(
         sheet.framed.lines().map(str::to_owned),
-        area.width.saturating_sub(4).into(),
+        area.width.saturating_sub(5).into(),
     );
     let (title, place) = match framed.as_str() {
         "" => (&sheet.title, sheet.place.as_str()),
