@@ -1,0 +1,196 @@
+//! The figures of a handout, and the empty axes in which a prediction is drawn; as inline SVG.
+
+use crate::engine::data::RunQuantity;
+use crate::engine::run::Simulation;
+use crate::engine::scenario::Scenario;
+use crate::engine::scenario::screen::ABOVE;
+use crate::engine::text::number::short;
+use crate::lab::Lab;
+use crate::lab::view::{FourthStrip, Pane};
+use crate::lessons::lesson::DrawnAnswer;
+use crate::lessons::play::LessonProgressCallback;
+use crate::plot::chart::{Chart, ChartAxis, ChartSeries, Panel, SeriesStyle};
+use crate::plot::{COLUMN_PT, PageFormat, PageScene, format};
+use crate::report::figure::of_runs::FigureRun;
+use crate::report::figure::{FigureSource, FigureSpec, labels::FigureLabels, quantity};
+use std::sync::Arc;
+
+const HEIGHT: &str = "z_m";
+const TILT: &str = "tilt_deg";
+/// The least range of an axis next to a question, of the traced point's arm and in degrees: a small swing, which may be
+/// the answer, is not magnified.
+const LEAST_ARM_SHARE: f64 = 0.1;
+const LEAST_TILT_DEG: f64 = 5.0;
+
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Figure {
+    pub caption: String,
+    pub svg: String,
+}
+
+/// Returns what `lab` shows: a figure for each of its panes. `is_asked` if the page has a question.
+pub(super) fn of_lab(
+    lab: &Lab,
+    pane_svg: fn(&Lab, Pane) -> String,
+    is_asked: bool,
+    go_on: LessonProgressCallback<'_>,
+) -> Vec<Figure> {
+    let look = &lab.view().look;
+    let mut figures = Vec::new();
+    for pane in &look.show {
+        figures.extend(match pane {
+            Pane::Traces => {
+                let column = traced_column(look.detail_of);
+                let labels = FigureLabels {
+                    y_range: is_asked.then(|| wide_range(column, lab)).flatten(),
+                    ..FigureLabels::default()
+                };
+                of_run(lab, column, labels, go_on)
+            }
+            Pane::Above => of_run(lab, ABOVE, FigureLabels::default(), go_on),
+            Pane::ThreeD | Pane::Step => Some(Figure {
+                caption: format!(
+                    "The lab at t = {} s.",
+                    short(lab.player().run().now().time_s)
+                ),
+                svg: pane_svg(lab, *pane),
+            }),
+            Pane::Lesson | Pane::Parameters => None,
+        });
+    }
+    figures
+}
+
+/// Returns the column that stands for the traces on paper.
+fn traced_column(strip: FourthStrip) -> &'static str {
+    match strip {
+        FourthStrip::Auto | FourthStrip::None | FourthStrip::Z => HEIGHT,
+        FourthStrip::X => "x_m",
+        FourthStrip::Y => "y_m",
+        FourthStrip::Tilt => TILT,
+        FourthStrip::Distance => "distance_m",
+        FourthStrip::Column(name) => name,
+    }
+}
+
+/// Returns the range of the run's values of `column`, widened so that a small swing is not magnified.
+fn wide_range(column: &str, lab: &Lab) -> Option<(f64, f64)> {
+    let player = lab.player();
+    let least = match column {
+        HEIGHT => LEAST_ARM_SHARE * player.run().scenario().arm_m(),
+        TILT => LEAST_TILT_DEG,
+        _ => return None,
+    };
+    let low = player.number(&format!("measured_lowest_{column}"))?;
+    let high = player.number(&format!("measured_highest_{column}"))?;
+    let margin = (0.5 * (least - (high - low))).max(0.05 * (high - low));
+    Some((low - margin, high + margin))
+}
+
+/// Returns the figure of this kind of the run of `lab` up to its present step; none at the start, or where it cannot be
+/// drawn.
+fn of_run(
+    lab: &Lab,
+    kind: &str,
+    labels: FigureLabels,
+    go_on: LessonProgressCallback<'_>,
+) -> Option<Figure> {
+    let player = lab.player();
+    let step = player.step_number();
+    let scenario = lab.runs().journal().scenario_until(step).ok()?;
+    let end = short(player.run().now().time_s);
+    let caption = match kind {
+        ABOVE => format!("The path from above, 0 to {end} s."),
+        column => format!("{} over time, 0 to {end} s.", words(column)),
+    };
+    let source = FigureSource {
+        spec: FigureSpec {
+            kind: Some(kind.to_owned()),
+            exact: player.run().shows_exact(),
+            labels,
+            ..FigureSpec::default()
+        },
+        runs: vec![FigureRun::titled(scenario)],
+        ..FigureSource::default()
+    };
+    let drawn = (step > 0).then(|| source.draw(go_on));
+    let mut scene = drawn?.ok()??.scene;
+    scene.title = format!("{caption} {}", scene.title);
+    Some(Figure {
+        svg: svg(&scene)?,
+        caption,
+    })
+}
+
+fn words(column: &str) -> String {
+    RunQuantity::find(column).map_or_else(|| column.to_owned(), RunQuantity::words)
+}
+
+fn svg(scene: &PageScene) -> Option<String> {
+    let bytes = format::write(scene, PageFormat::Svg, None).ok()?;
+    String::from_utf8(bytes).ok()
+}
+
+/// Returns the empty axes in which `drawn` is drawn, for the run of `lab` and for the time that it has taken. They show where
+/// that run starts.
+pub(super) fn frame(drawn: DrawnAnswer, lab: &Lab) -> Option<Figure> {
+    let run = lab.player().run();
+    let (scenario, end_s) = (run.scenario(), run.now().time_s);
+    let simulation = Simulation::new(Arc::clone(scenario));
+    let start = simulation.now();
+    let chart = match drawn {
+        DrawnAnswer::FromAbove => {
+            let reach = 1.1 * scenario.arm_m();
+            let place = start.position();
+            let axis = |name| quantity::axis(name).within((-reach, reach));
+            Chart {
+                is_true_to_scale: true,
+                ..empty(axis("x_m"), axis("y_m"), [place.x, place.y])
+            }
+        }
+        DrawnAnswer::OverTime(column) => {
+            let value = RunQuantity::find(column)?.value_at(start);
+            let range = natural_range(column, value, scenario)?;
+            let time = quantity::axis("t_s").within((0.0, end_s));
+            empty(time, quantity::axis(column).within(range), [0.0, value])
+        }
+    };
+    let mut scene = chart.scene();
+    let caption = match drawn {
+        DrawnAnswer::FromAbove => "Draw the path that you expect, seen from above.".to_owned(),
+        DrawnAnswer::OverTime(column) => {
+            format!("Draw what you expect: {} over time.", words(column))
+        }
+    };
+    scene.title = format!("Empty axes. {caption}");
+    Some(Figure {
+        svg: svg(&scene)?,
+        caption,
+    })
+}
+
+/// Returns axes with nothing in them but the point where the motion starts.
+fn empty(x: ChartAxis, y: ChartAxis, start: [f64; 2]) -> Chart {
+    let series = ChartSeries::new("start", vec![start], SeriesStyle::points(0));
+    Chart {
+        width_pt: COLUMN_PT,
+        x,
+        panels: vec![Panel::new(y, vec![series])],
+        ..Chart::default()
+    }
+}
+
+/// Returns the range of `column` that tells nothing of the motion: it depends on the body and on the start alone. None if
+/// it is not known.
+fn natural_range(column: &str, start: f64, scenario: &Scenario) -> Option<(f64, f64)> {
+    let arm = scenario.arm_m();
+    Some(match column {
+        HEIGHT if start >= 0.0 => (0.0, 1.1 * arm),
+        HEIGHT | "x_m" | "y_m" => (-1.1 * arm, 1.1 * arm),
+        TILT if start <= 90.0 => (0.0, 95.0),
+        TILT => (0.0, 185.0),
+        "azimuth_deg" => (start - 30.0, start + 390.0),
+        _ if start.abs() > 0.0 => (-1.5 * start.abs(), 1.5 * start.abs()),
+        _ => return None,
+    })
+}

@@ -1,0 +1,124 @@
+//! A handout as one HTML file, which any browser prints on A4 or Letter. It is well-formed XML, and needs no other file.
+
+use super::figures::Figure;
+use super::{BLANK, Head, Paper, Part, Question};
+use crate::engine::text::printable::xml;
+use crate::lessons::lesson::AnswerKind;
+use pulldown_cmark::{Event, Options, Parser, Tag, TagEnd, html};
+
+/// Without a size: the printer's paper is taken.
+const STYLE: &str = include_str!("handout.css");
+
+/// Returns the whole handout.
+pub(super) fn written(head: &Head, parts: &[Part], paper: Paper) -> String {
+    let mut body = format!("<h1>{}</h1>\n", xml(&head.title));
+    body += &of_markdown(&head.about);
+    if paper == Paper::Worksheet {
+        body += "<p class=\"who\">Name <i></i> Seat <i></i> Date <i></i></p>\n";
+    }
+    for block in &head.introduction {
+        body += &part(block);
+    }
+    for page in parts.chunk_by(|_, next| !matches!(next, Part::Heading(_))) {
+        body += "<section>\n";
+        for block in page {
+            body += &part(block);
+        }
+        body += "</section>\n";
+    }
+    document(&head.title, &body)
+}
+
+/// Returns a whole file that shows `markdown`, whose first heading is the title.
+pub fn from_markdown(title: &str, markdown: &str) -> String {
+    document(title, &of_markdown(markdown))
+}
+
+fn document(title: &str, body: &str) -> String {
+    let title = xml(title);
+    format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
+         <meta name=\"viewport\" content=\"width=device-width\"/>\n<title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n\
+         <body>\n<main>\n{body}</main>\n</body>\n</html>\n"
+    )
+}
+
+fn part(part: &Part) -> String {
+    match part {
+        Part::Heading(heading) => format!("<h2>{}</h2>\n", xml(heading)),
+        Part::Text(text) => of_markdown(text),
+        Part::Shown(code) => format!("<pre>{}</pre>\n", xml(code.text.trim_end())),
+        Part::Screen(text) => format!("<pre>{}</pre>\n", xml(text)),
+        Part::Figures(figures) => {
+            let class = if figures.len() > 1 {
+                " side-by-side"
+            } else {
+                ""
+            };
+            let all: String = figures.iter().map(|it| figure(it, "")).collect();
+            format!("<div class=\"figures{class}\">\n{all}</div>\n")
+        }
+        Part::Question(asked) => question(asked),
+        Part::Goals(goals) => {
+            let items: String = goals.iter().map(|goal| tick(goal)).collect();
+            format!("<ul class=\"ticks\">\n{items}</ul>\n")
+        }
+        Part::Compared => line("Predicted") + &line("Came out"),
+        Part::Why => line("Why") + &line(""),
+    }
+}
+
+fn figure(figure: &Figure, class: &str) -> String {
+    format!(
+        "<figure{class}>\n{}<figcaption>{}</figcaption>\n</figure>\n",
+        figure.svg,
+        xml(&figure.caption)
+    )
+}
+
+fn tick(words: &str) -> String {
+    format!("<li>{}</li>\n", xml(words))
+}
+
+/// Returns a line to write on, behind `words`.
+fn line(words: &str) -> String {
+    format!("<p class=\"line\">{words}<i></i></p>\n")
+}
+
+fn question(question: &Question) -> String {
+    let mut text = "<div class=\"question\">\n<h3>Your prediction</h3>\n".to_owned();
+    text += &of_markdown(&question.ask);
+    text += &match &question.asked {
+        AnswerKind::Choice(choices) => {
+            let items: String = choices.iter().map(|choice| tick(choice)).collect();
+            format!("<ol class=\"ticks\">\n{items}</ol>\n")
+        }
+        AnswerKind::Number { unit } => {
+            format!("<p class=\"number\">Answer <i></i> {}</p>\n", xml(unit))
+        }
+    };
+    if question.has_room {
+        text += &match &question.frame {
+            Some(frame) => figure(frame, " class=\"frame\""),
+            None => "<figure class=\"frame\"><div class=\"room\"></div>\
+                     <figcaption>Room to sketch or to calculate.</figcaption></figure>\n"
+                .to_owned(),
+        };
+        text += &(line("Reason") + &line(""));
+    }
+    text + "</div>\n"
+}
+
+/// Returns `markdown` as HTML. HTML in it is shown as text; links and pictures are words, since the file needs no other.
+fn of_markdown(markdown: &str) -> String {
+    let events = Parser::new_ext(markdown, Options::ENABLE_TABLES);
+    let plain = events.filter_map(|event| match event {
+        Event::Html(text) | Event::InlineHtml(text) => Some(Event::Text(text)),
+        Event::Start(Tag::Link { .. } | Tag::Image { .. } | Tag::HtmlBlock)
+        | Event::End(TagEnd::Link | TagEnd::Image | TagEnd::HtmlBlock) => None,
+        other => Some(other),
+    });
+    let mut text = String::new();
+    html::push_html(&mut text, plain);
+    text.replace(BLANK, "<i class=\"blank\"></i>")
+}

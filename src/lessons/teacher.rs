@@ -1,0 +1,220 @@
+//! A sheet for the teacher: what a lesson is for, how long each page takes, what is asked, what comes out, and which wrong
+//! answers are common. As Markdown.
+
+use super::lesson::{AnswerKind, Compare, Lesson, LessonPage, Predict, Right};
+use super::play::{LessonProgressCallback, LessonWalk};
+use super::predictions::Predictions;
+use crate::engine::scenario::Problem;
+use crate::engine::text::number::shortest;
+use crate::lab::Lab;
+use crate::lab::command::{Command, SET};
+use std::collections::BTreeMap;
+use toml::{Table, Value};
+
+const HOW_TO_VOTE: &str = "Below 30 % right: explain, then ask again. From 30 to 70 %: let neighbors talk, then ask again. \
+    Above 70 %: go on.";
+
+/// Returns the teacher's sheet of `lesson`, which is played in a new `lab`.
+///
+/// # Errors
+/// When a page cannot be played.
+pub fn sheet(
+    lesson: &Lesson,
+    lab: Lab,
+    go_on: LessonProgressCallback<'_>,
+) -> Result<String, Problem> {
+    let mut walk = LessonWalk::new(lesson, lab);
+    let mut pages: Vec<(&LessonPage, Vec<String>)> = Vec::new();
+    let mut outcomes: BTreeMap<&str, String> = BTreeMap::new();
+    for page in &lesson.pages {
+        walk.enter(page, go_on)?;
+        for compare in page.compares() {
+            outcomes.insert(&compare.prediction, outcome(lesson, compare, &walk));
+        }
+        let asked = page.predicts().map(|predict| asked(predict, &walk));
+        let mut parts: Vec<String> = asked.collect();
+        parts.extend(task(page));
+        parts.extend(page.notes().map(|notes| {
+            let text = notes.with_numbers(&walk.lab, &walk.kept);
+            format!("*Note.* {}", text.trim())
+        }));
+        pages.push((page, parts));
+        if page.number < lesson.pages.len() {
+            walk.leave(page, go_on)?;
+        }
+    }
+    let mut parts = head(lesson);
+    parts.push(table(lesson));
+    parts.push("## Questions and tasks".to_owned());
+    parts.push(HOW_TO_VOTE.to_owned());
+    for (page, texts) in pages.iter().filter(|(_, texts)| !texts.is_empty()) {
+        parts.push(format!("### Page {}: {}", page.number, page.heading));
+        parts.extend(texts.iter().cloned());
+        parts.extend(page.predicts().flat_map(|predict| {
+            let came_out = outcomes.get(predict.name.as_str());
+            expectation(predict, came_out)
+        }));
+    }
+    parts.extend(listed(
+        "What the model leaves out",
+        &lesson.guide.leaves_out,
+    ));
+    Ok(parts.join("\n\n") + "\n")
+}
+
+/// Returns the title, and what the `lesson` block says of the whole lesson.
+fn head(lesson: &Lesson) -> Vec<String> {
+    let mut parts = vec![format!("# {}: teacher's sheet", lesson.title)];
+    let level = lesson
+        .guide
+        .level
+        .map(|level| format!("Level: {}.", level.name()));
+    let minutes = lesson.minutes.map(|minutes| format!("{minutes} minutes."));
+    let needs = match lesson.guide.needs.as_slice() {
+        [] => None,
+        needs => Some(format!("Needs: {}.", needs.join(", "))),
+    };
+    let about = Some(lesson.about.clone()).filter(|about| !about.is_empty());
+    let words: Vec<String> = [about, level, minutes, needs]
+        .into_iter()
+        .flatten()
+        .collect();
+    parts.extend((!words.is_empty()).then(|| words.join(" ")));
+    parts.extend(listed("Goals", &lesson.guide.goals));
+    parts
+}
+
+/// Returns a heading and a list; nothing if there is no item.
+fn listed(heading: &str, items: &[String]) -> Vec<String> {
+    if items.is_empty() {
+        return Vec::new();
+    }
+    let lines: Vec<String> = items.iter().map(|item| format!("- {item}")).collect();
+    vec![format!("## {heading}"), lines.join("\n")]
+}
+
+/// Returns the pages with their minutes, and what happens on each.
+fn table(lesson: &Lesson) -> String {
+    let mut rows = vec![
+        "| Page | | Minutes | |".to_owned(),
+        "|---:|---|---:|---|".to_owned(),
+    ];
+    for page in &lesson.pages {
+        let minutes = lesson.guide.page_minutes.get(page.number - 1);
+        let what = if page.predicts().next().is_some() {
+            "question"
+        } else if page.task().is_some() {
+            "task"
+        } else if page.compares().next().is_some() {
+            "outcome"
+        } else {
+            ""
+        };
+        rows.push(format!(
+            "| {} | {} | {} | {what} |",
+            page.number,
+            page.heading.replace('|', "\\|"),
+            minutes.map_or(String::new(), u32::to_string),
+        ));
+    }
+    format!("## Pages\n\n{}", rows.join("\n"))
+}
+
+/// Returns the question with its choices, of which the right one is marked.
+fn asked(predict: &Predict, walk: &LessonWalk<'_>) -> String {
+    let ask = predict.ask.with_numbers(&walk.lab, &walk.kept);
+    let mut text = format!("**Question.** {ask}");
+    if let AnswerKind::Choice(choices) = &predict.asked {
+        for (number, choice) in (1..).zip(choices) {
+            text += if number == 1 { "\n\n" } else { "\n" };
+            text += &match predict.right {
+                Some(Right::Choice(right)) if right == number => {
+                    format!("{number}. **{choice}** (right)")
+                }
+                _ => format!("{number}. {choice}"),
+            };
+        }
+    }
+    text
+}
+
+/// Returns what comes out, which answers to expect, and what to explain.
+fn expectation(predict: &Predict, came_out: Option<&String>) -> Vec<String> {
+    let unit = match &predict.asked {
+        AnswerKind::Number { unit } => unit.as_str(),
+        AnswerKind::Choice(_) => "",
+    };
+    let right = match predict.right {
+        Some(Right::Number { value, within }) => {
+            format!(
+                "{} {unit}, to within {}. ",
+                shortest(value),
+                shortest(within)
+            )
+        }
+        _ => String::new(),
+    };
+    let outcome = came_out.map(|text| format!("**Right.** {right}{text}"));
+    let said =
+        |label: &str, text: &String| (!text.is_empty()).then(|| format!("**{label}** {text}"));
+    [
+        outcome,
+        said("Expect.", &predict.expected),
+        said("Below 30 %.", &predict.explain),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+/// Returns what came out in words, without the sentence about a prediction.
+fn outcome(lesson: &Lesson, compare: &Compare, walk: &LessonWalk<'_>) -> String {
+    compare.filled(lesson, &Predictions::default(), &walk.lab, &walk.kept)
+}
+
+/// Returns what the task of `page` demands, and one way to do it.
+fn task(page: &LessonPage) -> Option<String> {
+    let task = page.task()?;
+    let goals: Vec<&str> = page
+        .checks()
+        .flat_map(|check| check.goals.iter().map(String::as_str))
+        .collect();
+    let opened: Vec<Table> = page
+        .lab()
+        .iter()
+        .flat_map(|lab| &lab.commands)
+        .map(|placed| placed.command.to_table())
+        .collect();
+    let commands = task.commands.iter();
+    let way: Vec<String> = commands
+        .flat_map(|placed| changes(&placed.command, &opened))
+        .collect();
+    let mut text = format!("**Task.** {}.", goals.join("; "));
+    if !way.is_empty() {
+        text += &format!(" One way (`h` twice shows it): {}.", way.join(", "));
+    }
+    Some(text)
+}
+
+/// Returns what `command` of a task changes, compared with the commands with which its page has `opened`.
+fn changes(command: &Command, opened: &[Table]) -> Vec<String> {
+    match command {
+        Command::Set(keys) | Command::Rerun(keys) => {
+            let before = opened.iter().filter_map(|table| table.get(SET)?.as_table());
+            let same =
+                |key: &str, value: &Value| before.clone().any(|set| set.get(key) == Some(value));
+            let changed = keys.iter().filter(|(key, value)| !same(key, value));
+            changed
+                .map(|(key, value)| format!("`{key} = {value}`"))
+                .collect()
+        }
+        Command::Push(_) => {
+            let table = command.to_table();
+            let words = table
+                .iter()
+                .map(|(name, value)| format!("`{name} = {value}`"));
+            words.collect()
+        }
+        _ => Vec::new(),
+    }
+}
