@@ -4,7 +4,7 @@ use super::ClassFolder;
 use super::seat::name_of;
 use super::votes::{SeatStatus, answer_in_words};
 use crate::engine::text::printable::printable;
-use crate::lessons::lesson::{Lesson, Predict};
+use crate::lessons::lesson::{Lesson, LessonPage, Predict};
 use crate::lessons::opening;
 use crate::lessons::predictions::{LessonProgress, Tried};
 use std::collections::{BTreeMap, BTreeSet};
@@ -55,8 +55,8 @@ pub fn csv(folder: &ClassFolder, seats: &[SeatStatus]) -> Result<String, csv::Er
         .collect();
     let columns: BTreeSet<_> = seats.iter().flat_map(columns).collect();
     let mut writer = csv::Writer::from_writer(Vec::new());
-    let first = FIRST_COLUMNS.map(str::to_owned).into_iter();
-    writer.write_record(first.chain(columns.iter().map(|column| column.title(folder))))?;
+    let titles = columns.iter().map(|column| column.title(folder));
+    writer.write_record(FIRST_COLUMNS.map(str::to_owned).into_iter().chain(titles))?;
     for seat in seats {
         let totals = Totals::of(seat, &lessons);
         let word = &seat.seat.word;
@@ -144,7 +144,7 @@ impl Totals {
         for (name, place) in &seat.lessons {
             let lesson = lessons.get(name);
             let predicts = lesson.into_iter().flat_map(|lesson| &lesson.pages);
-            for predict in predicts.flat_map(|page| page.predicts()) {
+            for predict in predicts.flat_map(LessonPage::predicts) {
                 totals.add_question(predict, place);
             }
             for tried in place.tasks.values() {
@@ -166,8 +166,7 @@ impl Totals {
             return;
         };
         self.answered += 1;
-        let number = predict.asked.number(&last.answer);
-        let is_right = number.zip(predict.right.as_ref());
-        self.right += usize::from(is_right.is_some_and(|(number, right)| right.accepts(number)));
+        let judged = predict.asked.number(&last.answer).zip(predict.right.as_ref());
+        self.right += usize::from(judged.is_some_and(|(number, right)| right.accepts(number)));
     }
 }

@@ -49,7 +49,7 @@ pub(super) struct FigureArgs {
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = positive)]
     to: Option<f64>,
 
-    /// Draw the exact motion beside it: thin, or wide and pale beneath a run that covers it
+    /// Draw the exact motion too, as a dashed line on top of the runs
     #[arg(long)]
     exact: bool,
 

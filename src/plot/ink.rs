@@ -119,8 +119,15 @@ pub enum PointMark {
     Square,
     Triangle,
     Diamond,
-    Ring,
+    /// A triangle that stands on its tip.
     Tip,
+    Star,
+    Ring,
+    OpenSquare,
+    OpenTriangle,
+    OpenDiamond,
+    OpenTip,
+    OpenStar,
     Cross,
     Plus,
     Speck,
@@ -214,17 +221,37 @@ impl PageScene {
             PointMark::Speck => (circle(middle, 0.5 * r), true),
             PointMark::Dot => (circle(middle, r), true),
             PointMark::Ring => (circle(middle, r), false),
-            PointMark::Square => {
+            PointMark::Square | PointMark::OpenSquare => {
                 let r = 0.92 * r;
                 let corners = [(-r, -r), (r, -r), (r, r), (-r, r)];
-                (polygon(middle, &corners), true)
+                (polygon(middle, &corners), mark == PointMark::Square)
             }
-            PointMark::Triangle => (polygon(middle, &[(0.0, -1.3 * r), (x, y), (-x, y)]), true),
-            PointMark::Tip => (polygon(middle, &[(0.0, 1.3 * r), (x, -y), (-x, -y)]), false),
-            PointMark::Diamond => {
+            PointMark::Triangle | PointMark::OpenTriangle => {
+                let corners = [(0.0, -1.3 * r), (x, y), (-x, y)];
+                (polygon(middle, &corners), mark == PointMark::Triangle)
+            }
+            PointMark::Tip | PointMark::OpenTip => {
+                let corners = [(0.0, 1.3 * r), (x, -y), (-x, -y)];
+                (polygon(middle, &corners), mark == PointMark::Tip)
+            }
+            PointMark::Diamond | PointMark::OpenDiamond => {
                 let r = 1.35 * r;
                 let corners = [(0.0, -r), (r, 0.0), (0.0, r), (-r, 0.0)];
-                (polygon(middle, &corners), false)
+                (polygon(middle, &corners), mark == PointMark::Diamond)
+            }
+            PointMark::Star | PointMark::OpenStar => {
+                let (far, near) = (1.7 * r, 0.5 * r);
+                let corners = [
+                    (0.0, -far),
+                    (near, -near),
+                    (far, 0.0),
+                    (near, near),
+                    (0.0, far),
+                    (-near, near),
+                    (-far, 0.0),
+                    (-near, -near),
+                ];
+                (polygon(middle, &corners), mark == PointMark::Star)
             }
         };
         if is_filled {

@@ -5,7 +5,7 @@ use crate::support::words::has;
 use gyrolab::engine::run::Simulation;
 use gyrolab::engine::scenario::Scenario;
 use gyrolab::engine::scenario::presets::PRESETS;
-use gyrolab::plot::chart::{Chart, ChartAxis, ChartSeries, Panel, SeriesStyle};
+use gyrolab::plot::chart::{Chart, ChartAxis, ChartSeries, EXACT_COLOR, Panel, SeriesStyle};
 use gyrolab::plot::ink::WHITE;
 use gyrolab::plot::{PageFormat, PageScene, Paint, Point, SceneItem, write};
 use gyrolab::report::figure::course::{RunSampler, SampleRequest, SampledRun};
@@ -179,15 +179,17 @@ fn lines(scene: &PageScene, panel: [Point; 2]) -> Vec<&SceneItem> {
     scene.items.iter().filter(is_line).collect()
 }
 
-/// The wide lines in panels beneath the first run.
-fn wide(scene: &PageScene) -> Vec<usize> {
-    let is_wide = |item: &SceneItem| match &item.paint {
-        Paint::Stroke(pen) => item.clip.is_some() && pen.width_pt > 1.0,
+/// The dashed lines of the exact motion in panels, as places among the items.
+fn exact_lines(scene: &PageScene) -> Vec<usize> {
+    let is_exact = |item: &SceneItem| match &item.paint {
+        Paint::Stroke(pen) => {
+            item.clip.is_some() && pen.color == EXACT_COLOR && !pen.dash_pt.is_empty()
+        }
         Paint::Fill(_) => false,
     };
     let items = scene.items.iter().enumerate();
-    let wide = items.filter(|(_, item)| is_wide(item));
-    wide.map(|(index, _)| index).collect()
+    let lines = items.filter(|(_, item)| is_exact(item));
+    lines.map(|(index, _)| index).collect()
 }
 
 #[test]
@@ -284,25 +286,55 @@ fn a_path_in_space_has_three_axes_and_a_shadow() {
 }
 
 #[test]
-fn the_exact_motion_is_wide_where_the_run_covers_it() {
-    let of = |preset: &str, step: &str| {
-        drawn(
-            &[run(preset, &["motion.steps=400", step])],
-            &with_exact("z_m"),
-        )
+fn the_exact_motion_is_dashed_and_on_top_of_every_run() {
+    for (preset, step) in [("wobble-push", "0.1"), ("cusps", "0.01")] {
+        let set = format!("motion.time_step_s={step}");
+        let runs = [run(preset, &["motion.steps=400", &set])];
+        let scene = drawn(&runs, &with_exact("z_m")).scene;
+        let name = &words(&scene)[..];
+        assert!(name.iter().any(|word| *word == "exact motion"), "{name:?}");
+        let panel = scene.items[exact_lines(&scene)[0]].clip.unwrap();
+        let all = lines(&scene, panel);
+        let widths: Vec<f64> = all
+            .iter()
+            .filter_map(|item| match &item.paint {
+                Paint::Stroke(pen) if pen.color != WHITE => Some(pen.width_pt),
+                _ => None,
+            })
+            .collect();
+        assert!(widths.iter().all(|width| *width == widths[0]), "{widths:?}");
+        let is_dashed =
+            |item: &SceneItem| matches!(&item.paint, Paint::Stroke(pen) if !pen.dash_pt.is_empty());
+        assert!(
+            is_dashed(all.last().unwrap()),
+            "{preset}: the exact motion is on top"
+        );
+        assert!(!is_dashed(all[0]), "{preset}: the run is solid");
+    }
+}
+
+#[test]
+fn runs_that_coincide_are_one_line_with_both_names() {
+    let [rk4, strang] = ["rk4", "strang"].map(|scheme| {
+        let set = format!("motion.scheme=\"{scheme}\"");
+        run("cusps", &["motion.steps=500", &set])
+    });
+    let far = run("loops", &["motion.steps=500"]);
+    let runs = [rk4, strang, far];
+    let scene = drawn(&runs, &spec("z_m,tilt_deg")).scene;
+    says(&scene, &["Cusps, rk4 = Cusps, strang"]);
+    let apart = drawn(&runs[1..], &spec("z_m,tilt_deg")).scene;
+    assert!(!words(&apart).iter().any(|word| word.contains(" = Loops")));
+}
+
+#[test]
+fn the_time_of_a_push_is_shaded_and_named_once() {
+    let push = |preset: &str| {
+        let scene = drawn(&[run(preset, &["motion.steps=400"])], &with_exact("traces")).scene;
+        words(&scene).iter().filter(|word| **word == "push").count()
     };
-    let apart = of("wobble-push", "motion.time_step_s=0.1");
-    says(
-        &apart.scene,
-        &["the report's scheme, Δt = 0.1 s", "exact motion"],
-    );
-    assert!(wide(&apart.scene).is_empty());
-    let covered = of("cusps", "motion.time_step_s=0.01").scene;
-    let [exact] = wide(&covered)[..] else {
-        panic!("one line is wide")
-    };
-    let [exact, run] = [exact, exact + 1].map(|index| &covered.items[index]);
-    assert_eq!(exact.clip, run.clip, "the run is on top of it");
+    assert_eq!(push("wobble-push"), 1);
+    assert_eq!(push("method-2"), 0);
 }
 
 #[test]
@@ -371,7 +403,10 @@ fn a_run_of_the_exact_motion_is_not_drawn_twice() {
     let exact = run("cusps", &["motion.scheme=\"exact\""]);
     let asked = with_exact("tilt_deg");
     let figure = drawn(std::slice::from_ref(&exact), &asked);
-    assert!(wide(&figure.scene).is_empty());
+    assert!(
+        exact_lines(&figure.scene).is_empty(),
+        "the run is the only curve"
+    );
     says(&figure.scene, &["exact motion"]);
     let [only] = &told(&figure)[..] else {
         panic!("{:?}", told(&figure))
@@ -379,7 +414,7 @@ fn a_run_of_the_exact_motion_is_not_drawn_twice() {
     has(only, "exact motion itself");
     // Beside another scheme it is the exact motion of both, and has its own curve.
     let both = drawn(&[run("cusps", &[]), exact], &asked);
-    assert_eq!(wide(&both.scene).len(), 1);
+    assert_eq!(exact_lines(&both.scene).len(), 1);
 }
 
 #[test]
@@ -648,16 +683,33 @@ fn lines_between_too_few_steps_of_a_nutation_are_told() {
 }
 
 #[test]
-fn more_curves_than_kinds_of_line_are_told() {
-    let names = "cusps loops waves steady-slow steady-fast falling sleeping";
-    let runs = names.split(' ').map(|name| run(name, &["motion.steps=20"]));
-    let runs: Vec<FigureRun> = runs.collect();
-    let told = |count: usize| told(&drawn(&runs[..count], &spec("tilt_deg")));
-    assert!(told(6).is_empty());
-    let [only] = &told(7)[..] else {
-        panic!("{:?}", told(7))
+fn twelve_curves_are_told_apart_and_thirteen_refused() {
+    let set = |tilt: usize| {
+        run(
+            "cusps",
+            &["motion.steps=20", &format!("start.tilt_deg={tilt}")],
+        )
     };
-    has(only, "A sleeping top looks like Cusps");
+    let runs: Vec<FigureRun> = (20..33).map(set).collect();
+    let styles: BTreeSet<String> = (0..12)
+        .map(|index| {
+            let style = SeriesStyle::curve(index, 12);
+            format!("{:?} {:?}", style.color, style.dash_pt)
+        })
+        .collect();
+    assert_eq!(styles.len(), 12, "in color");
+    let marks: BTreeSet<String> = (0..12)
+        .map(|index| format!("{:?}", SeriesStyle::curve(index, 12).sparse_mark.unwrap()))
+        .collect();
+    assert_eq!(marks.len(), 12, "in gray");
+    assert!(
+        drawn(&runs[..12], &spec("tilt_deg"))
+            .told()
+            .next()
+            .is_none()
+    );
+    let refused = refusal(&runs, &spec("tilt_deg"));
+    has(refused, "13 curves: a figure shows at most 12");
 }
 
 #[test]
@@ -679,7 +731,7 @@ fn the_exact_motion_is_a_smooth_curve_beside_few_steps() {
         ..with_exact("z_m")
     };
     let figure = drawn(&[run("method-1", &[])], &asked);
-    let exact = wide(&figure.scene)
+    let exact = exact_lines(&figure.scene)
         .into_iter()
         .map(|index| &figure.scene.items[index]);
     // 0.02 s are two nutations, of 20 steps.
@@ -901,7 +953,7 @@ proptest! {
             points: points.clone(),
             errors: [Vec::new(), errors.iter().map(|error| error.abs()).collect()],
             band: Vec::new(),
-            style: if index % 2 == 0 { SeriesStyle::curve(index) } else { SeriesStyle::marked_line(index) },
+            style: if index % 2 == 0 { SeriesStyle::curve(index, 5) } else { SeriesStyle::marked_line(index) },
         });
         let chart = Chart {
             title: names.1.clone(),

@@ -2,11 +2,12 @@
 //!
 //! [`Simulation`] alone takes a run forward in time; the command line, exports, tests and the screen all use it.
 //! [`step`] is what it publishes of each time step, and what its energy drift is measured in. [`clock`] says what time a
-//! step has, [`pushes`] which forces act on it, [`Sample`] what of it leaves the program, [`moment`] what is
+//! step has, [`pushes`] which forces act on it, [`marks`] when they do, [`Sample`] what of it leaves the program, [`moment`] what is
 //! compared with the exact motion. [`truth`] is the exact motion
 //! beside it, and [`resampled`] the same run at another time step.
 
 pub mod clock;
+pub mod marks;
 pub mod moment;
 pub mod pushes;
 pub mod simulation;

@@ -3,9 +3,9 @@
 
 use super::background::BackgroundJob;
 use super::live::LiveRun;
-use super::marks::Marks;
 use super::path::PathFromAbove;
 use crate::engine::recording::Recording;
+use crate::engine::run::marks::Marks;
 use crate::engine::scenario::Scenario;
 use std::sync::Arc;
 

@@ -2,7 +2,7 @@
 //!
 //! - [`live`] steps a run and the exact motion beside it, and returns to earlier steps. The player
 //!   ([`Player`](crate::lab::Player)) says where it goes and when; [`pace`] is how much simulated time is due.
-//! - [`recording`](crate::engine::recording) and [`path`] store the data of its pictures; [`marks`] are the times of
+//! - [`recording`](crate::engine::recording) and [`path`] store the data of its pictures; [`marks`](crate::engine::run::marks) are the times of
 //!   pushes and edits; [`ghost`] is the picture of the previous run.
 //! - [`strip`], [`scale`] and [`camera`](crate::plot::camera) are the geometry of the pictures, for a screen and for a
 //!   figure alike: a curve in each column of a window of time, the values at an axis, and the position of a point in space
@@ -17,7 +17,6 @@ pub mod ghost;
 pub mod live;
 pub mod lookup;
 pub mod loop_minimum;
-pub mod marks;
 pub mod outline;
 pub mod pace;
 pub mod path;

@@ -1,12 +1,12 @@
 //! The line of a series on the page, without the points that nobody could see.
 
 use super::layout::PlacedPanel;
-use super::{ChartSeries, Panel, SeriesStyle};
-use crate::plot::ink::{PageRectangle, at, paler};
+use super::{ChartSeries, EXACT_COLOR, Panel};
+use crate::plot::ink::{PageRectangle, WHITE, at, paler};
 use crate::plot::line::{clipped, simplified};
 use crate::plot::scene::{PageScene, Point, StrokeStyle, VectorPath};
 use crate::plot::stroke_outline;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 
 /// How far a line may leave its points, of its width: a tenth of a dot at 600 an inch for a line of 0.7 pt.
 const TOLERANCE: f64 = 0.02;
@@ -14,8 +14,10 @@ const TOLERANCE: f64 = 0.02;
 const UNSEEN_PT: f64 = 0.014;
 /// A solid line of more points than this is drawn by the outline of its ink if that has fewer: a file of 40 kB.
 const MANY_LINE_POINTS: usize = 5_000;
-/// The part of white in the colour of a band, which its line has pure.
+/// The part of white in the color of a band, which its line has pure.
 pub const BAND_WHITE: f64 = 0.72;
+/// The white on both sides of a dash of the exact motion together, pt.
+const HALO_PT: f64 = 0.9;
 /// How far outside of its panel a line is followed, pt: half its width, which is cut off at the edge.
 const BEYOND_PT: f64 = 2.0;
 
@@ -44,10 +46,34 @@ impl PlacedPanel {
         draw_curve(&pieces, &series.style.pen(), Some(&self.frame), scene);
     }
 
-    /// Draws the core of the line of `series`, if it has one.
-    pub fn draw_core(&self, series: &ChartSeries, scene: &mut PageScene) {
-        if let Some(pen) = series.style.core_pen() {
-            draw_curve(&self.pieces(series), &pen, Some(&self.frame), scene);
+    /// Draws a white edge around the dashes of an exact motion, which are seen on dense swings then.
+    pub fn draw_halo(&self, series: &ChartSeries, scene: &mut PageScene) {
+        if series.style.color == EXACT_COLOR && series.style.width_pt > 0.0 {
+            let pen = series.style.pen();
+            let halo = StrokeStyle {
+                width_pt: pen.width_pt + HALO_PT,
+                color: WHITE,
+                ..pen
+            };
+            draw_curve(&self.pieces(series), &halo, Some(&self.frame), scene);
+        }
+    }
+
+    /// Draws the marks along the line of `series`, if it has them: so many at equal distances, those of the series `place` of a
+    /// panel beside those of the others.
+    pub fn draw_sparse_marks(&self, series: &ChartSeries, place: usize, scene: &mut PageScene) {
+        let Some(mark) = series.style.sparse_mark else {
+            return;
+        };
+        let pieces: Vec<Vec<Point>> = self
+            .pieces(series)
+            .iter()
+            .map(|piece| simplified(piece, UNSEEN_PT))
+            .collect();
+        for point in spread(&pieces, place) {
+            if self.frame.holds(point) {
+                scene.mark(mark, point, series.style.color);
+            }
         }
     }
 
@@ -86,7 +112,7 @@ impl PlacedPanel {
     }
 
     /// Whether something of `series` is in `frame`.
-    fn has_in(&self, frame: &PageRectangle, series: &ChartSeries) -> bool {
+    pub fn has_in(&self, frame: &PageRectangle, series: &ChartSeries) -> bool {
         let mut bars =
             (0..series.points.len()).flat_map(|index| [0, 1].map(|axis| series.ends(index, axis)));
         (series.style.width_pt > 0.0 && self.has_line_in(frame, &series.points))
@@ -132,86 +158,70 @@ pub fn draw_curve(
     }
 }
 
-/// The length of a line that consists of `pieces` without swings that are too low to be seen, pt.
-fn way_pt(pieces: &[Vec<Point>]) -> f64 {
-    const FLAT_PT: f64 = 0.4;
-    let lines = pieces.iter().map(|piece| simplified(piece, FLAT_PT));
-    lines.map(|line| length(&line)).sum()
+/// The marks along a line, and the part of the distance between two of them by which a series is before the next.
+const SPARSE_MARKS: usize = 6;
+const SPARSE_SHIFT: f64 = 0.23;
+
+/// Returns places at equal distances along a line that consists of `pieces`.
+pub fn spread(pieces: &[Vec<Point>], place: usize) -> Vec<Point> {
+    let whole: f64 = pieces.iter().map(|piece| length(piece)).sum();
+    let apart = whole / SPARSE_MARKS as f64;
+    let first = apart * (0.3 + SPARSE_SHIFT * place as f64).fract();
+    let mut places = Vec::new();
+    let mut passed = 0.0;
+    for pair in pieces.iter().flat_map(|piece| piece.windows(2)) {
+        let long = libm::hypot(pair[1].x - pair[0].x, pair[1].y - pair[0].y);
+        while places.len() < SPARSE_MARKS && long > 0.0 {
+            let part = (first + apart * places.len() as f64 - passed) / long;
+            if part > 1.0 {
+                break;
+            }
+            let [dx, dy] = [pair[1].x - pair[0].x, pair[1].y - pair[0].y];
+            places.push(at(pair[0].x + part * dx, pair[0].y + part * dy));
+        }
+        passed += long;
+    }
+    places
 }
 
-/// Whether a line of that length hides one beneath it: it swings where that does not.
-fn hides(way_pt: f64, beneath_pt: f64) -> bool {
-    const LONGER: f64 = 3.0;
-    way_pt > LONGER * beneath_pt
-}
+/// The squares of the page on which a line lies.
+pub struct Squares(HashSet<[i32; 2]>);
 
-/// The lines of a panel that have been looked at, the first of which is on top of all others.
-#[derive(Default)]
-pub struct Above {
-    first_pt: Option<f64>,
-    /// The squares of the page on which they lie, and the width of the widest line there, pt.
-    squares: HashMap<[i32; 2], f64>,
-}
-
-impl Above {
+impl Squares {
     /// Side of a square, pt.
     const SIDE_PT: f64 = 0.5;
-    /// How much wider a line is than one that lies on it, pt.
-    const WIDER_PT: f64 = 0.9;
+    /// The part of a line that must lie on another one for both to look like one line.
+    const SAME: f64 = 0.98;
 
-    /// Takes note of a line that consists of `pieces`, and makes its `style` one in which it is seen: wide where other lines
-    /// cover it for most of its length, thin where they do not, with its core on top where the first line hides it.
-    pub fn add(&mut self, pieces: &[Vec<Point>], style: &mut SeriesStyle) {
-        let length_pt = way_pt(pieces);
-        let is_hidden = self
-            .first_pt
-            .is_some_and(|first_pt| hides(first_pt, length_pt));
-        let covered: HashSet<_> = squares(pieces).collect();
-        if let Some(color) = style.core {
-            match self.width_over(&covered) {
-                Some(width_pt) => style.width_pt = width_pt + Self::WIDER_PT,
-                None => style.color = color,
+    pub fn new(pieces: &[Vec<Point>]) -> Self {
+        let mut squares = HashSet::new();
+        for piece in pieces {
+            let line = simplified(piece, UNSEEN_PT);
+            for pair in line.windows(2) {
+                let (dx, dy) = (pair[1].x - pair[0].x, pair[1].y - pair[0].y);
+                let count = (2.0 * libm::hypot(dx, dy) / Self::SIDE_PT).ceil().max(1.0);
+                for number in 0..=count as u32 {
+                    let part = f64::from(number) / count;
+                    let place = [pair[0].x + part * dx, pair[0].y + part * dy];
+                    squares.insert(place.map(|at| libm::floor(at / Self::SIDE_PT) as i32));
+                }
             }
         }
-        style.core = style.core.filter(|_| is_hidden);
-        self.first_pt.get_or_insert(length_pt);
-        for square in covered {
-            let width_pt = self.squares.entry(square).or_default();
-            *width_pt = width_pt.max(style.width_pt);
-        }
+        Self(squares)
     }
 
-    /// The width of the lines that cover most of `squares`, pt; `None` where none do.
-    fn width_over(&self, squares: &HashSet<[i32; 2]>) -> Option<f64> {
-        let mut widths: Vec<f64> = squares
-            .iter()
-            .filter_map(|[x, y]| {
-                let near = [[*x, *y], [x + 1, *y], [x - 1, *y], [*x, y + 1], [*x, y - 1]];
-                let widths = near.iter().filter_map(|square| self.squares.get(square));
-                widths.copied().reduce(f64::max)
-            })
-            .collect();
-        widths.sort_by(f64::total_cmp);
-        (2 * widths.len() > squares.len()).then(|| widths[widths.len() / 2])
+    /// Returns whether both lines look like one.
+    pub fn coincide(&self, other: &Self) -> bool {
+        self.are_covered_by(other) && other.are_covered_by(self)
     }
-}
 
-/// The squares of the page on which a line lies that consists of `pieces`.
-fn squares(pieces: &[Vec<Point>]) -> impl Iterator<Item = [i32; 2]> {
-    let lines = pieces.iter().map(|piece| simplified(piece, UNSEEN_PT));
-    let segments = lines.flat_map(|line| {
-        let ends = line.windows(2).map(|pair| (pair[0], pair[1]));
-        ends.collect::<Vec<_>>()
-    });
-    segments.flat_map(|(from, to)| {
-        let (dx, dy) = (to.x - from.x, to.y - from.y);
-        let count = (2.0 * libm::hypot(dx, dy) / Above::SIDE_PT).ceil().max(1.0);
-        (0..=count as u32).map(move |number| {
-            let part = f64::from(number) / count;
-            let place = [from.x + part * dx, from.y + part * dy];
-            place.map(|at| libm::floor(at / Above::SIDE_PT) as i32)
-        })
-    })
+    fn are_covered_by(&self, other: &Self) -> bool {
+        let covered = self.0.iter().filter(|[x, y]| {
+            let near = [[*x, *y], [x + 1, *y], [x - 1, *y], [*x, y + 1], [*x, y - 1]];
+            near.iter().any(|square| other.0.contains(square))
+        });
+        !self.0.is_empty() && covered.count() as f64 >= Self::SAME * self.0.len() as f64
+    }
 }
 
 pub fn length(line: &[Point]) -> f64 {
@@ -234,28 +244,28 @@ mod tests {
     }
 
     #[test]
-    fn a_line_hides_what_it_swings_about() {
-        let way_pt = |apart, high| way_pt(&zigzag(apart, high, 0.0));
-        let level = way_pt(0.5, 0.0);
-        assert!(hides(way_pt(0.5, 40.0), level));
-        assert!(!hides(level, level));
-        // Ripples that nobody sees are no swings.
-        assert!(!hides(way_pt(0.1, 0.3), way_pt(0.1, 0.0)));
+    fn lines_coincide_where_neither_leaves_the_other() {
+        let level = Squares::new(&zigzag(0.5, 0.0, 0.0));
+        assert!(
+            level.coincide(&Squares::new(&zigzag(0.25, 0.0, 0.2))) == false,
+            "half as long"
+        );
+        assert!(level.coincide(&Squares::new(&zigzag(0.5, 0.0, 0.2))));
+        assert!(!level.coincide(&Squares::new(&zigzag(0.5, 0.0, 3.0))));
+        // It lies on the level line everywhere, but that does not lie on all of it.
+        assert!(!level.coincide(&Squares::new(&zigzag(0.5, 40.0, 0.0))));
     }
 
     #[test]
-    fn a_line_is_wide_where_it_lies_on_another() {
-        let mut above = Above::default();
-        above.add(&zigzag(0.5, 0.0, 0.0), &mut SeriesStyle::curve(0));
-        let mut width_at = |height: f64| {
-            let mut style = SeriesStyle::exact(1);
-            above.add(&zigzag(0.5, 0.0, height), &mut style);
-            style.width_pt
-        };
-        let thin = SeriesStyle::curve(0).width_pt;
-        assert_eq!(width_at(0.2), thin + Above::WIDER_PT);
-        assert_eq!(width_at(5.0), thin);
-        // It lies on the line before it, which is not the first.
-        assert_eq!(width_at(5.0), thin + Above::WIDER_PT);
+    fn marks_are_spread_over_the_whole_line() {
+        let line = vec![
+            vec![at(0.0, 0.0), at(60.0, 0.0)],
+            vec![at(70.0, 0.0), at(130.0, 0.0)],
+        ];
+        let places: Vec<f64> = spread(&line, 0).iter().map(|place| place.x).collect();
+        assert_eq!(places, [6.0, 26.0, 46.0, 76.0, 96.0, 116.0]);
+        assert_ne!(spread(&line, 0), spread(&line, 1));
+        assert_eq!(spread(&[], 0), []);
+        assert_eq!(spread(&[vec![at(1.0, 1.0), at(1.0, 1.0)]], 0), []);
     }
 }

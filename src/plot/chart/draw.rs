@@ -1,8 +1,8 @@
 //! A chart drawn on its page.
 
-use super::curve;
+use super::curve::Squares;
 use super::layout::{self, ChartLayout, PAGE_EDGE, PlacedPanel, TICK_LABEL_GAP};
-use super::legend::Legend;
+use super::legend::{Legend, longest_name};
 use super::ticks::{Ticks, with_minus};
 use super::{Chart, ChartSeries, Panel};
 use crate::engine::text::number::significant;
@@ -27,7 +27,8 @@ impl Chart {
         self.as_seen(&bare).placed(bare)
     }
 
-    /// The chart in the places of `layout`, without points that stand upon each other, and with lines that are seen beside each other.
+    /// The chart in the places of `layout`, without points that stand upon each other. Runs whose curves coincide in all panels
+    /// are one curve with both names, and what is not in any panel has no name in the legend.
     fn as_seen(&self, layout: &ChartLayout) -> Self {
         let mut seen = self.clone();
         seen.x.range = layout.panels.first().map(|placed| placed.x.range);
@@ -38,15 +39,71 @@ impl Chart {
         let places = layout.panels.iter().chain(&layout.magnified);
         for (panel, placed) in seen.panels.iter_mut().chain(magnified).zip(places) {
             panel.y.range = Some(placed.y.range);
-            let mut above = curve::Above::default();
             for series in &mut panel.series {
                 placed.thin_marks(series);
-                if series.style.width_pt > 0.0 {
-                    above.add(&placed.pieces(series), &mut series.style);
+            }
+        }
+        seen.forget_names_of_unseen(layout);
+        seen.join_coinciding(layout);
+        seen
+    }
+
+    fn forget_names_of_unseen(&mut self, layout: &ChartLayout) {
+        for (panel, placed) in self.panels.iter_mut().zip(&layout.panels) {
+            for series in &mut panel.series {
+                let is_curve = !series.points.is_empty() && series.band.is_empty();
+                if is_curve && !placed.has_in(&placed.frame, series) {
+                    series.name.clear();
                 }
             }
         }
-        seen
+    }
+
+    /// Makes one curve of runs whose curves coincide in all panels.
+    fn join_coinciding(&mut self, layout: &ChartLayout) {
+        let squares: Vec<Vec<Squares>> = self
+            .panels
+            .iter()
+            .zip(&layout.panels)
+            .map(|(panel, placed)| {
+                let pieces = panel.series.iter().map(|series| placed.pieces(series));
+                pieces.map(|pieces| Squares::new(&pieces)).collect()
+            })
+            .collect();
+        let count = self
+            .panels
+            .iter()
+            .map(|panel| panel.series.len())
+            .min()
+            .unwrap_or(0);
+        for first in 0..count {
+            for second in first + 1..count {
+                let can_join = self.panels.iter().all(|panel| {
+                    let [a, b] = [&panel.series[first], &panel.series[second]];
+                    a.can_join(b)
+                });
+                if can_join && squares.iter().all(|all| all[first].coincide(&all[second])) {
+                    self.join(first, second);
+                }
+            }
+        }
+    }
+
+    /// Draws the curve `second` of each panel no more: that of `first` has both names, if they have room in the legend.
+    fn join(&mut self, first: usize, second: usize) {
+        let magnified = self
+            .magnified
+            .iter_mut()
+            .flat_map(|chart| &mut chart.panels);
+        let room = longest_name(self.width_pt);
+        for panel in self.panels.iter_mut().chain(magnified) {
+            let names = [first, second].map(|index| panel.series[index].name.as_str());
+            let joined = format!("{} = {}", names[0], names[1]);
+            if ink::width(&joined, LABEL_PT) <= room {
+                panel.series[first].name = joined;
+                panel.series[second] = ChartSeries::named(String::new());
+            }
+        }
     }
 
     /// The chart in its places; `bare` leaves no room for a legend above the panels.
@@ -222,10 +279,11 @@ impl Panel {
             placed.draw_line(series, scene);
         }
         for series in &before {
+            placed.draw_halo(series, scene);
             placed.draw_line(series, scene);
         }
-        for series in behind.iter().rev() {
-            placed.draw_core(series, scene);
+        for (place, series) in self.series.iter().enumerate() {
+            placed.draw_sparse_marks(series, place, scene);
         }
         draw_frame(placed, scene);
         for series in &before {

@@ -178,11 +178,8 @@ impl LegendEntry {
                 ..style.pen()
             };
             scene.stroke(VectorPath::polyline(ends), pen, None);
-            if let Some(core) = style.core_pen() {
-                scene.stroke(VectorPath::polyline(ends), core, None);
-            }
         }
-        if let Some(mark) = style.mark {
+        if let Some(mark) = style.mark.or(style.sparse_mark) {
             scene.mark(mark, at(place.x + 0.5 * KEY, y), style.color);
         }
         let name = at(place.x + KEY + AFTER_KEY, place.y);

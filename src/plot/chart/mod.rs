@@ -11,7 +11,7 @@ pub mod legend;
 pub mod ticks;
 
 use crate::plot::extent;
-use crate::plot::ink::{BLACK, PointMark, grey, paler};
+use crate::plot::ink::{BLACK, PointMark, grey};
 use crate::plot::scene::{Color, StrokeStyle};
 use ticks::{Ticks, power_of_ten};
 
@@ -81,6 +81,24 @@ impl ChartSeries {
         }
     }
 
+    /// Returns whether it and `other` are curves of runs, each with a name, which one curve can show where they coincide.
+    pub fn can_join(&self, other: &Self) -> bool {
+        [self, other].iter().all(|series| {
+            series.style.is_of_run() && !series.name.is_empty() && series.band.is_empty()
+        }) && self.style.is_dots == other.style.is_dots
+    }
+
+    /// The time of a push, which acts between these values of the axis x.
+    pub fn push(from: f64, to: f64) -> Self {
+        let everything = [f64::NEG_INFINITY, f64::INFINITY];
+        Self {
+            band: [from, to]
+                .map(|time| [time, everything[0], everything[1]])
+                .into(),
+            ..Self::new("push", Vec::new(), SeriesStyle::push())
+        }
+    }
+
     /// A line of the legend without a curve.
     pub fn named(name: String) -> Self {
         let style = SeriesStyle {
@@ -133,8 +151,8 @@ pub struct SeriesStyle {
     pub is_dots: bool,
     /// Whether it is a band where its series has one.
     pub is_band: bool,
-    /// The colour of a thin line along its middle, on top of the first curve where that would hide it.
-    pub core: Option<Color>,
+    /// The mark at a few places along its line, which tells it from others without color.
+    pub sparse_mark: Option<PointMark>,
 }
 
 impl Default for SeriesStyle {
@@ -147,25 +165,50 @@ impl Default for SeriesStyle {
             is_behind: false,
             is_dots: false,
             is_band: false,
-            core: None,
+            sparse_mark: None,
         }
     }
 }
 
-/// The number of curves, or series of points, that can be distinguished.
-pub const KINDS_OF_LINE: usize = 6;
+/// The most curves, or series of points, that can be told apart.
+pub const MOST_CURVES: usize = 12;
 
-/// Colours that people with any colour vision tell apart (Okabe and Ito, 2008), in the order in which their greys, too, are
-/// told apart from the ones before.
-const COLORS: [Color; KINDS_OF_LINE] = [
+/// Colors that people with any color vision tell apart (Okabe and Ito, 2008), without those of the exact motion. Curves of
+/// the second half of [`MOST_CURVES`] have them again, with dashes and open marks. The grays of the first three differ; from
+/// the fourth curve on, marks tell all of them apart without color.
+const COLORS: [Color; MOST_CURVES / 2] = [
     BLACK,
-    Color([213, 94, 0]),
     Color([0, 114, 178]),
     Color([230, 159, 0]),
     Color([0, 158, 115]),
     Color([204, 121, 167]),
+    Color([86, 180, 233]),
 ];
-const DASHES: [&[f64]; KINDS_OF_LINE] = [
+/// The dashes of the curves of the second half: strokes and gaps, pt.
+const SECOND_DASH: &[f64] = &[5.0, 1.6];
+/// With so many curves in a panel each has marks.
+const FEWEST_MARKED_CURVES: usize = 4;
+const MARKS: [PointMark; MOST_CURVES] = [
+    PointMark::Dot,
+    PointMark::Square,
+    PointMark::Triangle,
+    PointMark::Diamond,
+    PointMark::Tip,
+    PointMark::Star,
+    PointMark::OpenSquare,
+    PointMark::OpenTriangle,
+    PointMark::OpenDiamond,
+    PointMark::OpenTip,
+    PointMark::OpenStar,
+    PointMark::Ring,
+];
+
+/// The color of the exact motion, as in the lab on a light background.
+pub const EXACT_COLOR: Color = Color([207, 74, 6]);
+/// The dashes of exact motions: the only one, and those of further runs.
+const EXACT_DASHES: [&[f64]; 4] = [&[3.2, 1.6], &[1.0, 1.2], &[5.0, 1.4, 1.0, 1.4], &[7.0, 2.0]];
+/// The dashes of theory: strokes and gaps, pt.
+const THEORY_DASHES: [&[f64]; 6] = [
     &[],
     &[3.2, 1.6],
     &[1.0, 1.2],
@@ -173,38 +216,50 @@ const DASHES: [&[f64]; KINDS_OF_LINE] = [
     &[6.5, 2.0],
     &[2.0, 1.0, 2.0, 3.0],
 ];
-const MARKS: [PointMark; KINDS_OF_LINE] = [
-    PointMark::Dot,
-    PointMark::Square,
-    PointMark::Triangle,
-    PointMark::Diamond,
-    PointMark::Ring,
-    PointMark::Tip,
-];
+/// The color of the time of a push, before it is made pale.
+const PUSH_COLOR: Color = grey(120);
 
 /// Width of the dots of a path whose points are not joined, pt.
 const DOT_PT: f64 = 1.1;
 
 impl SeriesStyle {
-    /// The line of the curve `index` of several: the first is on top, each other one beneath those before it, and made wide
-    /// where they cover it (`curve::Above`).
-    pub fn curve(index: usize) -> Self {
-        let color = COLORS[index % KINDS_OF_LINE];
+    /// The line of the curve `index` of `count` in a panel: the first is on top.
+    pub fn curve(index: usize, count: usize) -> Self {
         Self {
-            color,
+            color: COLORS[index % COLORS.len()],
+            dash_pt: if index < COLORS.len() {
+                &[]
+            } else {
+                SECOND_DASH
+            },
+            sparse_mark: (count >= FEWEST_MARKED_CURVES).then_some(MARKS[index % MARKS.len()]),
             is_behind: index > 0,
-            core: (index > 0).then_some(color),
             ..Self::default()
         }
     }
 
-    /// The exact motion, as the curve `index`: pale where it is wide, so that a run on top of it is seen wherever it goes.
+    /// The exact motion number `index` of a panel: dashed, on top of the runs.
     pub fn exact(index: usize) -> Self {
-        let curve = Self::curve(index);
         Self {
-            color: paler(curve.color, 0.4),
-            ..curve
+            color: EXACT_COLOR,
+            dash_pt: EXACT_DASHES[index % EXACT_DASHES.len()],
+            ..Self::default()
         }
+    }
+
+    /// The time of a push: a pale stripe behind the curves.
+    pub fn push() -> Self {
+        Self {
+            color: PUSH_COLOR,
+            width_pt: 0.0,
+            is_band: true,
+            ..Self::default()
+        }
+    }
+
+    /// Returns whether it is the line of a run, which may coincide with that of another run.
+    fn is_of_run(&self) -> bool {
+        self.width_pt > 0.0 && self.mark.is_none() && self.color != EXACT_COLOR && !self.is_band
     }
 
     /// Points on a thin line, for the series `index` of several.
@@ -256,7 +311,7 @@ impl SeriesStyle {
             } else {
                 Self::points(index).color
             },
-            dash_pt: DASHES[place % DASHES.len()],
+            dash_pt: THEORY_DASHES[place % THEORY_DASHES.len()],
             ..Self::default()
         }
     }
@@ -284,18 +339,8 @@ impl SeriesStyle {
             dash_pt: &[],
             width_pt: DOT_PT,
             is_dots: true,
-            core: None,
             ..self
         }
-    }
-
-    /// The pen of its core.
-    pub fn core_pen(&self) -> Option<StrokeStyle> {
-        Some(StrokeStyle {
-            width_pt: Self::default().width_pt,
-            color: self.core?,
-            ..self.pen()
-        })
     }
 
     pub fn pen(&self) -> StrokeStyle {

@@ -137,7 +137,7 @@ pub(super) fn draw_bands(
         for (parts, series) in all.iter().zip(&mut panel.series) {
             if parts.are_dense(series.style.width_pt.max(widest), placed) {
                 series.band = parts.band(placed);
-                (series.style.is_band, series.style.core) = (true, None);
+                series.style.is_band = true;
             }
         }
     }

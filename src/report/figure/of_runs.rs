@@ -22,7 +22,7 @@ use crate::engine::text::nice_numbers;
 use crate::engine::text::number::{short, shortest};
 use crate::physics::exact::LagrangeTop;
 use crate::plot::chart::legend::longest_name;
-use crate::plot::chart::{Chart, KINDS_OF_LINE, SeriesStyle};
+use crate::plot::chart::{Chart, MOST_CURVES, SeriesStyle};
 use crate::plot::letters;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -61,6 +61,7 @@ pub fn figures(
     let mut all_played: Vec<(&FigureJob<'_>, SampledRuns)> = Vec::new();
     for job in &jobs {
         check_range(job)?;
+        check_count(job)?;
         if let FigureKind::Residuals = job.kind {
             match measured::residuals(job, &mut watch)? {
                 Some(figure) => figures.push(figure),
@@ -117,7 +118,6 @@ fn play(
         };
         drawn.extend(truths);
     }
-    warnings.extend(look_alike(&drawn));
     if drawn.iter().all(|drawn| drawn.course.is_empty) {
         return Err(broke
             .unwrap_or_else(|| "there is no step of the run in that stretch of time".to_owned()));
@@ -145,10 +145,10 @@ fn play_runs(
         let is_exact = is_exact(&run.scenario);
         Some(SampledRunNumbers {
             name,
-            style: if is_exact && index > 0 {
-                SeriesStyle::exact(index)
+            style: if is_exact && job.runs.len() > 1 {
+                SeriesStyle::exact(exact_before(&job.runs[..index]))
             } else {
-                SeriesStyle::curve(index)
+                SeriesStyle::curve(index, job.runs.len())
             },
             course: if is_exact && !wanted.counts_steps() && is_coarse(run) {
                 // The exact motion is known between its steps too.
@@ -169,11 +169,11 @@ fn play_truths(
     mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Option<Vec<SampledRunNumbers>> {
     let room_pt = longest_name(job.spec.page_width_pt());
-    let truths = (job.runs.len()..).zip(truths(job.runs, room_pt));
-    let drawn = truths.map(|(place, (run, name))| {
+    let truths = (exact_before(job.runs)..).zip(truths(job.runs, room_pt));
+    let drawn = truths.map(|(index, (run, name))| {
         Some(SampledRunNumbers {
             name,
-            style: SeriesStyle::exact(place),
+            style: SeriesStyle::exact(index),
             course: course::exact(&run.scenario, wanted, &mut watch)?,
             is_exact: true,
         })
@@ -374,15 +374,26 @@ fn few_a_swing(run: &FigureRun) -> Option<String> {
     })
 }
 
-/// What is said of more curves than there are kinds of line.
-fn look_alike(drawn: &[SampledRunNumbers]) -> Option<String> {
-    let repeated = drawn.get(KINDS_OF_LINE)?;
-    Some(format!(
-        "{} curves have {KINDS_OF_LINE} kinds of line: {} looks like {}, and those after it like the next ones; fewer curves in a figure are told apart",
-        drawn.len(),
-        repeated.name,
-        drawn[0].name
+/// Refuses more curves than can be told apart.
+fn check_count(job: &FigureJob<'_>) -> Result<(), String> {
+    let room_pt = longest_name(job.spec.page_width_pt());
+    let exact = if job.spec.exact {
+        truths(job.runs, room_pt).len()
+    } else {
+        0
+    };
+    let count = job.runs.len() + exact;
+    if count <= MOST_CURVES {
+        return Ok(());
+    }
+    Err(format!(
+        "{count} curves: a figure shows at most {MOST_CURVES}, since more are not told apart; draw fewer runs, or a figure for each group of them"
     ))
+}
+
+/// Returns how many of `runs` are exact motions.
+fn exact_before(runs: &[FigureRun]) -> usize {
+    runs.iter().filter(|run| is_exact(&run.scenario)).count()
 }
 
 /// Whether every step of `scenario` is the exact motion's.

@@ -15,7 +15,7 @@ use crate::plot::camera::{Camera, CameraView};
 use crate::plot::chart::layout::PAGE_EDGE;
 use crate::plot::chart::legend::Legend;
 use crate::plot::chart::ticks::{Tick, Ticks};
-use crate::plot::chart::{ChartAxis, SeriesStyle, curve};
+use crate::plot::chart::{ChartAxis, SeriesStyle};
 use crate::plot::ink::{self, BLACK, LABEL_PT, TITLE_PT, at, grey, pen};
 use crate::plot::scene::{Color, PageScene, Point, StrokeStyle};
 use nalgebra::Vector3;
@@ -52,15 +52,10 @@ pub(super) fn scene(
 ) -> (PageScene, Option<Dense>) {
     let width_pt = job.spec.page_width_pt();
     let space = Space::fitted(job.runs, drawn, width_pt);
-    let (names, mut styles): (Vec<_>, Vec<_>) = drawn
+    let (names, styles): (Vec<_>, Vec<_>) = drawn
         .iter()
         .map(|drawn| chords::as_drawn(drawn, &drawn.course.path))
         .unzip();
-    let mut above = curve::Above::default();
-    for (run, style) in drawn.iter().zip(&mut styles) {
-        let lines = run.course.path.lines(|at| space.place(&space.boxed(at)));
-        above.add(&lines, style);
-    }
     let series = names.iter().map(String::as_str).zip(&styles);
     let legend = Legend::new(series, space.stretched());
     let mut items = space.draw(drawn, &styles);

@@ -8,8 +8,8 @@ mod curves;
 mod strip;
 
 use super::{PaneRow, PlotInputs, write};
+use crate::engine::run::marks::Marks;
 use crate::lab::action::{Direction, signed};
-use crate::lab::playback::marks::Marks;
 use crate::lab::playback::scale::StripScale;
 use crate::lab::playback::strip::Strip;
 use crate::lab::view::theme::Marker;

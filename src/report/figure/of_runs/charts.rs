@@ -2,6 +2,7 @@
 
 use crate::engine::export::CsvColumn;
 use crate::engine::run::Truth;
+use crate::engine::run::marks::Marks;
 use crate::plot::chart::layout::ChartLayout;
 use crate::plot::chart::{Chart, ChartSeries, Panel, SeriesStyle};
 use crate::report::figure::job::{Dense, FigureJob, FigureRun, SampledRunNumbers};
@@ -9,6 +10,10 @@ use crate::report::figure::spec::FigureSpec;
 use crate::report::figure::{chords, dense, quantity, size};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
+
+/// A curve of more points has lines that are thinner, of their width.
+const MANY_POINTS: usize = 600;
+const THIN: f64 = 0.75;
 
 /// Columns of the runs over time, a panel each.
 pub(super) fn over_time(
@@ -22,18 +27,42 @@ pub(super) fn over_time(
     let mut x = quantity::axis("t_s");
     x.range = (end_s > from_s).then_some((from_s, end_s));
     let panels = columns.iter().map(|column| {
-        let curves = drawn.iter().map(|drawn| {
-            let points = drawn.course.points(column);
-            let mut style = drawn.style.clone();
-            // Only thin lines show many swings beside each other.
-            if points.len() > 600 && columns.len() > 1 {
-                style.width_pt *= 0.75;
+        let mut series: Vec<_> = drawn
+            .iter()
+            .map(|drawn| {
+                let points = drawn.course.points(column);
+                ChartSeries::new(&drawn.name, points, drawn.style.clone())
+            })
+            .collect();
+        // Only thin lines show many swings beside each other.
+        if columns.len() > 1
+            && series
+                .iter()
+                .any(|series| series.points.len() > MANY_POINTS)
+        {
+            for series in &mut series {
+                series.style.width_pt *= THIN;
             }
-            ChartSeries::new(&drawn.name, points, style)
-        });
-        Panel::new(size::axis(job.runs, column.name), curves.collect())
+        }
+        series.extend(pushes(job.runs, from_s, end_s));
+        Panel::new(size::axis(job.runs, column.name), series)
     });
     job.chart(x, panels.collect())
+}
+
+/// Returns the stripes of the pushes of `runs` between two times, s: each stretch of time once.
+fn pushes(runs: &[FigureRun], from_s: f64, end_s: f64) -> Vec<ChartSeries> {
+    let mut stretches: Vec<(f64, f64)> = Vec::new();
+    for (begin, end) in runs.iter().flat_map(|run| Marks::new(&run.scenario).pushes) {
+        let stretch = (begin.max(from_s), end.min(end_s));
+        if stretch.0 < stretch.1 && !stretches.contains(&stretch) {
+            stretches.push(stretch);
+        }
+    }
+    let stripes = stretches
+        .iter()
+        .map(|(begin, end)| ChartSeries::push(*begin, *end));
+    stripes.collect()
 }
 
 /// The paths of the runs from above, and the places that were `measured`.

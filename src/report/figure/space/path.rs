@@ -57,15 +57,25 @@ impl Space {
                 })
             })
             .collect();
-        // The first run is on top of all others.
-        let pens: [fn(&SeriesStyle) -> Option<StrokeStyle>; 2] =
-            [|style| Some(style.pen()), SeriesStyle::core_pen];
-        for pen in pens {
-            for (parts, style) in parted.iter().zip(styles).rev() {
-                for (nearness, pieces) in parts.iter().enumerate() {
-                    if let Some(pen) = pen(style) {
-                        draw_at(nearness, pieces, pen, style, scene);
-                    }
+        // Runs are drawn first, the first of them last; the exact motion is on top of them.
+        let (behind, before): (Vec<_>, Vec<_>) = parted
+            .iter()
+            .zip(styles)
+            .rev()
+            .partition(|(_, style)| style.is_behind);
+        for (parts, style) in behind.into_iter().chain(before) {
+            for (nearness, pieces) in parts.iter().enumerate() {
+                draw_at(nearness, pieces, style, scene);
+            }
+        }
+        for (place, (path, style)) in paths.iter().zip(styles).enumerate() {
+            if let Some(mark) = style.sparse_mark {
+                let lines: Vec<Vec<Point>> = path
+                    .iter()
+                    .map(|line| line.iter().map(|(point, _)| *point).collect())
+                    .collect();
+                for point in curve::spread(&lines, place) {
+                    scene.mark(mark, point, style.color);
                 }
             }
         }
@@ -73,13 +83,8 @@ impl Space {
 }
 
 /// Draws pieces of that nearness: what is near is wide and dark.
-fn draw_at(
-    nearness: usize,
-    pieces: &[Vec<Point>],
-    pen: StrokeStyle,
-    style: &SeriesStyle,
-    scene: &mut PageScene,
-) {
+fn draw_at(nearness: usize, pieces: &[Vec<Point>], style: &SeriesStyle, scene: &mut PageScene) {
+    let pen = style.pen();
     let part = nearness as f64 / (DEPTHS - 1) as f64;
     let width = WIDTHS.1 + part * (WIDTHS.0 - WIDTHS.1);
     let pen = StrokeStyle {

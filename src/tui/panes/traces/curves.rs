@@ -4,8 +4,8 @@ use super::canvas::{Canvas, Layer};
 use super::content::StripContent;
 use super::{Plot, Traces};
 use crate::engine::recording::{Extent, RecordedCurve, Recording};
+use crate::engine::run::marks::Marks;
 use crate::lab::playback::envelope::{Rows, envelope};
-use crate::lab::playback::marks::Marks;
 use crate::lab::playback::scale::StripScale;
 use std::ops::Range;
 

@@ -1,8 +1,8 @@
 //! The times at which pushes act on a run, and at which it was edited.
 
-use crate::engine::run::Clock;
-use crate::engine::run::pushes::acts_s;
-use crate::engine::scenario::{Push, Scenario};
+use super::Clock;
+use super::pushes::acts_s;
+use crate::scenario::{Push, Scenario};
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Marks {
@@ -58,7 +58,7 @@ fn joined(mut stretches: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::scenario::{Document, presets};
+    use crate::scenario::{Document, presets};
 
     /// Pushes and edits of a preset with these edits: the step of each, and what it sets.
     fn marks(preset: &str, edits: &[(u64, &str)]) -> Marks {
