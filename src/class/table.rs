@@ -166,7 +166,10 @@ impl Totals {
             return;
         };
         self.answered += 1;
-        let judged = predict.asked.number(&last.answer).zip(predict.right.as_ref());
+        let judged = predict
+            .asked
+            .number(&last.answer)
+            .zip(predict.right.as_ref());
         self.right += usize::from(judged.is_some_and(|(number, right)| right.accepts(number)));
     }
 }

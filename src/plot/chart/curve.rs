@@ -246,10 +246,7 @@ mod tests {
     #[test]
     fn lines_coincide_where_neither_leaves_the_other() {
         let level = Squares::new(&zigzag(0.5, 0.0, 0.0));
-        assert!(
-            level.coincide(&Squares::new(&zigzag(0.25, 0.0, 0.2))) == false,
-            "half as long"
-        );
+        assert!(!level.coincide(&Squares::new(&zigzag(0.25, 0.0, 0.2))));
         assert!(level.coincide(&Squares::new(&zigzag(0.5, 0.0, 0.2))));
         assert!(!level.coincide(&Squares::new(&zigzag(0.5, 0.0, 3.0))));
         // It lies on the level line everywhere, but that does not lie on all of it.

@@ -40,8 +40,8 @@ pub(super) fn over_time(
                 .iter()
                 .any(|series| series.points.len() > MANY_POINTS)
         {
-            for series in &mut series {
-                series.style.width_pt *= THIN;
+            for curve in &mut series {
+                curve.style.width_pt *= THIN;
             }
         }
         series.extend(pushes(job.runs, from_s, end_s));
