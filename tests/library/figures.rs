@@ -291,8 +291,7 @@ fn the_exact_motion_is_dashed_and_on_top_of_every_run() {
         let set = format!("motion.time_step_s={step}");
         let runs = [run(preset, &["motion.steps=400", &set])];
         let scene = drawn(&runs, &with_exact("z_m")).scene;
-        let name = &words(&scene)[..];
-        assert!(name.iter().any(|word| *word == "exact motion"), "{name:?}");
+        says(&scene, &["exact motion"]);
         let panel = scene.items[exact_lines(&scene)[0]].clip.unwrap();
         let all = lines(&scene, panel);
         let widths: Vec<f64> = all
