@@ -1,5 +1,6 @@
 //! What is read off a state: positions, angles, energy.
 
+use super::friction::Damping;
 use super::loads::{self, Loads};
 use super::{Body, State};
 use nalgebra::Vector3;
@@ -40,12 +41,17 @@ pub fn vertical_momentum(body: &Body, state: &State) -> f64 {
     angular_velocity(body, state).cross(&moment).z
 }
 
-/// Vertical force with which the pivot holds the body under `loads` without friction, world frame, N: what moves the
-/// centre of mass beside the weight and the pushes.
+/// Returns the vertical force with which the pivot holds the body under `loads`, world frame, N: what moves the center of
+/// mass beside the weight and the pushes.
+///
+/// The torque of dry friction that holds a spin of exactly 0 is left out; it matters to a lopsided body alone.
 pub fn pivot_force_z(body: &Body, state: &State, loads: &Loads) -> f64 {
     let turn = state.orientation;
     let (moment, omega) = (turn * body.first_moment(), angular_velocity(body, state));
-    let torque = loads::torque(&turn, &loads.moment(body)) - omega.cross(&state.momentum);
+    let friction = Damping::new(body, &loads.friction);
+    let friction = friction.map(|damping| turn * damping.torque(&turn.tr_mul(&omega)));
+    let torque = loads::torque(&turn, &loads.moment(body)) + friction.unwrap_or_default()
+        - omega.cross(&state.momentum);
     let alpha = turn * (body.inverse_inertia() * turn.tr_mul(&torque));
     let inertial = alpha.cross(&moment) + omega.cross(&omega.cross(&moment));
     let pushes: f64 = loads.pushes.iter().map(|push| push.force.z).sum();

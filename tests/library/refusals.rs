@@ -191,6 +191,7 @@ const TABLE: &[(usize, &str, usize, &str, &str)] = &[
     (30, "window_s = -1", 30, "view.window_s (-1) must be greater than zero", ""),
     (30, "detail_s = 0", 30, "view.detail_s (0) must be greater than zero", ""),
     (30, "detail_of = \"w\"", 30, "view.detail_of (\"w\") must be one of", "tilt"),
+    (30, "z_range_m = [1, 1]", 30, "view.z_range_m", "the lower one first"),
     (30, "show = \"x\"", 30, "view.show (\"x\") must be a list", "not text"),
     (30, "hide = [\"x\"]", 30, "view.hide ([\"x\"]) each must be one of", "health"),
     (30, "fill = \"x\"", 30, "view.fill (\"x\") must be one of", "none"),

@@ -17,7 +17,6 @@ use super::report_theory::ReportTheory;
 use super::theory::TheoryAxis;
 use super::{Extremes, Health, MeasuredNumber, Monitor, Theory, WithoutNutation};
 use crate::physics::SymmetricTop;
-use crate::physics::observables::pivot_force_z;
 use crate::run::{Clock, Sample, Simulation};
 use crate::scenario::{Scenario, Window};
 use serde::ser::{Serialize, SerializeMap, Serializer};
@@ -53,8 +52,6 @@ pub struct Readouts {
     pub extremes: Extremes,
     /// M g, N.
     pub weight: f64,
-    /// Vertical force of the floor on the foot, N.
-    pub foot_force: Option<f64>,
     /// Its mean over whole nutations since the forces last changed, N.
     pub mean_foot_force: Option<MeasuredNumber>,
     /// That mean by Newton's second law, N.
@@ -103,8 +100,6 @@ impl Readouts {
             advice: advice.copied(),
             theory: monitor.theory(state.time_s),
             extremes: monitor.extremes,
-            foot_force: is_smooth
-                .then(|| pivot_force_z(&step.scenario().body.mechanics, state, step.loads())),
             weight: step.scenario().body.mechanics.mass() * step.loads().gravity,
             mean_foot_force: None,
             predicted_mean_foot_force: is_smooth.then(|| monitor.predicted_mean_foot_force(step)),

@@ -75,6 +75,11 @@ pub const OPTIONAL_COLUMNS: &[CsvColumn] = &[
     column("L_axle_Js", "angular momentum along the axle", |r| {
         Number(r.sample.momentum.dot(&r.state().axle()))
     }),
+    column(
+        "foot_force_N",
+        "vertical force of the floor on the foot",
+        |r| Number(r.sample.foot_force),
+    ),
     column("w1_rad_per_s", OMEGA_OF_BODY, |r| {
         Number(r.sample.omega().x)
     }),

@@ -187,6 +187,11 @@ impl Step {
             tilt_deg: self.tilt_deg(),
             azimuth_deg: self.azimuth.degrees(),
             energy: self.energy(),
+            foot_force: observables::pivot_force_z(
+                &self.scenario.body.mechanics,
+                &self.after,
+                &self.loads,
+            ),
             rotor_turn: self.rotor_turn,
             segment: self.segment,
         }
@@ -219,6 +224,8 @@ pub struct Sample {
     pub azimuth_deg: f64,
     /// Kinetic and potential energy, from the pivot, J.
     pub energy: f64,
+    /// Vertical force of the floor on the foot, N.
+    pub foot_force: f64,
     /// The angle about the axle by which a rotor has turned in its frame since the start, rad; 0 where the whole body spins.
     pub rotor_turn: f64,
     /// The number of edits of time step, scheme or gravity before this step.

@@ -80,10 +80,10 @@ pub const HIDEABLE: [&str; 3] = ["health", "predicted", "look_at"];
 /// What the fourth strip of the traces can show: distance is how far the run is from the exact motion; auto is that, or the
 /// tilt, if the screen is large; the others after it are columns of the run's CSV.
 #[rustfmt::skip]
-pub const DETAILS: [&str; 20] = [
+pub const DETAILS: [&str; 21] = [
     AUTO, "none", "x", "y", "z", "tilt", "distance",
     "Lx_Js", "Ly_Js", "Lz_Js", "wx_rad_per_s", "wy_rad_per_s", "wz_rad_per_s", "azimuth_deg", "energy_J",
-    "spin_rpm", "L_axle_Js", "w1_rad_per_s", "w2_rad_per_s", "w3_rad_per_s",
+    "spin_rpm", "L_axle_Js", "foot_force_N", "w1_rad_per_s", "w2_rad_per_s", "w3_rad_per_s",
 ];
 pub const AUTO: &str = "auto";
 

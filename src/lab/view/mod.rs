@@ -45,6 +45,9 @@ pub struct ViewSettings {
     pub detail_s: Option<f64>,
     /// The strip below those of x, y and z.
     pub detail_of: FourthStrip,
+    /// Least and greatest z that the strip of z shows, m; `None`: those of the run.
+    #[serde(deserialize_with = "where_known")]
+    pub z_range_m: Option<[f64; 2]>,
     /// Where the 3-D view is looked at from, if that was chosen. Otherwise it is turned so that the axle is seen aslant.
     pub camera: Option<Camera>,
     /// How much larger than the whole the round pictures are shown.

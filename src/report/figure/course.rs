@@ -7,9 +7,9 @@ use crate::engine::export::stream::{self, Ended};
 use crate::engine::recording::{Extent, Recording, RecordingBin};
 use crate::engine::run::{Clock, NotFinite, Sample, Simulation, Step, Truth};
 use crate::engine::scenario::Scenario;
-use crate::physics::State;
 use crate::physics::exact::LagrangeTop;
 use crate::physics::observables::{self, Azimuth};
+use crate::physics::{Loads, State};
 use nalgebra::Vector3;
 use std::io;
 use std::ops::ControlFlow;
@@ -328,7 +328,7 @@ pub fn exact(
             break; // what comes after it is no number either
         }
         azimuth.turn_to(&state.axle());
-        let numbers = sample(scenario, &state, &azimuth, truth.loads().gravity);
+        let numbers = sample(scenario, &state, &azimuth, truth.loads());
         recorder.take(time_s, 0.0, &numbers.position, || numbers);
         if number.is_multiple_of(look_every) && watch(number, count).is_break() {
             return None;
@@ -352,9 +352,9 @@ fn apart_s(length_s: f64, time_step_s: f64, known_period_s: Option<f64>) -> f64 
     ((apart_s / period_s - OTHER_PHASE).floor() + OTHER_PHASE) * period_s
 }
 
-fn sample(scenario: &Scenario, state: &State, azimuth: &Azimuth, gravity: f64) -> Sample {
+fn sample(scenario: &Scenario, state: &State, azimuth: &Azimuth, loads: &Loads) -> Sample {
     let body = &scenario.body.mechanics;
-    let weight = gravity * observables::weight_height(body, state);
+    let weight = loads.gravity * observables::weight_height(body, state);
     Sample {
         step: 0,
         time_s: state.time_s,
@@ -365,6 +365,7 @@ fn sample(scenario: &Scenario, state: &State, azimuth: &Azimuth, gravity: f64) -
         tilt_deg: observables::tilt_deg(state),
         azimuth_deg: azimuth.degrees(),
         energy: observables::kinetic_energy(body, state) + weight,
+        foot_force: observables::pivot_force_z(body, state, loads),
         rotor_turn: 0.0, // no curve shows it
         segment: 0,
     }

@@ -32,6 +32,7 @@ fn of_run(scenario: &Scenario, name: &str) -> f64 {
         "Lx_Js" | "Ly_Js" | "Lz_Js" | "L_axle_Js" => state.momentum.norm(),
         "wx_rad_per_s" | "wy_rad_per_s" | "wz_rad_per_s" | "w1_rad_per_s" | "w2_rad_per_s"
         | "w3_rad_per_s" => rate,
+        "foot_force_N" => body.mass() * scenario.motion.gravity.abs(),
         "spin_rpm" => start::rpm(rate),
         "energy_J" => {
             let weight = scenario.motion.gravity * body.first_moment().norm();

@@ -320,7 +320,7 @@ readouts! {
     "w1_rad_per_s", "rad/s", State, "angular velocity along the body's own x", |r| r.sample.omega().x, "*ω*_{1}";
     "w2_rad_per_s", "rad/s", State, "angular velocity along the body's own y", |r| r.sample.omega().y, "*ω*_{2}";
     "w3_rad_per_s", "rad/s", State, "angular velocity along the axle", |r| r.sample.omega().z, "*ω*_{3}";
-    "foot_force_N", "N", State, "vertical force of the floor on the foot; null under friction", |r| r.foot_force, "*N*";
+    "foot_force_N", "N", State, "vertical force of the floor on the foot", |r| r.sample.foot_force, "*N*";
     "predicted_mean_foot_force_N", "N", Theory, "its mean over whole nutations: M g, and what pushes press down; of a lopsided body too", |r| r.predicted_mean_foot_force, "*M* *g*";
     "measured_mean_foot_force_N", "N", Measured, "its mean over whole nutations; null before one was seen, and where the time step is too long to see them", |r| value(r.mean_foot_force), "*N*" , summary summary(Motion, 5, "foot force", summary_row::foot_force);
     "measured_mean_foot_force_uncertainty_N", "N", Measured, "one standard error of reading it off the steps", |r| uncertainty(r.mean_foot_force);

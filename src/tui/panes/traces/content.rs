@@ -153,6 +153,11 @@ impl Traces<'_> {
 
     fn whole_scale(&self, content: StripContent) -> StripScale {
         let window = &self.0.view.window;
+        if let (StripContent::Curve(RecordedCurve::Z), Some([low, high])) =
+            (content, self.0.view.look.z_range_m)
+        {
+            return StripScale { low, high };
+        }
         let shown = self.points(content).unwrap_or_default().iter();
         let points = shown
             .filter(|point| window.contains(point.time_s))
