@@ -13,7 +13,7 @@ use crate::engine::text::number::{shortest, significant};
 use crate::engine::text::printable::{PrintablePath, brief, printable};
 use crate::studies::fit::flights::{self, Found};
 use crate::studies::fit::report::{self, FitCommand, FitReport};
-use crate::studies::fit::{Fit, Free, Model, NoFit, fit as fitted};
+use crate::studies::fit::{Fit, Free, Model, NoFit, fit as fitted, thrown};
 use crate::studies::verify::Unverified;
 use anyhow::{Context, anyhow, bail};
 use clap::error::ErrorKind;
@@ -34,13 +34,9 @@ pub(super) struct FitArgs {
     #[arg(long = "in", value_name = "SCENARIO")]
     pub(super) scenario: String,
 
-    /// The keys whose values are looked for, each from its value in the scenario on, and within FROM..TO where that is given
-    #[arg(
-        long,
-        value_name = "KEY[=FROM..TO],...",
-        value_delimiter = ',',
-        required = true
-    )]
+    /// The keys whose values are looked for, each from its value in the scenario on, and within FROM..TO where that is
+    /// given [for a body that was thrown by default: two of its moments, and its three rates at the start]
+    #[arg(long, value_name = "KEY[=FROM..TO],...", value_delimiter = ',')]
     pub(super) free: Vec<String>,
 
     #[command(flatten)]
@@ -118,11 +114,24 @@ pub(super) fn fit(args: &FitArgs) -> anyhow::Result<ExitCode> {
     }
     let task = Task::read(args)?;
     tell_notes(&task.measured.notes());
+    let Some(keys) = task.usual_keys()?.filter(|_| args.free.is_empty()) else {
+        if args.free.is_empty() {
+            let message = "--free KEY,... says which values are looked for; only a body that was thrown needs none";
+            refuse("fit", ErrorKind::MissingRequiredArgument, message);
+        }
+        return fit_all(args, &task);
+    };
+    let free = keys.map(str::to_owned).into();
+    fit_all(&FitArgs { free, ..args.clone() }, &task)
+}
+
+/// Fits each flight of the recording, or all of it.
+fn fit_all(args: &FitArgs, task: &Task) -> anyhow::Result<ExitCode> {
     let Some(throws) = task.throws(args)? else {
-        return fit_one(args, &task, None);
+        return fit_one(args, task, None);
     };
     if let [throw] = &throws[..] {
-        return fit_one(&throw.args(args), &task, Some(throw));
+        return fit_one(&throw.args(args), task, Some(throw));
     }
     if args.output.is_some() {
         bail!(
@@ -136,7 +145,7 @@ pub(super) fn fit(args: &FitArgs) -> anyhow::Result<ExitCode> {
                 .join("\n")
         );
     }
-    fit_each(args, &task, &throws)
+    fit_each(args, task, &throws)
 }
 
 /// Fits each of the `throws`. One that cannot be fitted is told, and the others are.
@@ -237,6 +246,16 @@ impl Task {
             document,
             own_scheme,
         })
+    }
+
+    /// Returns the keys that are free where none are named; `None` if the data are no recording of a body that was thrown.
+    fn usual_keys(&self) -> Result<Option<[&'static str; 5]>, Problems> {
+        match &self.measured.data {
+            DataKind::Series(series) => {
+                Ok(thrown::usual_keys(series, &self.document.scenario()?))
+            }
+            DataKind::Table(_) => Ok(None),
+        }
     }
 
     /// Returns the flights that are fitted one by one; `None` where the recording is fitted as it is.

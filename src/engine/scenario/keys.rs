@@ -104,7 +104,7 @@ pub const KEYS: &[SchemaRow] = &[
     may("view.z_range_m", ValueKind::By(is_range), "least and greatest z that the strip of z shows, m: [0.6, 0.95]; auto: those of the run in its window").or(DefaultValue::Word("auto")),
     may("view.exact", Flag, "whether the exact motion is drawn beside the run").or(DefaultValue::Flag(false)),
     may("view.show", Panes(&[]), "the panes that share the screen, where it has room for them; empty: as many as there is room for, without those that are shown on request only (default)"),
-    may("view.hide", Panes(&HIDEABLE), "what is not shown: panes, the line about the numbers' health, theory's predicted numbers, the line look_at (default: empty)"),
+    may("view.hide", Panes(&HIDEABLE), "what is not shown: panes, the line about the numbers' health, theory's predicted numbers, the line look_at, the arrows of the 3-D view (default: empty)"),
     may("view.fill", Pane(&["none"]), "the pane that fills the screen").or(DefaultValue::Word("none")),
     may("view.phase", WholeOr(MOST_PHASES, &PHASES), "the phase that the pane step shows: its number or name, last, or why: why sideways, not down?").or(DefaultValue::Whole(1)),
     may("view.sum_to", WholeOr(MOST_POINTS, &[ALL_ROWS]), "how many rows of a phase's table the pane step adds up").or(DefaultValue::Word("all")),

@@ -74,8 +74,8 @@ impl<'de> Deserialize<'de> for Pane {
 }
 
 /// What of the screen can be hidden besides panes: the line about the numbers' health, the numbers that theory predicts,
-/// the line that says what there is to see.
-pub const HIDEABLE: [&str; 3] = ["health", "predicted", "look_at"];
+/// the line that says what there is to see, the arrows of the 3-D view.
+pub const HIDEABLE: [&str; 4] = ["health", "predicted", "look_at", "arrows"];
 
 /// What the fourth strip of the traces can show: distance is how far the run is from the exact motion; auto is that, or the
 /// tilt, if the screen is large; the others after it are columns of the run's CSV.

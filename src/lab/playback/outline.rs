@@ -7,21 +7,41 @@ use std::f64::consts::TAU;
 const OUTLINE_PARTS: usize = 48;
 /// Lines along a round solid, from end to end.
 const SIDES: usize = 4;
+/// Lengths that differ by less than this share are drawn as equal.
+const SAME_SHARE: f64 = 0.02;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polyline {
     /// The points that it goes through, body frame, m; at least two.
     pub points: Vec<Vector3<f64>>,
-    /// Whether it is the one line by which the rotation of a round part about its axis is seen.
-    pub is_mark: bool,
+    pub kind: LineKind,
 }
 
-/// Returns the lines of `part`. A part that is given by its moments is drawn as the thin ellipsoid that has them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LineKind {
+    /// A line on a round part.
+    Outline,
+    /// The one line by which the rotation of a round part about its axis is seen.
+    Mark,
+    /// An edge of a block.
+    Edge {
+        /// The directions out of the two faces that meet there, body frame, unit vectors.
+        faces: [Vector3<f64>; 2],
+        /// Whether the ends of the block are told apart by it.
+        is_marked: bool,
+    },
+}
+
+/// Returns the lines of `part`. A part that is given by its moments is drawn as the block that has them if the three differ,
+/// or else as the thin ellipsoid.
 pub fn lines(part: &PlacedSolid) -> Vec<Polyline> {
     let mut lines = own_lines(part);
     for line in &mut lines {
         for point in &mut line.points {
             *point = part.centre + part.directions * *point;
+        }
+        if let LineKind::Edge { faces, .. } = &mut line.kind {
+            *faces = faces.map(|normal| part.directions * normal);
         }
     }
     lines
@@ -48,8 +68,21 @@ fn own_lines(part: &PlacedSolid) -> Vec<Polyline> {
             round([(0.0, base - length), (radius, base)], None)
         }
         Shape::Block { size } => block(&size),
+        Shape::Moments(_) if are_distinct(&part.distances) => {
+            let side = libm::sqrt(12.0);
+            block(&Vector3::from(part.distances.map(|distance| side * distance)))
+        }
         Shape::Moments(_) => ellipsoid(part.distances),
     }
+}
+
+/// Returns whether each two of `distances` differ by more than [`SAME_SHARE`] of the greatest.
+fn are_distinct(distances: &[f64; 3]) -> bool {
+    let [a, b, c] = *distances;
+    let least = SAME_SHARE * a.max(b).max(c);
+    [a - b, b - c, c - a]
+        .iter()
+        .all(|apart| apart.abs() > least)
 }
 
 fn ellipsoid([x, y, z]: [f64; 3]) -> Vec<Polyline> {
@@ -64,7 +97,7 @@ fn ellipsoid([x, y, z]: [f64; 3]) -> Vec<Polyline> {
             .iter()
             .map(|at| at.x * right + at.y * up)
             .collect(),
-        is_mark: false,
+        kind: LineKind::Outline,
     })
     .to_vec()
 }
@@ -103,13 +136,13 @@ fn circle(radius: f64, z: f64) -> Polyline {
                 Vector3::new(radius * cos, radius * sin, z)
             })
             .collect(),
-        is_mark: false,
+        kind: LineKind::Outline,
     }
 }
 
 fn mark(inner: f64, outer: f64, z: f64) -> Polyline {
     Polyline {
-        is_mark: true,
+        kind: LineKind::Mark,
         ..straight([Vector3::new(inner, 0.0, z), Vector3::new(outer, 0.0, z)])
     }
 }
@@ -117,30 +150,35 @@ fn mark(inner: f64, outer: f64, z: f64) -> Polyline {
 fn straight(ends: [Vector3<f64>; 2]) -> Polyline {
     Polyline {
         points: ends.to_vec(),
-        is_mark: false,
+        kind: LineKind::Outline,
     }
 }
 
+/// Returns the edges of a block. Those at the end of +y, the upper edges of a phone, are marked.
 fn block(size: &Vector3<f64>) -> Vec<Polyline> {
     let half = 0.5 * size;
-    if half.z == 0.0 {
-        return vec![rectangle(half.x, half.y, 0.0)];
+    let mut edges = Vec::new();
+    for along in 0..3 {
+        let across = [(along + 1) % 3, (along + 2) % 3];
+        for sides in [[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]] {
+            let faces = [0, 1].map(|face| {
+                let mut normal = Vector3::zeros();
+                normal[across[face]] = sides[face];
+                normal
+            });
+            let middle = (faces[0] + faces[1]).component_mul(&half);
+            let mut reach = Vector3::zeros();
+            reach[along] = half[along];
+            edges.push(Polyline {
+                kind: LineKind::Edge {
+                    faces,
+                    is_marked: along == 0 && middle.y > 0.0,
+                },
+                ..straight([middle - reach, middle + reach])
+            });
+        }
     }
-    let bottom = rectangle(half.x, half.y, -half.z);
-    let top = rectangle(half.x, half.y, half.z);
-    let edges: Vec<_> = (0..4)
-        .map(|corner| straight([bottom.points[corner], top.points[corner]]))
-        .collect();
-    [vec![bottom, top], edges].concat()
-}
-
-fn rectangle(x: f64, y: f64, z: f64) -> Polyline {
-    Polyline {
-        points: [(x, y), (-x, y), (-x, -y), (x, -y), (x, y)]
-            .map(|(x, y)| Vector3::new(x, y, z))
-            .to_vec(),
-        is_mark: false,
-    }
+    edges
 }
 
 #[cfg(test)]

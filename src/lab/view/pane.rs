@@ -10,6 +10,8 @@ pub enum HideablePart {
     Predicted,
     /// The line that says what there is to see.
     LookAt,
+    /// The arrows of the 3-D view.
+    Arrows,
     #[serde(untagged)]
     Pane(Pane),
 }

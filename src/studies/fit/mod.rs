@@ -18,7 +18,7 @@ pub mod model;
 pub mod report;
 pub mod search;
 pub mod solution;
-mod thrown;
+pub mod thrown;
 pub mod verdict;
 pub mod weights;
 pub mod within;

@@ -36,6 +36,23 @@ const SHARES: [[f64; 3]; 13] = [
     [0.1, 1.0, 4.0],
 ];
 
+/// The keys that a throw tells: free flight depends on the ratios of the moments alone, so the third one is held.
+const USUAL_KEYS: [&str; 5] = [
+    "body.part.0.moments_kg_m2.0",
+    "body.part.0.moments_kg_m2.1",
+    "start.omega_rad_per_s.0",
+    "start.omega_rad_per_s.1",
+    "start.omega_rad_per_s.2",
+];
+
+/// Returns the keys that are free where none are named; `None` where the data are not the three rates of a body that flies
+/// freely and has its moments in the scenario.
+pub fn usual_keys(series: &TimeSeries, scenario: &Scenario) -> Option<[&'static str; 5]> {
+    let has_moments = scenario.file.body.part.first()?.moments_kg_m2.is_some();
+    let is_thrown = flies(scenario) && recorded(series).is_some();
+    (is_thrown && has_moments).then_some(USUAL_KEYS)
+}
+
 /// Values of the free keys to begin from in place of `p`, the likeliest first; none where the data are not the three rates of
 /// a body that flies freely.
 pub(super) fn starts(model: &Model, p: &[f64]) -> Vec<Vec<f64>> {

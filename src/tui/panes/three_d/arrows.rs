@@ -46,6 +46,7 @@ pub enum ArrowKind {
     Torque,
     ChangeOfMomentum,
     Weight,
+    Floor,
     Push,
     TurnAxis,
 }
@@ -59,6 +60,9 @@ impl ArrowKind {
         Self::Push,
     ];
 
+    /// The arrows of forces.
+    pub const FORCES: &[Self] = &[Self::Weight, Self::Floor, Self::Push];
+
     pub fn label(self) -> &'static str {
         match self {
             Self::Momentum => "L",
@@ -67,6 +71,7 @@ impl ArrowKind {
             Self::Torque => "τ",
             Self::ChangeOfMomentum => "dL",
             Self::Weight => "weight",
+            Self::Floor => "floor",
             Self::Push => "F",
             Self::TurnAxis => "u",
         }
@@ -77,7 +82,7 @@ impl ArrowKind {
             Self::Momentum | Self::NewMomentum => Role::AngularMomentum,
             Self::AngularVelocity | Self::TurnAxis => Role::AngularVelocity,
             Self::Torque | Self::ChangeOfMomentum => Role::Torque,
-            Self::Weight | Self::Push => Role::Push,
+            Self::Weight | Self::Floor | Self::Push => Role::Push,
         }
     }
 }
@@ -219,11 +224,26 @@ impl Scene<'_> {
         }
     }
 
-    /// The weight at the center of mass, and the pushes that act: each with its origin and its length in lengths of the axle.
+    /// The vertical force of the floor on the foot, N.
+    fn floor_force(&self) -> f64 {
+        let simulation = self.seen.run.simulation();
+        let body = &self.seen.run.scenario().body.mechanics;
+        observables::pivot_force_z(body, self.state, simulation.loads())
+    }
+
+    /// The weight at the center of mass, the force of the floor, and the pushes that act: each with its origin and its length
+    /// in lengths of the axle. Beside the force of the floor, lengths are in proportion to the weight's.
     fn forces(&self) -> Vec<(ArrowKind, Vector3<f64>, Vector3<f64>)> {
         let loads = self.seen.run.simulation().loads();
         let body = &self.seen.run.scenario().body.mechanics;
+        let weight = body.mass() * loads.gravity.abs();
+        let in_proportion = |force: f64| (WEIGHT_ARROW_LENGTH * force / weight).clamp(-1.0, 1.0);
         let mut forces = Vec::new();
+        let shows_floor = self.draws(ArrowKind::Floor) && weight > 0.0;
+        if shows_floor {
+            let up = Vector3::z() * in_proportion(self.floor_force());
+            forces.push((ArrowKind::Floor, Vector3::zeros(), up));
+        }
         if self.draws(ArrowKind::Weight) && loads.gravity != 0.0 {
             let center = self.state.orientation * body.first_moment() / body.mass();
             let down = Vector3::z() * (-WEIGHT_ARROW_LENGTH * loads.gravity.signum());
@@ -232,8 +252,13 @@ impl Scene<'_> {
         if self.draws(ArrowKind::Push) {
             for push in loads.pushes.iter().take(MOST_SHOWN_PUSHES) {
                 let from = self.state.orientation * body.points()[push.point].at;
-                let along = push.force.try_normalize(f64::MIN_POSITIVE);
-                let along = along.map(|along| along * PUSH_ARROW_LENGTH);
+                let length = if shows_floor {
+                    in_proportion(push.force.norm())
+                } else {
+                    PUSH_ARROW_LENGTH
+                };
+                let direction = push.force.try_normalize(f64::MIN_POSITIVE);
+                let along = direction.map(|direction| direction * length);
                 forces.extend(along.map(|along| (ArrowKind::Push, from, along)));
             }
         }
@@ -253,6 +278,7 @@ impl Scene<'_> {
             ArrowKind::NewMomentum => return self.new_momentum(),
             ArrowKind::ChangeOfMomentum
             | ArrowKind::Weight
+            | ArrowKind::Floor
             | ArrowKind::Push
             | ArrowKind::TurnAxis => None,
         };
@@ -336,6 +362,7 @@ impl Scene<'_> {
             ArrowKind::Torque,
             ArrowKind::ChangeOfMomentum,
             ArrowKind::Weight,
+            ArrowKind::Floor,
             ArrowKind::Push,
             ArrowKind::TurnAxis,
         ];
@@ -357,6 +384,7 @@ impl Scene<'_> {
                     let mass = self.seen.run.scenario().body.mechanics.mass();
                     format!("{} N", significant(mass * loads.gravity.abs(), 3))
                 }
+                ArrowKind::Floor => format!("{} N", significant(self.floor_force(), 3)),
                 ArrowKind::Push if loads.pushes.is_empty() => continue,
                 ArrowKind::Push => "push".to_owned(),
                 ArrowKind::TurnAxis => "axis of the turn".to_owned(),

@@ -3,7 +3,7 @@
 use super::{CIRCLE_PARTS, Scene, ink};
 use crate::engine::scenario::file::RimFile;
 use crate::lab::playback::live::LiveRun;
-use crate::lab::playback::outline::{self, Polyline};
+use crate::lab::playback::outline::{self, LineKind, Polyline};
 use crate::physics::{PlacedSolid, State};
 use crate::tui::dots::Dashes;
 use crate::tui::layered_dots::{FineDot, Layer, LayeredDots, Spot};
@@ -142,18 +142,18 @@ impl Scene<'_> {
             self.rim(rim, dots);
         }
         let (foot, top) = self.shape.axle;
-        self.axle(&(state.axle() * foot), &(state.axle() * top), dots);
+        self.thick(&(state.axle() * foot), &(state.axle() * top), dots);
         self.masses(dots);
     }
 
-    /// The axle, two dots thick.
-    fn axle(&self, foot: &Vector3<f64>, top: &Vector3<f64>, dots: &mut LayeredDots) {
+    /// A line two dots thick: the axle, a marked edge.
+    fn thick(&self, from: &Vector3<f64>, to: &Vector3<f64>, dots: &mut LayeredDots) {
         let of_axle = ink(Role::Text, Layer::Axle);
-        let (from, to) = (self.dot(foot), self.dot(top));
-        let (across, down) = normal(from, to);
-        dots.line(from, to, of_axle);
+        let ends = (self.dot(from), self.dot(to));
+        let (across, down) = normal(ends.0, ends.1);
+        dots.line(ends.0, ends.1, of_axle);
         let beside = |at: FineDot| (at.0 + across, at.1 + down);
-        dots.line(beside(from), beside(to), of_axle);
+        dots.line(beside(ends.0), beside(ends.1), of_axle);
     }
 
     fn rim(&self, rim: &RimFile, dots: &mut LayeredDots) {
@@ -171,7 +171,7 @@ impl Scene<'_> {
         }
     }
 
-    /// The far lines of a part are dashed. A dashed line leads from the axle to what is off it.
+    /// The far lines of a part are dashed, and so are the hidden edges of a block. A dashed line leads from the axle to what is off it.
     fn solid(&self, solid: &Solid, dots: &mut LayeredDots) {
         let center = self.state.orientation * solid.centre;
         let middle = self.camera.depth(&center);
@@ -182,7 +182,14 @@ impl Scene<'_> {
         for line in &solid.lines {
             for (from, to) in pieces(line, self.state) {
                 let behind = self.camera.depth(&((from + to) * 0.5)) - middle;
-                if behind > FAR_SHARE * solid.size && !line.is_mark {
+                let (is_hidden, is_thick) = match line.kind {
+                    LineKind::Outline => (behind > FAR_SHARE * solid.size, false),
+                    LineKind::Mark => (false, false),
+                    LineKind::Edge { faces, is_marked } => (self.face_away(&faces), is_marked),
+                };
+                if is_thick {
+                    self.thick(&from, &to, dots);
+                } else if is_hidden {
                     self.dashed(&from, &to, Role::RimFar, dots);
                 } else {
                     let near = ink(Role::RimNear, Layer::Near);
@@ -190,6 +197,14 @@ impl Scene<'_> {
                 }
             }
         }
+    }
+
+    /// Whether faces of the body with these directions out of them (body frame) are turned away from the eye.
+    fn face_away(&self, normals: &[Vector3<f64>]) -> bool {
+        let turn = self.state.orientation;
+        normals
+            .iter()
+            .all(|normal| self.camera.depth(&(turn * normal)) >= 0.0)
     }
 
     fn dashed(&self, from: &Vector3<f64>, to: &Vector3<f64>, role: Role, dots: &mut LayeredDots) {

@@ -7,7 +7,7 @@ use super::{Scene, ink};
 use crate::engine::text::nice_numbers::at_or_below;
 use crate::engine::text::number::decimal;
 use crate::lab::step_pane::{StepWorkings, table_of};
-use crate::lab::view::{Pane, View};
+use crate::lab::view::{FourthStrip, HideablePart, Pane, View};
 use crate::physics::State;
 use crate::physics::workings::{Phase, PhaseName, WorkedValue};
 use crate::tui::dots::Dashes;
@@ -101,13 +101,21 @@ impl<'a> StepArrows<'a> {
 }
 
 impl Scene<'_> {
-    /// Whether arrows of this kind are drawn. If the step pane is shown, only those that its phase is about.
+    /// Whether arrows of this kind are drawn. If the step pane is shown, only those that its phase is about; while a strip
+    /// shows the force of the floor, only forces.
     pub(super) fn draws(&self, kind: ArrowKind) -> bool {
-        let kinds = self
-            .phase
-            .as_ref()
-            .map_or(ArrowKind::USUAL, StepArrows::kinds);
+        let kinds = match &self.phase {
+            Some(shown) => shown.kinds(),
+            None if self.seen.view.hides(HideablePart::Arrows) => &[],
+            None if self.shows_floor_force() => ArrowKind::FORCES,
+            None => ArrowKind::USUAL,
+        };
         kinds.contains(&kind)
+    }
+
+    /// Whether a strip shows the force of the floor on the foot.
+    pub(super) fn shows_floor_force(&self) -> bool {
+        self.seen.view.look.detail_of == FourthStrip::Column("foot_force_N")
     }
 
     /// The axis of the turn, the body before it, and the chosen point.
