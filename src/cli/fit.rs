@@ -122,7 +122,13 @@ pub(super) fn fit(args: &FitArgs) -> anyhow::Result<ExitCode> {
         return fit_all(args, &task);
     };
     let free = keys.map(str::to_owned).into();
-    fit_all(&FitArgs { free, ..args.clone() }, &task)
+    fit_all(
+        &FitArgs {
+            free,
+            ..args.clone()
+        },
+        &task,
+    )
 }
 
 /// Fits each flight of the recording, or all of it.
@@ -251,9 +257,7 @@ impl Task {
     /// Returns the keys that are free where none are named; `None` if the data are no recording of a body that was thrown.
     fn usual_keys(&self) -> Result<Option<[&'static str; 5]>, Problems> {
         match &self.measured.data {
-            DataKind::Series(series) => {
-                Ok(thrown::usual_keys(series, &self.document.scenario()?))
-            }
+            DataKind::Series(series) => Ok(thrown::usual_keys(series, &self.document.scenario()?)),
             DataKind::Table(_) => Ok(None),
         }
     }

@@ -121,6 +121,8 @@ pub enum LessonKey {
     Take,
     /// Marks the answer of this number, or asks for a number that begins with this digit.
     Digit(u8),
+    /// Asks for a number that begins with this sign or decimal point.
+    Sign(char),
 }
 
 /// A change in the field of a dialog, or in a line without a cursor: there something can be typed, erased and cleared.

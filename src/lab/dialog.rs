@@ -50,8 +50,8 @@ pub(super) enum DialogKind {
     /// The file for this text, a scenario that starts from the present state. The text was made when the dialog was
     /// opened, since the run may go on while the user types.
     SavePresent(String),
-    /// A number that a room above the lab asks for.
-    Number,
+    /// A number in this unit that a room above the lab asks for.
+    Number(String),
     /// Other values of the settings.
     Settings {
         /// What is typed: only settings that have it in their labels are listed.
@@ -229,9 +229,11 @@ impl Dialog {
         Self::new(question, title, &[("file", path)], [info])
     }
 
-    pub(super) fn number(title: &str, label: &str, about: &str) -> Self {
+    /// Asks for a number in `unit`, which is empty for a pure number.
+    pub(super) fn number(title: &str, unit: &str, about: &str) -> Self {
+        let label = if unit.is_empty() { "number" } else { unit };
         let fields = [(label, String::new())];
-        Self::new(DialogKind::Number, title, &fields, [about])
+        Self::new(DialogKind::Number(unit.to_owned()), title, &fields, [about])
     }
 
     /// Lists the settings that have `filter` in their labels, with the values that they have in `view`; the row `selected` is
@@ -370,18 +372,10 @@ impl Dialog {
                 to_step: Some(*to_step),
                 force,
             }),
-            DialogKind::SavePresent(_) | DialogKind::Number | DialogKind::Settings { .. } => {
+            DialogKind::SavePresent(_) | DialogKind::Number(_) | DialogKind::Settings { .. } => {
                 return Ok(None);
             }
         }))
-    }
-
-    /// Returns the number that was typed; a comma may stand for the decimal point.
-    pub(super) fn number_typed(&self) -> Result<f64, String> {
-        match self.form.text(0).trim().replace(',', ".").parse() {
-            Ok(number) if f64::is_finite(number) => Ok(number),
-            _ => Err("must be a number, such as 2.5 or 1e-3".to_owned()),
-        }
     }
 
     /// Returns the interval of the rows to write, as typed in the second field: 10 stands for each tenth row.

@@ -189,6 +189,9 @@ pub(super) fn note<'a>(view: &'a View, runs: &'a Runs, player: &'a Player) -> Co
     if view.asked().is_some() {
         return "The verdict and the exact motion come back when you have predicted.".into();
     }
+    if view.hides_answers() {
+        return "The verdict and the exact motion come back when the round is over.".into();
+    }
     let is_alone = view.sheet.as_ref().is_some_and(|sheet| sheet.is_alone);
     if is_alone || view.hides(HideablePart::LookAt) {
         return "".into();

@@ -54,12 +54,12 @@ impl Popups {
         self.mode = Mode::Dialog;
     }
 
-    /// Asks for a number, of which the digit `typed` is there already: `title` says for what, `label` what it is and in
-    /// which unit, `about` how to answer.
-    pub fn ask_number(&mut self, title: &str, label: &str, about: &str, typed: Option<u8>) {
-        self.open_dialog(Dialog::number(title, label, about));
-        if let Some(digit) = typed {
-            self.edit_field(FieldEdit::Type(char::from(b'0' + digit % 10)));
+    /// Asks for a number in `unit`, of which the character `typed` is there already: `title` says for what, `about` how to
+    /// answer.
+    pub fn ask_number(&mut self, title: &str, unit: &str, about: &str, typed: Option<char>) {
+        self.open_dialog(Dialog::number(title, unit, about));
+        if let Some(first) = typed {
+            self.edit_field(FieldEdit::Type(first));
         }
     }
 

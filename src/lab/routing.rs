@@ -11,6 +11,7 @@ use super::popups::Mode;
 use super::view::Pane;
 use super::{Cleared, Lab, Snapshot, paste_rows};
 use crate::engine::scenario::{Document, Problems};
+use crate::engine::text::unit::number_in;
 use std::sync::Arc;
 
 impl Lab {
@@ -219,7 +220,7 @@ impl Lab {
     fn accept(&mut self) -> Option<LabRequest> {
         let dialog = self.popups.take_dialog()?;
         let answer = match &dialog.question {
-            DialogKind::Number => match dialog.number_typed() {
+            DialogKind::Number(unit) => match number_in(unit, dialog.form.text(0)) {
                 Ok(number) => return Some(LabRequest::Answer(number)),
                 Err(reason) => Err(reason.into()),
             },

@@ -15,6 +15,8 @@ pub struct Sheet {
     pub plays: bool,
     /// The question that waits for an answer. Until it has one, whatever answers it is hidden.
     pub asked: Option<AskedAnswer>,
+    /// Whether a class still answers the question: whatever answers it is hidden from those who have answered, too.
+    pub is_round_open: bool,
     /// Whether a digit is an answer, or begins one, rather than a count.
     pub takes_digits: bool,
     /// What Enter does here, in one word; empty where it does nothing.

@@ -4,12 +4,15 @@ mod keys;
 
 use super::KeptNumbers;
 use super::clock;
-use super::lesson::{Compare, Lesson, LessonBlock, LessonPage, Predict};
+use super::lesson::{Check, Compare, Lesson, LessonBlock, LessonPage, Predict};
 use super::names::value;
 use super::predictions::{LessonProgress, Tried};
 use super::stage::LessonStage;
 use super::watch::Watch;
 use super::{opening, shipped};
+use crate::engine::analysis::readouts;
+use crate::engine::text::number;
+use crate::engine::text::unit::Unit;
 use crate::lab::Lab;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::ControlFlow;
@@ -368,6 +371,11 @@ impl OpenLesson {
             let goals: Vec<_> = page.checks().flat_map(|it| it.goals.clone()).collect();
             lab.tell(format!("done: {}", goals.join(", ")));
             if page.task().is_some() {
+                let number = page.checks().find_map(|check| main_number(check, lab));
+                let heading = page.heading.clone();
+                self.place
+                    .done_with
+                    .extend(number.map(|words| (heading, words)));
                 self.note_tried(if self.shows_hints {
                     Tried::DoneAfterHint
                 } else {
@@ -396,7 +404,26 @@ fn place_of(lab: &Lab) -> (usize, u64) {
     (lab.runs().journal().done(), lab.player().step_number())
 }
 
-fn holds(check: &super::Check, lab: &Lab, kept: &super::KeptNumbers) -> bool {
+/// Returns the number of the run that `check` is mainly about, in words: `Lx = 173.6 J s`; `None` if it names times and
+/// values of the scenario alone.
+fn main_number(check: &Check, lab: &Lab) -> Option<String> {
+    let readouts = check.that.names().filter_map(readouts::find);
+    let mut numbers = readouts.filter(|one| !["t_s", "steps", "step"].contains(&one.name));
+    let readout = numbers.find(|one| !one.name.starts_with("time_step"))?;
+    let value = lab.player().number(readout.name)?;
+    let end = Unit::from_name(readout.name).map_or("", |unit| unit.end);
+    let stem = readout.name.strip_suffix(end).unwrap_or(readout.name);
+    let words = stem.strip_prefix("measured_").unwrap_or(stem);
+    let text = format!(
+        "{} = {} {}",
+        words.replace('_', " "),
+        number::significant(value, 4),
+        readout.unit
+    );
+    Some(text.trim_end().to_owned())
+}
+
+fn holds(check: &Check, lab: &Lab, kept: &super::KeptNumbers) -> bool {
     value(&check.that, lab, kept).is_some_and(|held| held != 0.0)
 }
 

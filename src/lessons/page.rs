@@ -3,7 +3,7 @@
 use super::lesson::{AnswerKind, Check, Compare, Lesson, LessonBlock, LessonPage, Predict};
 use super::markdown::paragraphs;
 use super::open_lesson::OpenLesson;
-use super::predictions::{LessonProgress, Tried, without};
+use super::predictions::{LessonProgress, Tried};
 use super::text::LessonText;
 use super::{names, opening};
 use crate::engine::text::number;
@@ -205,15 +205,11 @@ impl Writer<'_> {
         for block in blocks {
             match block {
                 LessonBlock::Text(text) => {
-                    let mut source = match self.open.stated(text.line) {
+                    let source = match self.open.stated(text.line) {
                         Some(source) => source.to_owned(),
                         None if self.open.is_under_way() => unfilled(text),
                         None => text.with_numbers(self.lab, &self.open.place.kept),
                     };
-                    if self.overlay.is_followed {
-                        // Who follows is not told the keys that leave the class.
-                        source = without("`space`", &source);
-                    }
                     self.extend(paragraphs(&source, &SheetLineKind::Text));
                 }
                 LessonBlock::Predict(predict) => {
@@ -246,45 +242,47 @@ impl Writer<'_> {
         false
     }
 
-    /// What is to be reached, each part with whether it holds now and the number that decides it.
+    /// What is to be reached: each part with whether it holds now and the number that decides it. Above them, whether all
+    /// of it holds, or did before.
     fn goals(&mut self, check: &Check) {
         let first = self.sheet.paragraphs.len();
-        let page = self.open.page();
-        let tried = page.and_then(|page| self.open.place.tasks.get(&page.heading));
-        let was_done = matches!(tried, Some(Tried::Done | Tried::DoneAfterHint));
-        let is_reached = was_done || self.open.has_reached(check.line);
-        let how = tried.filter(|tried| **tried != Tried::Hint);
-        if is_reached || check.goals.len() < 2 {
-            let state = if is_reached {
-                how.map_or("done", |how| Tried::words(Some(how)))
-            } else {
-                "not yet"
+        let place = &self.open.place;
+        let heading = self.open.page().map_or("", |page| page.heading.as_str());
+        let tried = place.tasks.get(heading).filter(|it| **it != Tried::Hint);
+        let was_done = tried.is_some() || self.open.has_reached(check.line);
+        let (lab, kept) = (self.lab, &place.kept);
+        let parts = check.that.conjuncts(|name| names::number(name, lab, kept));
+        let holds = parts.iter().all(|part| part.holds) && !self.open.is_under_way();
+        let done = match (tried, place.done_with.get(heading)) {
+            (Some(Tried::Shown), _) => Tried::words(tried).to_owned(),
+            (how, _) if holds => how.map_or("done", |how| Tried::words(Some(how))).to_owned(),
+            (_, Some(number)) => format!("done before, with {number}"),
+            (_, None) => "done before".to_owned(),
+        };
+        let mut list: Vec<(bool, String)> = Vec::new();
+        if check.goals.len() < 2 {
+            let goal = check.goals.concat();
+            let state = match (holds, was_done) {
+                (true, _) => done,
+                (false, true) => format!("{done}; not now"),
+                (false, false) => "not yet".to_owned(),
             };
-            let goals = check.goals.join(", ");
-            let text = match goals.as_str() {
-                "" => state.to_owned(),
-                goals => format!("{state}: {goals}"),
-            };
-            self.add(Paragraph::new(SheetLineKind::Goal { is_reached }, text));
+            let colon = if goal.is_empty() { "" } else { ": " };
+            list.push((holds, format!("{state}{colon}{goal}")));
         } else {
-            let (lab, kept) = (self.lab, &self.open.place.kept);
-            let parts = check.that.conjuncts(|name| names::number(name, lab, kept));
-            for (goal, part) in check.goals.iter().zip(parts) {
-                let mut text = goal.clone();
-                if let Some(now) = part.left.filter(|_| !part.holds) {
-                    text += &format!(" (now {})", number::significant(now, 4));
-                }
-                let kind = SheetLineKind::Goal {
-                    is_reached: part.holds,
-                };
-                self.add(Paragraph::new(kind, text));
+            list.extend((holds || was_done).then_some((true, done)));
+            for (goal, part) in check.goals.iter().zip(&parts) {
+                let now = part.left.filter(|_| !part.holds);
+                let now = now.map(|now| format!(" (now {})", number::significant(now, 4)));
+                list.push((part.holds, format!("{goal}{}", now.unwrap_or_default())));
             }
         }
-        if !is_reached && self.open.shows_hints && !check.hint.is_empty() {
-            self.add(Paragraph::new(
-                SheetLineKind::Hint,
-                format!("Hint: {}", check.hint),
-            ));
+        for (is_reached, text) in list {
+            self.add(Paragraph::new(SheetLineKind::Goal { is_reached }, text));
+        }
+        if !holds && self.open.shows_hints && !check.hint.is_empty() {
+            let hint = format!("Hint: {}", check.hint);
+            self.add(Paragraph::new(SheetLineKind::Hint, hint));
         }
         self.is_seen_from(first);
     }
@@ -329,6 +327,8 @@ impl Writer<'_> {
         let ask = predict.ask.with_numbers(self.lab, kept);
         self.extend(paragraphs(&ask, &SheetLineKind::Question));
         let is_open = self.open.is_open(predict);
+        let round = self.open.rounds.get(&predict.name);
+        self.sheet.is_round_open |= round.is_some_and(|(_, is_closed)| !is_closed);
         let last = place.predictions.to(predict).next_back();
         let given = last.filter(|_| !is_open).map(|given| &given.answer);
         let chosen = self.open.chosen.get(&predict.name);

@@ -163,7 +163,7 @@ impl Compare {
 }
 
 /// `text` without the sentences that have `part`; all of it where nothing else would be left.
-pub(super) fn without(part: &str, text: &str) -> String {
+fn without(part: &str, text: &str) -> String {
     let mut rest = text;
     let mut kept = String::new();
     while !rest.is_empty() {
@@ -240,6 +240,9 @@ pub struct LessonProgress {
     /// How far the student got with the tasks, by the headings of their pages.
     #[serde(default)]
     pub tasks: BTreeMap<String, Tried>,
+    /// The number with which a task was done, in words, by the headings of their pages.
+    #[serde(default)]
+    pub done_with: BTreeMap<String, String>,
     /// Whether its last page was opened.
     #[serde(default)]
     pub has_ended: bool,

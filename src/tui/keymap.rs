@@ -201,17 +201,17 @@ fn restarted(lab: &TheLab, _: Option<u64>) -> KeyCommands {
 }
 
 fn exact_toggled(lab: &TheLab) -> KeyCommands {
-    match lab.view().asked() {
-        Some(_) => Err("the exact motion comes back when you have predicted".to_owned()),
-        None => one(Command::Exact(!lab.player().run().shows_exact())),
+    if lab.view().hides_answers() {
+        return Err("the exact motion comes back when the question is answered".to_owned());
     }
+    one(Command::Exact(!lab.player().run().shows_exact()))
 }
 
 fn advice_taken(lab: &TheLab) -> KeyCommands {
-    match lab.view().asked() {
-        Some(_) => Err("what fixes the run is told when you have predicted".to_owned()),
-        None => one(lab.adviser().followed(lab.player())?),
+    if lab.view().hides_answers() {
+        return Err("what fixes the run is shown when the question is answered".to_owned());
     }
+    one(lab.adviser().followed(lab.player())?)
 }
 
 /// What a key means that means one command.

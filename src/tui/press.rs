@@ -3,8 +3,11 @@
 use super::keymap::{self, BINDINGS, Key, KeyEffect};
 use super::panes::{self, help};
 use crate::lab::action::{Action, LessonKey};
+use crate::lab::sheet::AskedAnswer;
 use crate::lab::view::Pane;
 use crate::lab::{Lab, LabRequest, Mode};
+
+const NUMBER_FIRST: &str = "a number is asked for: type it, then Enter. Tab leads to the lab";
 
 pub fn press(key: Key, lab: &mut Lab) -> Option<LabRequest> {
     let mode = lab.mode();
@@ -17,16 +20,43 @@ pub fn press(key: Key, lab: &mut Lab) -> Option<LabRequest> {
         Some(KeyEffect::Action(Action::Digit(digit))) if is_of_sheet(lab) => {
             lab.update(Action::Lesson(LessonKey::Digit(digit)))
         }
-        Some(does) => {
-            let request = panes::carry_out(does, lab);
-            help::limit(lab);
-            request
+        Some(does) if mode == Mode::Lab && asks_number(lab) && !is_of_page(does) => {
+            match key {
+                Key::Char(sign @ ('-' | '+' | '.' | ',')) => {
+                    return lab.update(Action::Lesson(LessonKey::Sign(sign)));
+                }
+                Key::Char(letter) if letter.is_alphabetic() => lab.refuse(NUMBER_FIRST),
+                _ => return carry_out(does, lab),
+            }
+            None
         }
+        Some(does) => carry_out(does, lab),
         None => {
             lab.refuse(refusal(mode, key));
             None
         }
     }
+}
+
+fn carry_out(does: KeyEffect, lab: &mut Lab) -> Option<LabRequest> {
+    let request = panes::carry_out(does, lab);
+    help::limit(lab);
+    request
+}
+
+/// Whether the page has the focus and asks for a number: letters are then no keys of the lab.
+fn asks_number(lab: &Lab) -> bool {
+    lab.view().asked() == Some(AskedAnswer::Number) && is_of_sheet(lab)
+}
+
+/// Whether a key turns pages, closes, quits or helps.
+fn is_of_page(does: KeyEffect) -> bool {
+    matches!(
+        does,
+        KeyEffect::Action(
+            Action::Lesson(_) | Action::Class | Action::Quit | Action::Help | Action::Close
+        )
+    )
 }
 
 /// Whether a digit is for the sheet; behind the first digit of a count it goes on with the count.

@@ -53,6 +53,7 @@ const EXAMPLES: &str = "
     window_s = 60
     detail_s = 0.5
     detail_of = 'z'
+    detail_range = [-9, 9]
     z_range_m = [0.6, 0.95]
     exact = true
     show = ['traces', '3d']
@@ -503,6 +504,7 @@ fn what_view_holds_is_what_the_commands_do() {
         ("window_s", "7.0", (80, 24)),
         ("detail_s", "2.0", (80, 24)),
         ("detail_of", "'tilt'", (80, 24)),
+        ("detail_range", "[-1, 50]", (200, 50)),
         ("z_range_m", "[0.5, 1]", (80, 24)),
         ("exact", "true", (80, 24)),
         ("camera", "{ yaw_deg = 90.0 }", (200, 50)),

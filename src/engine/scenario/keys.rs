@@ -101,6 +101,7 @@ pub const KEYS: &[SchemaRow] = &[
     may("view.window_s", Number(Positive), "length of time that the overview spans, s (default: the whole run)"),
     may("view.detail_s", ValueKind::By(is_window), "length of time that the traces show, s, or auto: a few swings of the axle, or the whole run if it has few").or(DefaultValue::Word("auto")),
     may("view.detail_of", OneOf(&DETAILS), "the strip of the traces below those of x, y and z: a column of the CSV, or tilt; distance: from the exact motion; auto: that or the tilt, on a large screen").or(DefaultValue::Word("auto")),
+    may("view.detail_range", ValueKind::By(is_range), "least and greatest value that the strip detail_of shows, in its unit: [0, 130]; auto: those of the run in its window").or(DefaultValue::Word("auto")),
     may("view.z_range_m", ValueKind::By(is_range), "least and greatest z that the strip of z shows, m: [0.6, 0.95]; auto: those of the run in its window").or(DefaultValue::Word("auto")),
     may("view.exact", Flag, "whether the exact motion is drawn beside the run").or(DefaultValue::Flag(false)),
     may("view.show", Panes(&[]), "the panes that share the screen, where it has room for them; empty: as many as there is room for, without those that are shown on request only (default)"),

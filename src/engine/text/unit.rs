@@ -241,6 +241,35 @@ fn plain(text: &str) -> String {
     plain
 }
 
+/// Returns the number that a person has typed for an answer in `unit` (empty: a pure number), in that unit. A unit may
+/// follow the number, also another of the same kind; a comma may be the decimal point.
+///
+/// # Errors
+/// What is wrong with it.
+pub fn number_in(unit: &str, typed: &str) -> Result<f64, String> {
+    let plain_text = typed.trim().replace(',', ".").replace('−', "-");
+    let ends = plain_text.char_indices().map(|(at, c)| at + c.len_utf8());
+    let parsed = ends.rev().find_map(|end| {
+        let (number, rest) = plain_text.split_at(end);
+        let number: f64 = number.trim_end().parse().ok()?;
+        number.is_finite().then_some((number, rest.trim()))
+    });
+    let (number, stated) = parsed.ok_or("must be a number, such as 2.5 or 1e-3")?;
+    if stated.is_empty() || stated == unit {
+        return Ok(number);
+    }
+    let units = (Unit::written(stated), Unit::written(unit));
+    if let (Some(own), Some(wanted)) = units
+        && let Some(times) = own.times(wanted)
+    {
+        return Ok(number * times);
+    }
+    Err(match unit {
+        "" => format!("must be a number alone, without {stated}"),
+        unit => format!("is asked for in {unit}, not in {stated}"),
+    })
+}
+
 /// The name among those that `is_known` accepts that is `name` in a unit of its own, and the factor to that unit:
 /// `t_ms` is `t_s` times 0.001.
 pub fn in_known_unit(name: &str, is_known: impl Fn(&str) -> bool) -> Option<(String, f64)> {

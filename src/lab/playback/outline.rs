@@ -70,7 +70,9 @@ fn own_lines(part: &PlacedSolid) -> Vec<Polyline> {
         Shape::Block { size } => block(&size),
         Shape::Moments(_) if are_distinct(&part.distances) => {
             let side = libm::sqrt(12.0);
-            block(&Vector3::from(part.distances.map(|distance| side * distance)))
+            block(&Vector3::from(
+                part.distances.map(|distance| side * distance),
+            ))
         }
         Shape::Moments(_) => ellipsoid(part.distances),
     }

@@ -45,6 +45,9 @@ pub struct ViewSettings {
     pub detail_s: Option<f64>,
     /// The strip below those of x, y and z.
     pub detail_of: FourthStrip,
+    /// Least and greatest value that it shows, in its unit; `None`: those of the run.
+    #[serde(deserialize_with = "where_known")]
+    pub detail_range: Option<[f64; 2]>,
     /// Least and greatest z that the strip of z shows, m; `None`: those of the run.
     #[serde(deserialize_with = "where_known")]
     pub z_range_m: Option<[f64; 2]>,
@@ -164,6 +167,9 @@ impl ViewSettings {
         all.extend(patch.clone());
         if patch.contains_key("phase") && !patch.contains_key("sum_to") {
             all.remove("sum_to"); // all rows of the table on another page
+        }
+        if patch.contains_key("detail_of") && !patch.contains_key("detail_range") {
+            all.remove("detail_range"); // it is of another column
         }
         all.try_into()
             .map_err(|error: toml::de::Error| error.message().to_owned())
@@ -346,12 +352,18 @@ impl View {
     /// Whether `part` is hidden: what answers an open question is, too.
     pub fn hides(&self, part: HideablePart) -> bool {
         let is_answer = matches!(part, HideablePart::Health | HideablePart::Predicted);
-        self.look.hide.contains(&part) || is_answer && self.asked().is_some()
+        self.look.hide.contains(&part) || is_answer && self.hides_answers()
     }
 
     /// The answer that the page beside the run waits for.
     pub fn asked(&self) -> Option<AskedAnswer> {
         self.sheet.as_ref()?.asked
+    }
+
+    /// Whether the page beside the run hides what answers its question.
+    pub fn hides_answers(&self) -> bool {
+        let page = self.sheet.as_ref();
+        page.is_some_and(|page| page.asked.is_some() || page.is_round_open)
     }
 
     pub fn may_show(&self, pane: Pane) -> bool {

@@ -34,6 +34,7 @@ impl OpenLesson {
             LessonKey::Move(direction) => return Some(direction),
             LessonKey::Take => self.confirm_answer(lab),
             LessonKey::Digit(digit) => self.answer_by_digit(digit, lab),
+            LessonKey::Sign(sign) => self.ask_number(Some(sign), lab),
             LessonKey::List | LessonKey::Leave | LessonKey::Select(_) | LessonKey::Filter(_) => {}
         }
         None
@@ -170,7 +171,9 @@ impl OpenLesson {
             return;
         };
         match (&predict.asked, usize::from(digit)) {
-            (AnswerKind::Number { .. }, _) => self.ask_number(Some(digit), lab),
+            (AnswerKind::Number { .. }, _) => {
+                self.ask_number(Some(char::from(b'0' + digit % 10)), lab);
+            }
             (AnswerKind::Choice(all), number) if (1..=all.len()).contains(&number) => {
                 self.chosen.insert(predict.name, number - 1);
             }
@@ -180,12 +183,11 @@ impl OpenLesson {
         }
     }
 
-    fn ask_number(&self, typed: Option<u8>, lab: &mut Lab) {
+    fn ask_number(&self, typed: Option<char>, lab: &mut Lab) {
         if let Some(AnswerKind::Number { unit }) = self.asked().map(|predict| &predict.asked) {
-            let label = if unit.is_empty() { "number" } else { unit };
             let about = "Enter locks it: a prediction is not changed";
             lab.popups_mut()
-                .ask_number("your prediction", label, about, typed);
+                .ask_number("your prediction", unit, about, typed);
         }
     }
 

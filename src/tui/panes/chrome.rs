@@ -385,7 +385,7 @@ fn footer_word(lab: &Lab, goes_on: bool, row: &Binding) -> Option<&'static str> 
     };
     let is_of_use = match (row.footer, action) {
         ("residuals", _) => lab.comparison().data().is_some(),
-        ("exact" | "fix", _) => lab.view().asked().is_none(),
+        ("exact" | "fix", _) => !lab.view().hides_answers(),
         // A run whose numbers are no longer finite cannot go on.
         ("pause" | "step", _) => !lab.player().run().simulation().has_ended(),
         (_, Some(Action::Lesson(LessonKey::Take))) => !enter.is_empty(),

@@ -153,9 +153,15 @@ impl Traces<'_> {
 
     fn whole_scale(&self, content: StripContent) -> StripScale {
         let window = &self.0.view.window;
-        if let (StripContent::Curve(RecordedCurve::Z), Some([low, high])) =
-            (content, self.0.view.look.z_range_m)
-        {
+        let look = &self.0.view.look;
+        let fixed = match content {
+            StripContent::Curve(RecordedCurve::Z) => look.z_range_m,
+            StripContent::Curve(RecordedCurve::Tilt)
+            | StripContent::Distance
+            | StripContent::Column => look.detail_range,
+            StripContent::Curve(_) | StripContent::Measured(_) => None,
+        };
+        if let Some([low, high]) = fixed {
             return StripScale { low, high };
         }
         let shown = self.points(content).unwrap_or_default().iter();
