@@ -264,13 +264,21 @@ pub(super) struct LessonArgs {
     #[arg(long, value_name = "N", requires = "name", value_parser = one_or_more)]
     pub(super) page: Option<NonZeroU64>,
 
-    /// Print a worksheet, as Markdown: it asks, has room for predictions and outcomes, and answers nothing
+    /// List the lessons with minutes, level and what each needs, in the order to take them
+    #[arg(long, conflicts_with_all = ["name", "page", "printed", "notes"])]
+    pub(super) list: bool,
+
+    /// Print a worksheet: it asks, has room for predictions and outcomes, and answers nothing [-o FILE.html: with figures, to print from a browser]
     #[arg(long, group = "printed", requires = "name", conflicts_with = "page")]
     pub(super) handout: bool,
 
     /// With --handout: the results for afterwards, with the words and numbers of every page
     #[arg(long, requires = "handout")]
     pub(super) results: bool,
+
+    /// Print a sheet for the teacher: goals, minutes, right answers, common wrong ones, and what to explain
+    #[arg(long, group = "printed", requires = "name", conflicts_with = "page")]
+    pub(super) teacher: bool,
 
     /// Print what was predicted, in the newest session that holds it, beside what came out: to hand in
     #[arg(long, group = "printed", requires = "name", conflicts_with = "page")]
@@ -285,14 +293,14 @@ pub(super) struct LessonArgs {
     pub(super) notes: Option<String>,
 
     /// Read and write in this folder and nowhere else; its own lessons come first in the list
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["handout", "template", "notes"])]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["handout", "teacher", "template", "notes"])]
     pub(super) folder: Option<PathBuf>,
 
     /// Print a small lesson to begin from, with a comment on each part
     #[arg(long, group = "printed", conflicts_with = "name")]
     pub(super) template: bool,
 
-    /// Write the handout, the frame, the answers or the template to this file, or to stdout for -; a handout or answers to a .pdf: sheets to print
+    /// Write what is printed to this file, or to stdout for -; .html for a handout, answers or a teacher's sheet: a page to print from a browser
     #[arg(short, long, requires = "printed", value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
 

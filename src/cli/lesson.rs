@@ -1,17 +1,20 @@
 //! `gyrolab lesson`: the list of lessons, a lesson in the lab, on paper, or to begin from; and `check` of one.
 
 use super::args::{DisplayArgs, LessonArgs};
-use super::new_lab::{new_lab, refused, write};
+use super::new_lab::{new_lab, paper_format, refused, write};
 use super::{notes, print, progress, sessions, tell, workbench};
 use crate::engine::scenario::Problems;
 use crate::engine::text::number::counted;
 use crate::engine::text::printable::{PrintablePath, printable_lines};
+use crate::engine::text::wrap::columns;
 use crate::lab::Lab;
 use crate::lab::storage::confined::Confined;
-use crate::lessons::handout::{self, Paper};
+use crate::lab::view::Pane;
+use crate::lessons::handout::{self, Handout, LabPictures, Paper};
+use crate::lessons::lesson::LessonLevel;
 use crate::lessons::play::{self, LessonWalk};
 use crate::lessons::state::files_in;
-use crate::lessons::{Lesson, LessonPage, opening, shipped};
+use crate::lessons::{Lesson, LessonPage, opening, shipped, teacher};
 use anyhow::Context;
 use std::io::{self, IsTerminal};
 use std::path::Path;
@@ -19,6 +22,9 @@ use std::process::ExitCode;
 
 /// Columns and lines of the pictures.
 const PICTURE: (u16, u16) = (80, 24);
+/// The same of a pane on paper.
+const SPACE_PICTURE: (u16, u16) = (72, 26);
+const STEP_PICTURE: (u16, u16) = (80, 29);
 
 pub(super) fn lesson(args: &LessonArgs) -> anyhow::Result<ExitCode> {
     if let Some(session) = &args.notes {
@@ -33,7 +39,8 @@ pub(super) fn lesson(args: &LessonArgs) -> anyhow::Result<ExitCode> {
         .map(|folder| Confined::enter(folder).with_context(|| sessions::named(folder)))
         .transpose()?;
     let Some(name) = &args.name else {
-        return print(&list(confined.as_ref())?);
+        let listed = if args.list { long_list } else { list };
+        return print(&listed(confined.as_ref())?);
     };
     if let Some(folder) = &confined {
         admit(name, folder)?;
@@ -45,22 +52,42 @@ pub(super) fn lesson(args: &LessonArgs) -> anyhow::Result<ExitCode> {
         return print_frame(args, name, language);
     }
     let lesson = opening::open(name)?;
-    if args.handout {
-        return write(args, |go_on| {
-            let paper = if args.results {
-                Paper::Results
-            } else {
-                Paper::Worksheet
-            };
-            handout::handout(&lesson, paper, new_lab(args.look)?, &picture, go_on)
-                .map_err(|problem| refused(&lesson, problem))
-        });
+    if args.handout || args.teacher {
+        return on_paper(&lesson, args);
     }
     let page = page_of(&lesson, args)?;
     if io::stdin().is_terminal() && io::stdout().is_terminal() {
         return workbench::open_lesson(&lesson, page, args, confined);
     }
     print_page(&lesson, page, args.look)
+}
+
+/// Writes or prints the worksheet, the results or the teacher's sheet of `lesson`.
+fn on_paper(lesson: &Lesson, args: &LessonArgs) -> anyhow::Result<ExitCode> {
+    let format = paper_format(args);
+    write(args, |go_on| {
+        let lab = new_lab(args.look)?;
+        let made = if args.teacher {
+            let sheet = teacher::sheet(lesson, lab, go_on);
+            sheet.map(|markdown| format.written(&lesson.title, markdown))
+        } else {
+            let handout = Handout {
+                lesson,
+                paper: if args.results {
+                    Paper::Results
+                } else {
+                    Paper::Worksheet
+                },
+                format,
+                pictures: LabPictures {
+                    screen: picture,
+                    pane: pane_picture,
+                },
+            };
+            handout.write(lab, go_on)
+        };
+        made.map_err(|problem| refused(lesson, problem))
+    })
 }
 
 /// Checks that the lesson that NAME names comes with the program, or lies in `folder`.
@@ -89,25 +116,58 @@ fn print_page(lesson: &Lesson, page: &LessonPage, look: DisplayArgs) -> anyhow::
     let mut walk = LessonWalk::new(lesson, new_lab(look)?);
     let walked = walk.jump(page, &mut interruption.meter());
     walked.map_err(|problem| refused(lesson, problem))?;
-    let text = handout::page(page, &walk, &picture);
+    let text = handout::page(page, &walk, picture);
     interruption.may_act_at_once()?;
     print(&text)
 }
 
-/// A line for each lesson of the folder, and for each shipped one: its name and its title.
-fn list(folder: Option<&Confined>) -> anyhow::Result<String> {
-    let mut text = String::new();
+/// The lessons of the folder and those that come with the program, each with the name by which it is opened.
+fn lessons(folder: Option<&Confined>) -> anyhow::Result<Vec<(String, Lesson)>> {
+    let mut all = Vec::new();
     for path in folder
         .map(|folder| files_in(folder.lessons()))
         .unwrap_or_default()
     {
-        let lesson = opening::open(&path)?;
         let name = Path::new(&path).file_name().unwrap_or_default();
-        text += &format!("{}: {}\n", PrintablePath(Path::new(name)), lesson.title);
+        let printable = PrintablePath(Path::new(name)).to_string();
+        all.push((printable, opening::open(&path)?));
     }
     for shipped in shipped::LESSONS {
-        let lesson = opening::open(shipped.name)?;
-        text += &format!("{}: {}\n", shipped.name, lesson.title);
+        all.push((shipped.name.to_owned(), opening::open(shipped.name)?));
+    }
+    Ok(all)
+}
+
+/// A line for each lesson: its name and its title.
+fn list(folder: Option<&Confined>) -> anyhow::Result<String> {
+    let lines = lessons(folder)?.into_iter();
+    Ok(lines
+        .map(|(name, lesson)| format!("{name}: {}\n", lesson.title))
+        .collect())
+}
+
+/// The lessons in the order in which they build on each other, with minutes and needs, under their levels.
+fn long_list(folder: Option<&Confined>) -> anyhow::Result<String> {
+    let lessons = lessons(folder)?;
+    let names = lessons.iter().map(|(name, _)| columns(name));
+    let width = names.max().unwrap_or_default();
+    let mut text = String::new();
+    for group in lessons.chunk_by(|a, b| a.1.guide.level == b.1.guide.level) {
+        let level = group.first().and_then(|(_, lesson)| lesson.guide.level);
+        let heading = level.map_or("without a level", LessonLevel::name);
+        text += if text.is_empty() { "" } else { "\n" };
+        text += &format!("{heading}\n");
+        for (name, lesson) in group {
+            let minutes = lesson
+                .minutes
+                .map_or(String::new(), |minutes| format!("{minutes} min"));
+            let padding = " ".repeat(width - columns(name));
+            text += &format!("  {name}{padding}  {minutes:>6}  {}\n", lesson.title);
+            if let Some(needs) = lesson.guide.needs_in_words() {
+                let indent = " ".repeat(width + 12);
+                text += &format!("{indent}{needs}\n");
+            }
+        }
     }
     Ok(text)
 }
@@ -124,6 +184,15 @@ fn page_of<'a>(lesson: &'a Lesson, args: &LessonArgs) -> anyhow::Result<&'a Less
 
 fn picture(lab: &Lab) -> String {
     crate::tui::screen::text(lab, false, PICTURE)
+}
+
+fn pane_picture(lab: &Lab, pane: Pane) -> String {
+    let size = if pane == Pane::Step {
+        STEP_PICTURE
+    } else {
+        SPACE_PICTURE
+    };
+    crate::tui::svg::pane(lab, pane, size)
 }
 
 /// What is in the lesson `file`, in words, or what is wrong with it; it is played to its end.

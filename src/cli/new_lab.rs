@@ -2,17 +2,20 @@
 //! without a terminal, and where what comes of it is written.
 
 use super::args::{DisplayArgs, LessonArgs, SetArgs, WorkbenchArgs, change};
-use super::print;
 use super::progress::{self, Interrupted};
+use super::{print, refuse, tell};
 use crate::engine::export::Destination;
 use crate::engine::scenario::{Document, Problem, Problems};
+use crate::engine::text::printable::PrintablePath;
 use crate::lab::Lab;
 use crate::lab::view::View;
 use crate::lab::view::theme::Marker;
 use crate::lab::view::theme::Theme;
-use crate::lessons::{Lesson, paper, play};
+use crate::lessons::handout::PaperFormat;
+use crate::lessons::{Lesson, play};
 use crate::tui::theme;
 use anyhow::{Context, bail};
+use clap::error::ErrorKind;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::ExitCode;
@@ -84,8 +87,23 @@ pub(super) fn refused(lesson: &Lesson, problem: Problem) -> anyhow::Error {
     Problems::one(lesson.origin.clone(), problem).into()
 }
 
-/// Writes what `make` makes to the file that is asked for, or prints it: a handout or answers as PDF where the file's name
-/// says so. `make` asks now and then whether to go on.
+/// What the file that is asked for has to hold: HTML where its name says so, else Markdown or text.
+///
+/// Ends the process as clap does if it is to be a PDF.
+pub(super) fn paper_format(args: &LessonArgs) -> PaperFormat {
+    let extension = args.output.as_deref().and_then(Path::extension);
+    let lower = extension.map(|name| name.to_string_lossy().to_lowercase());
+    match lower.as_deref() {
+        Some("pdf") => {
+            let message = "-o FILE.pdf: write FILE.html and print it from a browser, which can also save a PDF";
+            refuse("lesson", ErrorKind::ValueValidation, message)
+        }
+        Some("html" | "htm") => PaperFormat::Html,
+        _ => PaperFormat::Markdown,
+    }
+}
+
+/// Writes what `make` makes to the file that is asked for, or prints it. `make` asks now and then whether to go on.
 pub(super) fn write(
     args: &LessonArgs,
     make: impl FnOnce(play::LessonProgressCallback<'_>) -> anyhow::Result<String>,
@@ -95,17 +113,11 @@ pub(super) fn write(
     if interruption.has_come() {
         bail!(Interrupted);
     }
-    match output {
-        None | Some(Destination::Stdout(_)) => print(&text?),
-        Some(output) => {
-            let name = args.output.as_deref().and_then(Path::extension);
-            let is_pdf = name.is_some_and(|name| name.eq_ignore_ascii_case("pdf"));
-            let bytes = if is_pdf && (args.handout || args.answers) {
-                paper::pdf(&text?)?
-            } else {
-                text?.into_bytes()
-            };
-            interruption.keep(output, &bytes)?;
+    match (output, &args.output) {
+        (None | Some(Destination::Stdout(_)), _) | (_, None) => print(&text?),
+        (Some(output), Some(path)) => {
+            interruption.keep(output, text?.as_bytes())?;
+            tell(format_args!("gyrolab: wrote {}", PrintablePath(path)));
             Ok(ExitCode::SUCCESS)
         }
     }

@@ -2,7 +2,7 @@
 //! student who hands it in.
 
 use super::args::LessonArgs;
-use super::new_lab::{new_lab, refused, write};
+use super::new_lab::{new_lab, paper_format, refused, write};
 use super::progress::{self, Interrupted, Interruption, LiveLine};
 use super::sessions;
 use crate::engine::text::printable::{printable, printable_lines};
@@ -47,9 +47,11 @@ pub(super) fn answers(
         let name = printable(name);
         bail!("no session holds a prediction for {name}: gyrolab lesson {name} opens it");
     };
+    let format = paper_format(args);
     write(args, |go_on| {
-        handout::answers(&lesson, &place, new_lab(args.look)?, go_on)
-            .map_err(|problem| refused(&lesson, problem))
+        let markdown = handout::answers(&lesson, &place, new_lab(args.look)?, go_on)
+            .map_err(|problem| refused(&lesson, problem))?;
+        Ok(format.written(&lesson.title, markdown))
     })
 }
 

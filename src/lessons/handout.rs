@@ -1,19 +1,29 @@
-//! A lesson on paper, as Markdown with the pictures as text: a worksheet, which asks and has room for what is predicted and
-//! seen, or the results for afterwards; and what a student predicted beside what came out, to hand in.
+//! A lesson on paper: a worksheet, which asks and has room for what is predicted and seen, or the results for afterwards.
 //!
 //! A worksheet tells nothing that answers a prediction: from the first one on, numbers in text are blanks to be filled in
 //! from the screen, and the pages that show what came out have room in the place of their words. Notes are left out, and
 //! so is how a task is done.
+//!
+//! - [`markdown`]: a handout as Markdown, with the lab's screen as text.
+//! - [`html`]: a handout as one HTML file; its pictures are inline SVG, which [`figures`] draws.
+//! - [`answers`](mod@answers): what a student predicted beside what came out.
+
+mod answers;
+mod figures;
+pub mod html;
+mod markdown;
+
+pub use answers::answers;
 
 use super::lesson::{
-    AnswerKind, CodeBlock, Compare, Lesson, LessonBlock, LessonPage, PREDICTION, Predict, Right,
-    WITH,
+    AnswerKind, CodeBlock, Compare, Lesson, LessonBlock, LessonPage, PREDICTION, Predict, WITH,
 };
 use super::names::{self, KeptNumbers};
 use super::play::{LessonProgressCallback, LessonWalk};
-use super::predictions::{LessonProgress, Tried};
 use crate::engine::scenario::Problem;
 use crate::lab::Lab;
+use crate::lab::view::Pane;
+use figures::{AxisRanges, Figure};
 
 /// Room for a number or some words.
 const BLANK: &str = "____________";
@@ -24,47 +34,161 @@ pub enum Paper {
     Results,
 }
 
-/// `paper` of `lesson`, played in a new `lab`; `picture` is the lab's picture as text.
-pub fn handout(
-    lesson: &Lesson,
-    paper: Paper,
-    lab: Lab,
-    picture: &dyn Fn(&Lab) -> String,
-    go_on: LessonProgressCallback<'_>,
-) -> Result<String, Problem> {
-    let mut walk = LessonWalk::new(lesson, lab);
-    let mut parts = head(lesson, &walk);
-    let mut has_asked = false;
-    for page in &lesson.pages {
-        walk.enter(page, go_on)?;
-        if paper == Paper::Worksheet && has_asked {
-            parts.extend(blank_page(page, &walk, picture));
-        } else {
-            let mut all = page.blocks.iter();
-            let blocks = match all.position(|block| matches!(block, LessonBlock::Predict(_))) {
-                Some(asked) if paper == Paper::Worksheet => &page.blocks[..=asked],
-                _ => &page.blocks,
-            };
-            parts.extend(on_pages(page, blocks, &walk, picture));
-            has_asked |= page.predicts().next().is_some();
-            if blocks.len() < page.blocks.len() {
-                parts.extend(page.predicts().skip(1).map(room_for_blank));
-            }
-        }
-        if page.number < lesson.pages.len() {
-            walk.leave(page, go_on)?;
-        }
-    }
-    Ok(joined(&parts))
+/// What a handout is written as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PaperFormat {
+    Markdown,
+    Html,
 }
 
-/// Returns a page of a worksheet after the first prediction: what is asked and what is to be done, and room for the rest.
-fn blank_page(
-    page: &LessonPage,
-    walk: &LessonWalk<'_>,
-    picture: &dyn Fn(&Lab) -> String,
-) -> Vec<String> {
-    let mut parts = vec![format!("## {}", page.heading)];
+impl PaperFormat {
+    /// Returns `markdown` in this format, with this `title`.
+    pub fn written(self, title: &str, markdown: String) -> String {
+        match self {
+            Self::Markdown => markdown,
+            Self::Html => html::from_markdown(title, &markdown),
+        }
+    }
+}
+
+/// Draws the lab. The folder that draws screens is above this one.
+#[derive(Clone, Copy, Debug)]
+pub struct LabPictures {
+    /// The whole screen as text.
+    pub screen: fn(&Lab) -> String,
+    /// One pane as SVG.
+    pub pane: fn(&Lab, Pane) -> String,
+}
+
+/// A handout that is asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Handout<'a> {
+    pub lesson: &'a Lesson,
+    pub paper: Paper,
+    pub format: PaperFormat,
+    pub pictures: LabPictures,
+}
+
+/// A part of a handout, in the order of the paper.
+#[derive(Clone, Debug, PartialEq)]
+enum Part {
+    Heading(String),
+    /// Markdown.
+    Text(String),
+    Shown(CodeBlock),
+    /// The lab's screen as text.
+    Screen(String),
+    Figures(Vec<Figure>),
+    Question(Question),
+    /// What is to be reached, each with a box to tick.
+    Goals(Vec<String>),
+    /// Lines for a prediction and what came out.
+    Compared,
+    /// Lines for an explanation of what came out.
+    Why,
+    /// Lines for what the page explains.
+    OwnWords,
+}
+
+/// A question of a handout.
+#[derive(Clone, Debug, PartialEq)]
+struct Question {
+    /// The name of the prediction.
+    name: String,
+    /// Markdown.
+    ask: String,
+    asked: AnswerKind,
+    /// Whether it has room to draw and to give a reason.
+    has_room: bool,
+    /// The empty axes to draw in, if the answer can be drawn.
+    frame: Option<Figure>,
+}
+
+impl Handout<'_> {
+    /// Plays the lesson in a new `lab` and writes its handout.
+    ///
+    /// # Errors
+    /// When a page cannot be played.
+    pub fn write(&self, lab: Lab, go_on: LessonProgressCallback<'_>) -> Result<String, Problem> {
+        let mut walk = LessonWalk::new(self.lesson, lab);
+        let head = head(self.lesson, &walk);
+        let mut parts = Vec::new();
+        let mut has_asked = false;
+        let mut ranges = AxisRanges::new(self.lesson);
+        for page in &self.lesson.pages {
+            walk.enter(page, go_on)?;
+            let picture = self.picture(page, &walk.lab, &mut ranges, go_on);
+            if self.paper == Paper::Worksheet && has_asked {
+                parts.extend(blank_page(page, picture));
+            } else {
+                parts.extend(self.told_page(page, &walk, picture));
+                has_asked |= page.predicts().next().is_some();
+            }
+            if self.paper == Paper::Worksheet {
+                add_frames(&mut parts, page, self.lesson, &walk.lab);
+            }
+            if page.number < self.lesson.pages.len() {
+                walk.leave(page, go_on)?;
+            }
+        }
+        Ok(match self.format {
+            PaperFormat::Markdown => markdown::written(&head, &parts, self.paper),
+            PaperFormat::Html => html::written(&head, &parts, self.paper),
+        })
+    }
+
+    /// Returns a page with its words and numbers; on a worksheet, those up to its question.
+    fn told_page(
+        &self,
+        page: &LessonPage,
+        walk: &LessonWalk<'_>,
+        mut picture: Option<Part>,
+    ) -> Vec<Part> {
+        let is_worksheet = self.paper == Paper::Worksheet;
+        let mut all = page.blocks.iter();
+        let blocks = match all.position(|block| matches!(block, LessonBlock::Predict(_))) {
+            Some(asked) if is_worksheet => &page.blocks[..=asked],
+            _ => &page.blocks,
+        };
+        let mut parts = vec![Part::Heading(page.heading.clone())];
+        for block in blocks {
+            match block {
+                LessonBlock::Lab(_) => parts.extend(picture.take()),
+                LessonBlock::Predict(predict) => {
+                    let ask = predict.ask.with_numbers(&walk.lab, &walk.kept);
+                    parts.push(question(predict, ask, is_worksheet));
+                }
+                other => parts.extend(told(other, walk)),
+            }
+        }
+        if blocks.len() < page.blocks.len() {
+            parts.extend(page.predicts().skip(1).map(blank_question));
+        }
+        parts
+    }
+
+    /// Returns what the lab shows on `page`, if its block makes the lab do something.
+    fn picture(
+        &self,
+        page: &LessonPage,
+        lab: &Lab,
+        ranges: &mut AxisRanges,
+        go_on: LessonProgressCallback<'_>,
+    ) -> Option<Part> {
+        page.lab()?;
+        if self.format == PaperFormat::Markdown {
+            return Some(Part::Screen((self.pictures.screen)(lab)));
+        }
+        let is_asked = page.predicts().next().is_some();
+        let figures = figures::of_lab(lab, self.pictures.pane, is_asked, ranges, go_on);
+        (!figures.is_empty()).then_some(Part::Figures(figures))
+    }
+}
+
+/// Returns a page of a worksheet after the first prediction: what is asked and what is to be done, and room for the
+/// rest.
+fn blank_page(page: &LessonPage, mut picture: Option<Part>) -> Vec<Part> {
+    let mut parts = vec![Part::Heading(page.heading.clone())];
     let asks = page.predicts().next().is_some();
     // What is to be typed says what to do, unless the page compares it with a prediction.
     let is_typed = page.blocks.iter().any(is_shell) && page.compares().next().is_none();
@@ -73,31 +197,68 @@ fn blank_page(
     let mut is_before = true;
     for block in &page.blocks {
         match block {
-            LessonBlock::Lab(_) if asks => parts.push(fenced("text", &picture(&walk.lab))),
+            LessonBlock::Lab(_) if asks => parts.extend(picture.take()),
             LessonBlock::Lab(_) => is_before = false,
             LessonBlock::Text(text) if is_done || is_before && (!tells || page.lab().is_some()) => {
-                parts.push(text.filled(|_, _| BLANK.to_owned()));
+                parts.push(Part::Text(text.filled(|_, _| BLANK.to_owned())));
             }
             LessonBlock::Predict(predict) => {
-                parts.push(room_for_blank(predict));
+                parts.push(blank_question(predict));
                 is_before = false;
             }
-            LessonBlock::Compare(_) => {
-                parts.push(format!("Predicted: {BLANK}\n\nCame out: {BLANK}{BLANK}"));
-            }
-            LessonBlock::Check(check) => {
-                parts.extend(check.goals.iter().map(|goal| format!("- [ ] {goal}")));
-            }
-            LessonBlock::Shown(CodeBlock { language, text }) if !tells || is_shell(block) => {
-                parts.push(fenced(language, text));
+            LessonBlock::Compare(_) => parts.push(Part::Compared),
+            LessonBlock::Check(check) => parts.push(Part::Goals(check.goals.clone())),
+            LessonBlock::Shown(code) if !tells || is_shell(block) => {
+                parts.push(Part::Shown(code.clone()));
             }
             _ => {}
         }
     }
     if tells {
-        parts.push(format!("Why: {BLANK}{BLANK}{BLANK}"));
+        let is_compared = page.compares().next().is_some();
+        parts.push(if is_compared {
+            Part::Why
+        } else {
+            Part::OwnWords
+        });
     }
     parts
+}
+
+/// Gives the questions that `page` compares with what came out their axes: by then it is known how long that takes.
+fn add_frames(parts: &mut [Part], page: &LessonPage, lesson: &Lesson, lab: &Lab) {
+    for compare in page.compares() {
+        let drawn = lesson
+            .predict(&compare.prediction)
+            .and_then(|predict| predict.draw);
+        for part in &mut *parts {
+            if let (Part::Question(question), Some(drawn)) = (part, drawn)
+                && question.name == compare.prediction
+            {
+                question.frame = figures::frame(drawn, lab);
+            }
+        }
+    }
+}
+
+/// Returns the page on which `walk` stands as Markdown, with the lab's screen even where the page itself makes the lab do
+/// nothing.
+pub fn page(page: &LessonPage, walk: &LessonWalk<'_>, screen: fn(&Lab) -> String) -> String {
+    let mut parts = vec![Part::Heading(page.heading.clone())];
+    if page.lab().is_none() {
+        parts.push(Part::Screen(screen(&walk.lab)));
+    }
+    for block in &page.blocks {
+        match block {
+            LessonBlock::Lab(_) => parts.push(Part::Screen(screen(&walk.lab))),
+            LessonBlock::Predict(predict) => {
+                let ask = predict.ask.with_numbers(&walk.lab, &walk.kept);
+                parts.push(question(predict, ask, false));
+            }
+            other => parts.extend(told(other, walk)),
+        }
+    }
+    markdown::of_parts(&parts)
 }
 
 /// Returns whether it is a command to be typed.
@@ -105,81 +266,55 @@ fn is_shell(block: &LessonBlock) -> bool {
     matches!(block, LessonBlock::Shown(code) if code.language == "sh")
 }
 
-/// Returns a question of which no number is told.
-fn room_for_blank(predict: &Predict) -> String {
-    asked(predict, &predict.ask.filled(|_, _| BLANK.to_owned()))
+fn question(predict: &Predict, ask: String, has_room: bool) -> Part {
+    Part::Question(Question {
+        name: predict.name.clone(),
+        ask,
+        asked: predict.asked.clone(),
+        has_room,
+        frame: None,
+    })
 }
 
-/// One page, as in the handout, and with the picture even where the page itself makes the lab do nothing; `walk` stands on
-/// it.
-pub fn page(page: &LessonPage, walk: &LessonWalk<'_>, picture: &dyn Fn(&Lab) -> String) -> String {
-    let mut parts = on_pages(page, &page.blocks, walk, picture);
-    if page.lab().is_none() {
-        parts.insert(1, fenced("text", &picture(&walk.lab)));
-    }
-    joined(&parts)
+/// Returns a question of which no number is told.
+fn blank_question(predict: &Predict) -> Part {
+    question(predict, predict.ask.filled(|_, _| BLANK.to_owned()), true)
 }
 
 fn joined(parts: &[String]) -> String {
     parts.join("\n\n") + "\n"
 }
 
-fn head(lesson: &Lesson, walk: &LessonWalk<'_>) -> Vec<String> {
-    let mut parts = vec![format!("# {}", lesson.title)];
+/// What stands above the first page.
+struct Head {
+    title: String,
+    /// Markdown.
+    about: String,
+    introduction: Vec<Part>,
+}
+
+fn head(lesson: &Lesson, walk: &LessonWalk<'_>) -> Head {
     let minutes = lesson.minutes.map(|it| format!("About {it} minutes."));
     let about = format!("{} {}", lesson.about, minutes.unwrap_or_default());
-    parts.push(about.trim().to_owned());
     let introduction = lesson.introduction.iter();
-    parts.extend(introduction.filter_map(|block| on_paper(block, walk)));
-    parts.retain(|part| !part.is_empty());
-    parts
-}
-
-/// Returns the parts of a page with these of its `blocks`, with a blank line between each and the next.
-fn on_pages(
-    page: &LessonPage,
-    blocks: &[LessonBlock],
-    walk: &LessonWalk<'_>,
-    picture: &dyn Fn(&Lab) -> String,
-) -> Vec<String> {
-    let mut parts = vec![format!("## {}", page.heading)];
-    for block in blocks {
-        match block {
-            LessonBlock::Lab(_) => parts.push(fenced("text", &picture(&walk.lab))),
-            other => parts.extend(on_paper(other, walk)),
-        }
+    Head {
+        title: lesson.title.clone(),
+        about: about.trim().to_owned(),
+        introduction: introduction.filter_map(|block| told(block, walk)).collect(),
     }
-    parts
 }
 
-fn on_paper(block: &LessonBlock, walk: &LessonWalk<'_>) -> Option<String> {
+fn told(block: &LessonBlock, walk: &LessonWalk<'_>) -> Option<Part> {
     let (lab, kept) = (&walk.lab, &walk.kept);
     match block {
-        LessonBlock::Text(text) => Some(text.with_numbers(lab, kept)),
-        LessonBlock::Predict(predict) => Some(room_for(predict, lab, kept)),
-        LessonBlock::Compare(compare) => Some(blanked(compare, lab, kept)),
+        LessonBlock::Text(text) => Some(Part::Text(text.with_numbers(lab, kept))),
+        LessonBlock::Compare(compare) => Some(Part::Text(blanked(compare, lab, kept))),
         LessonBlock::Check(check) if !check.hint.is_empty() => {
-            Some(format!("Hint: {}", check.hint))
+            Some(Part::Text(format!("Hint: {}", check.hint)))
         }
-        LessonBlock::Shown(CodeBlock { language, text }) => Some(fenced(language, text)),
+        LessonBlock::Shown(code) => Some(Part::Shown(code.clone())),
         _ => None,
     }
-}
-
-fn room_for(predict: &Predict, lab: &Lab, kept: &KeptNumbers) -> String {
-    asked(predict, &predict.ask.with_numbers(lab, kept))
-}
-
-/// Returns the question `ask` with a box for each choice, or room for a number.
-fn asked(predict: &Predict, ask: &str) -> String {
-    let room: Vec<_> = match &predict.asked {
-        AnswerKind::Choice(choices) => (1..)
-            .zip(choices)
-            .map(|(number, choice)| format!("- [ ] {number} {choice}"))
-            .collect(),
-        AnswerKind::Number { unit } => vec![format!("{BLANK} {unit}").trim_end().to_owned()],
-    };
-    format!("**Prediction.** {ask}\n\n{}", room.join("\n"))
 }
 
 /// Returns the comparison with room for the prediction.
@@ -193,93 +328,5 @@ fn blanked(compare: &Compare, lab: &Lab, kept: &KeptNumbers) -> String {
             WITH => with,
             name => names::number(name, lab, kept),
         }))
-    })
-}
-
-/// `text` between fences that do not occur in it.
-fn fenced(language: &str, text: &str) -> String {
-    let ticks = text
-        .lines()
-        .map(|line| line.len() - line.trim_start_matches('`').len());
-    let fence = "`".repeat(ticks.max().unwrap_or(0).max(2) + 1);
-    format!(
-        "{fence}{language}\n{}\n{fence}",
-        text.trim_end_matches('\n')
-    )
-}
-
-/// Returns the predictions of `place` beside what came out of `lesson`, which is played in a new `lab`; as Markdown.
-pub fn answers(
-    lesson: &Lesson,
-    place: &LessonProgress,
-    lab: Lab,
-    go_on: LessonProgressCallback<'_>,
-) -> Result<String, Problem> {
-    let mut walk = LessonWalk::new(lesson, lab);
-    let pages = lesson.pages.len();
-    let mut parts = vec![
-        format!("# {}", lesson.title),
-        format!("Left at page {} of {pages}.", place.page),
-    ];
-    for page in &lesson.pages {
-        walk.enter(page, go_on)?;
-        parts.extend(answers_of(lesson, page, place, &walk));
-        walk.leave(page, go_on)?;
-    }
-    parts.push(format!("gyrolab {}", env!("CARGO_PKG_VERSION")));
-    Ok(joined(&parts))
-}
-
-/// Returns the heading of a page, with what was asked, what came out and what became of its task; nothing where it has
-/// none of these.
-fn answers_of(
-    lesson: &Lesson,
-    page: &LessonPage,
-    place: &LessonProgress,
-    walk: &LessonWalk<'_>,
-) -> Vec<String> {
-    let told = page.blocks.iter().filter_map(|block| match block {
-        LessonBlock::Predict(predict) => predicted(predict, place, walk),
-        LessonBlock::Compare(compare) => came_out(lesson, compare, place, walk),
-        _ => None,
-    });
-    let mut parts: Vec<_> = told.collect();
-    if page.task().is_some() {
-        let tried = Tried::words(place.tasks.get(&page.heading));
-        let checks = page.checks();
-        let goals: Vec<_> = checks.flat_map(|check| check.goals.clone()).collect();
-        let task = format!("**Task.** {}: {tried}", goals.join(", "));
-        parts.push(task.replace("** :", "**"));
-    }
-    if !parts.is_empty() {
-        parts.insert(0, format!("## {}", page.heading));
-    }
-    parts
-}
-
-/// Returns the question with what was predicted; nothing where nothing was.
-fn predicted(predict: &Predict, place: &LessonProgress, walk: &LessonWalk<'_>) -> Option<String> {
-    let ask = predict.ask.with_numbers(&walk.lab, &walk.kept);
-    let answer = place.predictions.in_words(predict)?;
-    Some(format!("**Question.** {ask}\n\n**Predicted.** {answer}"))
-}
-
-/// Returns what came out; nothing where nothing was predicted: it would give the answer away.
-fn came_out(
-    lesson: &Lesson,
-    compare: &Compare,
-    place: &LessonProgress,
-    walk: &LessonWalk<'_>,
-) -> Option<String> {
-    let predict = lesson.predict(&compare.prediction)?;
-    place.predictions.to(predict).next()?;
-    let text = compare.filled(lesson, &place.predictions, &walk.lab, &walk.kept);
-    let right = match (&predict.asked, &predict.right) {
-        (AnswerKind::Choice(choices), Some(Right::Choice(right))) => choices.get(right - 1),
-        _ => None,
-    };
-    Some(match right {
-        Some(choice) => format!("**Came out.** {choice}. {text}"),
-        None => format!("**Came out.** {text}"),
     })
 }

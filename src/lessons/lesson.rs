@@ -42,6 +42,13 @@ pub struct LessonGuide {
     pub page_minutes: Vec<u32>,
 }
 
+impl LessonGuide {
+    /// Returns what it needs as a sentence without its full stop; none if it needs nothing.
+    pub fn needs_in_words(&self) -> Option<String> {
+        (!self.needs.is_empty()).then(|| format!("Needs {}", self.needs.join("; ")))
+    }
+}
+
 /// What a lesson takes for granted, from little to much.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum LessonLevel {

@@ -12,7 +12,7 @@
 //! - [`predictions`]: what a student has predicted.
 //! - [`stage`]: what to carry out to stand on a page.
 //! - [`play`]: a lesson played to its end without a screen, and whether its checks do what they should.
-//! - [`handout`]: a lesson on paper, and what was predicted beside what came out; [`paper`]: its sheets as PDF.
+//! - [`handout`]: a lesson on paper, and what was predicted beside what came out; [`teacher`]: a sheet for the teacher.
 //! - [`state`]: the lessons of a lab; [`open_lesson`]: the one that is open, with what its page has stated; [`page`]: what stands
 //!   beside the panes, of [`markdown`]; [`clock`] and [`watch`]: the time, and a file that changes.
 //! - [`shipped`]: the lessons that come with the program.
@@ -26,7 +26,6 @@ pub mod names;
 pub mod open_lesson;
 pub mod opening;
 pub mod page;
-pub mod paper;
 pub mod play;
 pub mod predictions;
 pub mod reading;
@@ -34,6 +33,7 @@ pub mod shipped;
 pub mod stage;
 pub mod state;
 mod structure;
+pub mod teacher;
 pub mod text;
 pub mod watch;
 

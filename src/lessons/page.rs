@@ -1,6 +1,8 @@
 //! The page of a lesson, and the list of lessons, as a sheet beside the panes.
 
-use super::lesson::{AnswerKind, Check, Compare, Lesson, LessonBlock, LessonPage, Predict};
+use super::lesson::{
+    AnswerKind, Check, Compare, Lesson, LessonBlock, LessonLevel, LessonPage, Predict,
+};
 use super::markdown::paragraphs;
 use super::open_lesson::OpenLesson;
 use super::predictions::{LessonProgress, Tried};
@@ -59,8 +61,16 @@ pub(super) fn list(
         paragraphs: overlay.waiting.clone().unwrap_or_default(),
         ..Sheet::default()
     };
+    let mut level = None;
     for (index, name) in names.iter().enumerate() {
         let lesson = opening::open_again(name).ok();
+        let own_level = lesson.as_ref().and_then(|lesson| lesson.guide.level);
+        if own_level != level {
+            let heading = own_level.map_or("others", LessonLevel::name);
+            let caption = Paragraph::new(SheetLineKind::Caption, heading);
+            sheet.paragraphs.push(caption);
+            level = own_level;
+        }
         let mut text = lesson.as_ref().map_or(name, |it| &it.title).clone();
         if let Some(minutes) = lesson.as_ref().and_then(|lesson| lesson.minutes) {
             text += &format!(", {minutes} min");
@@ -77,12 +87,18 @@ pub(super) fn list(
         };
         sheet.paragraphs.push(Paragraph::new(choice, text));
         if index == selected {
-            if let Some(lesson) = lesson.filter(|lesson| !lesson.about.is_empty()) {
-                let item = SheetLineKind::Item {
-                    mark: "  ".to_owned(),
-                    depth: 1,
-                };
-                sheet.paragraphs.push(Paragraph::new(item, lesson.about));
+            let about = lesson.as_ref().map_or("", |lesson| &lesson.about);
+            let needs = lesson
+                .as_ref()
+                .and_then(|lesson| lesson.guide.needs_in_words());
+            for line in [about.to_owned(), needs.unwrap_or_default()] {
+                if !line.is_empty() {
+                    let item = SheetLineKind::Item {
+                        mark: "  ".to_owned(),
+                        depth: 1,
+                    };
+                    sheet.paragraphs.push(Paragraph::new(item, line));
+                }
             }
             sheet.seen = Some((sheet.paragraphs.len() - 1, sheet.paragraphs.len() - 1));
         }

@@ -2,25 +2,25 @@
 
 use crate::engine::text::shipped::{Shipped, shipped};
 
-/// Every lesson, in the order in which they build on each other.
+/// Every lesson, in the order in which they build on each other, level by level.
 pub const LESSONS: &[Shipped] = shipped!["../../presets/lessons", "md":
     "why-it-does-not-fall"
     "what-holds-the-weight-up"
+    "does-a-faster-spin-precess-faster"
+    "the-wheel-one-carries"
+    "why-it-seems-to-stand-still"
     "one-step-by-hand"
-    "write-it-yourself"
     "method-1-and-its-z"
     "method-2-and-its-straight-line"
-    "why-it-seems-to-stand-still"
     "is-the-wobble-real"
-    "does-a-faster-spin-precess-faster"
-    "does-steeper-precess-faster"
     "cusps-loops-and-waves"
+    "does-steeper-precess-faster"
+    "halve-the-step"
+    "write-it-yourself"
+    "which-way-does-your-phone-tumble"
     "the-sleeping-top-wakes"
     "kappa-and-the-scheme"
     "what-is-conserved"
-    "halve-the-step"
-    "the-wheel-one-carries"
-    "which-way-does-your-phone-tumble"
     "a-real-gyroscope"
 ];
 

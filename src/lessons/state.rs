@@ -192,7 +192,7 @@ impl Lessons {
                 lab.refuse(text);
             }
             (_, LessonKey::Leave) => {
-                lab.refuse("nothing to close here");
+                lab.refuse("L lists the lessons, q leaves: this page is where you come back to");
             }
             (LessonDialog::List { selected, .. }, LessonKey::Move(direction)) => {
                 let last = names.len().saturating_sub(1);

@@ -14,6 +14,13 @@ use toml::{Table, Value};
 const HOW_TO_VOTE: &str = "Below 30 % right: explain, then ask again. From 30 to 70 %: let neighbors talk, then ask again. \
     Above 70 %: go on.";
 
+/// A page on the sheet: what is asked or to be done, and the notes.
+struct SheetPage<'a> {
+    page: &'a LessonPage,
+    asked: Vec<String>,
+    notes: Vec<String>,
+}
+
 /// Returns the teacher's sheet of `lesson`, which is played in a new `lab`.
 ///
 /// # Errors
@@ -24,21 +31,23 @@ pub fn sheet(
     go_on: LessonProgressCallback<'_>,
 ) -> Result<String, Problem> {
     let mut walk = LessonWalk::new(lesson, lab);
-    let mut pages: Vec<(&LessonPage, Vec<String>)> = Vec::new();
+    let mut pages = Vec::new();
     let mut outcomes: BTreeMap<&str, String> = BTreeMap::new();
     for page in &lesson.pages {
         walk.enter(page, go_on)?;
         for compare in page.compares() {
             outcomes.insert(&compare.prediction, outcome(lesson, compare, &walk));
         }
-        let asked = page.predicts().map(|predict| asked(predict, &walk));
-        let mut parts: Vec<String> = asked.collect();
-        parts.extend(task(page));
-        parts.extend(page.notes().map(|notes| {
+        let questions = page.predicts().map(|predict| asked(predict, &walk));
+        let notes = page.notes().map(|notes| {
             let text = notes.with_numbers(&walk.lab, &walk.kept);
             format!("*Note.* {}", text.trim())
-        }));
-        pages.push((page, parts));
+        });
+        pages.push(SheetPage {
+            page,
+            asked: questions.chain(task(page)).collect(),
+            notes: notes.collect(),
+        });
         if page.number < lesson.pages.len() {
             walk.leave(page, go_on)?;
         }
@@ -47,33 +56,32 @@ pub fn sheet(
     parts.push(table(lesson));
     parts.push("## Questions and tasks".to_owned());
     parts.push(HOW_TO_VOTE.to_owned());
-    for (page, texts) in pages.iter().filter(|(_, texts)| !texts.is_empty()) {
+    for SheetPage { page, asked, notes } in pages {
+        if asked.is_empty() && notes.is_empty() {
+            continue;
+        }
         parts.push(format!("### Page {}: {}", page.number, page.heading));
-        parts.extend(texts.iter().cloned());
-        parts.extend(page.predicts().flat_map(|predict| {
+        parts.extend(asked);
+        for predict in page.predicts() {
             let came_out = outcomes.get(predict.name.as_str());
-            expectation(predict, came_out)
-        }));
+            parts.extend(expectation(predict, came_out));
+        }
+        parts.extend(notes);
     }
-    parts.extend(listed(
-        "What the model leaves out",
-        &lesson.guide.leaves_out,
-    ));
+    let left_out = &lesson.guide.leaves_out;
+    parts.extend(listed("What the model leaves out", left_out));
     Ok(parts.join("\n\n") + "\n")
 }
 
 /// Returns the title, and what the `lesson` block says of the whole lesson.
 fn head(lesson: &Lesson) -> Vec<String> {
-    let mut parts = vec![format!("# {}: teacher's sheet", lesson.title)];
+    let mut parts = vec![format!("# Teacher's sheet: {}", lesson.title)];
     let level = lesson
         .guide
         .level
         .map(|level| format!("Level: {}.", level.name()));
     let minutes = lesson.minutes.map(|minutes| format!("{minutes} minutes."));
-    let needs = match lesson.guide.needs.as_slice() {
-        [] => None,
-        needs => Some(format!("Needs: {}.", needs.join(", "))),
-    };
+    let needs = lesson.guide.needs_in_words().map(|needs| needs + ".");
     let about = Some(lesson.about.clone()).filter(|about| !about.is_empty());
     let words: Vec<String> = [about, level, minutes, needs]
         .into_iter()
@@ -96,7 +104,7 @@ fn listed(heading: &str, items: &[String]) -> Vec<String> {
 /// Returns the pages with their minutes, and what happens on each.
 fn table(lesson: &Lesson) -> String {
     let mut rows = vec![
-        "| Page | | Minutes | |".to_owned(),
+        "| Page | Heading | Minutes | What happens |".to_owned(),
         "|---:|---|---:|---|".to_owned(),
     ];
     for page in &lesson.pages {
@@ -140,31 +148,30 @@ fn asked(predict: &Predict, walk: &LessonWalk<'_>) -> String {
 
 /// Returns what comes out, which answers to expect, and what to explain.
 fn expectation(predict: &Predict, came_out: Option<&String>) -> Vec<String> {
-    let unit = match &predict.asked {
-        AnswerKind::Number { unit } => unit.as_str(),
-        AnswerKind::Choice(_) => "",
-    };
-    let right = match predict.right {
-        Some(Right::Number { value, within }) => {
-            format!(
-                "{} {unit}, to within {}. ",
-                shortest(value),
-                shortest(within)
-            )
+    let number = match (&predict.asked, &predict.right) {
+        (AnswerKind::Number { unit }, Some(Right::Number { value, within })) => {
+            let (value, within) = (shortest(*value), shortest(*within));
+            format!("{value} {unit}, to within {within}. ")
         }
         _ => String::new(),
     };
-    let outcome = came_out.map(|text| format!("**Right.** {right}{text}"));
-    let said =
-        |label: &str, text: &String| (!text.is_empty()).then(|| format!("**{label}** {text}"));
-    [
-        outcome,
-        said("Expect.", &predict.expected),
-        said("Below 30 %.", &predict.explain),
-    ]
-    .into_iter()
-    .flatten()
-    .collect()
+    // A choice of which none is right is a matter of opinion.
+    let is_opinion = predict.right.is_none() && matches!(predict.asked, AnswerKind::Choice(_));
+    let explain = if is_opinion {
+        "Discuss."
+    } else {
+        "Below 30 %."
+    };
+    let labeled = [
+        ("Comes out.", came_out.map(|text| number + text)),
+        ("Expect.", Some(predict.expected.clone())),
+        (explain, Some(predict.explain.clone())),
+    ];
+    labeled
+        .into_iter()
+        .filter_map(|(label, text)| Some((label, text.filter(|text| !text.is_empty())?)))
+        .map(|(label, text)| format!("**{label}** {text}"))
+        .collect()
 }
 
 /// Returns what came out in words, without the sentence about a prediction.

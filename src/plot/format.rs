@@ -53,22 +53,13 @@ pub fn write(
     let picture = match format {
         PageFormat::Svg => svg::written(&scene, false).into_bytes(),
         PageFormat::SvgText => svg::written(&scene, true).into_bytes(),
-        PageFormat::Pdf => pdf::written(&[scene], version),
+        PageFormat::Pdf => pdf::written(&scene, version),
         PageFormat::Png => png::written(&scene, DOTS_PER_INCH)?,
     };
     match origin {
         Some(origin) => provenance::embed(&picture, origin).ok_or(Unwritable::Origin),
         None => Ok(picture),
     }
-}
-
-/// The PDF of pages in their order, which carries no origin.
-///
-/// # Errors
-/// When a place on one of them is no number, or too far away.
-pub fn write_sheets(scenes: &[PageScene]) -> Result<Vec<u8>, Unwritable> {
-    let pages: Vec<PageScene> = scenes.iter().map(rounded).collect::<Result<_, _>>()?;
-    Ok(pdf::written(&pages, env!("CARGO_PKG_VERSION")))
 }
 
 /// The page in whole hundredths of a point, all of them numbers that a file can hold, without empty paths.

@@ -1,4 +1,4 @@
-//! Pages as PDF 1.4: paths and words, without a font from elsewhere, a date or an identifier.
+//! A page as PDF 1.4: paths and words, without a font from elsewhere, a date or an identifier.
 
 mod words;
 
@@ -9,47 +9,33 @@ use super::scene::{at, hundredths};
 use super::svg::MITER_LIMIT;
 use super::{Color, PageScene, Paint, Point, SceneItem, Segment, StrokeStyle, VectorPath};
 use crate::engine::text::printable::printable;
-use words::{FIRST_FREE_OBJECT, Fonts};
+use words::Fonts;
 
 const CATALOG: Ref = Ref::new(1);
 const PAGES: Ref = Ref::new(2);
+const PAGE: Ref = Ref::new(3);
+const CONTENT: Ref = Ref::new(4);
 const INFORMATION: Ref = Ref::new(5);
 const PDF_COMPRESSION: u8 = 9;
 
-/// A page and its content: the first stand before the fonts, the others behind them.
-fn refs(page: i32) -> (Ref, Ref) {
-    let first = if page == 0 {
-        3
-    } else {
-        FIRST_FREE_OBJECT + 2 * page
-    };
-    (Ref::new(first), Ref::new(first + 1))
-}
-
-/// Pages whose places are whole hundredths of a point, written by this `version` of the program; the first one's title is
-/// the file's.
-pub fn written(scenes: &[PageScene], version: &str) -> Vec<u8> {
-    let fonts = Fonts::from_scenes(scenes);
+/// A page whose places are whole hundredths of a point, written by this `version` of the program; its title is the file's.
+pub fn written(scene: &PageScene, version: &str) -> Vec<u8> {
+    let fonts = Fonts::from_scene(scene);
     let mut pdf = Pdf::new();
     // The version which every pdflatex includes without a warning.
     pdf.set_version(1, 4);
     pdf.catalog(CATALOG).pages(PAGES);
-    let count = scenes.len() as i32;
-    let kids = (0..count).map(|page| refs(page).0);
-    pdf.pages(PAGES).kids(kids).count(count);
-    for (scene, (id, drawn)) in scenes.iter().zip((0..).map(refs)) {
-        let mut page = pdf.page(id);
-        let sheet = Rect::new(0.0, 0.0, scene.width_pt as f32, scene.height_pt as f32);
-        page.media_box(sheet).parent(PAGES).contents(drawn);
-        fonts.name_in(&mut page.resources());
-        page.finish();
-        let content = packed(&content(scene, &fonts));
-        pdf.stream(drawn, &content).filter(Filter::FlateDecode);
-    }
+    pdf.pages(PAGES).kids([PAGE]).count(1);
+    let mut page = pdf.page(PAGE);
+    let sheet = Rect::new(0.0, 0.0, scene.width_pt as f32, scene.height_pt as f32);
+    page.media_box(sheet).parent(PAGES).contents(CONTENT);
+    fonts.name_in(&mut page.resources());
+    page.finish();
+    let content = packed(&content(scene, &fonts));
+    pdf.stream(CONTENT, &content).filter(Filter::FlateDecode);
     fonts.write(&mut pdf, packed);
-    let title = scenes.first().map_or("", |scene| &scene.title);
     let mut information = pdf.document_info(INFORMATION);
-    information.title(TextStr(&printable(title)));
+    information.title(TextStr(&printable(&scene.title)));
     information.producer(TextStr(&format!("gyrolab {}", printable(version))));
     information.finish();
     pdf.finish()

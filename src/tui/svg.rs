@@ -3,6 +3,7 @@
 use super::screen;
 use crate::engine::text::printable::xml;
 use crate::lab::Lab;
+use crate::lab::view::Pane;
 use crate::lab::view::theme::Background;
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;
@@ -24,6 +25,23 @@ pub fn svg(lab: &Lab, (columns, rows): (u16, u16), background: Background) -> St
     let area = Rect::new(0, 0, columns, rows);
     let mut buf = Buffer::empty(area);
     screen::draw(lab, true, area, &mut buf);
+    let title = &lab.player().run().scenario().file.title;
+    of_cells(&buf, title, background)
+}
+
+/// The picture of what is in one `pane` of `lab`, without its title, on white paper.
+pub fn pane(lab: &Lab, pane: Pane, (columns, rows): (u16, u16)) -> String {
+    let area = Rect::new(0, 0, columns, rows);
+    let mut whole = Buffer::empty(Rect::new(0, 0, columns, rows + 1));
+    screen::draw_pane(lab, pane, whole.area, &mut whole);
+    let mut buf = Buffer::empty(area);
+    buf.content = whole.content.split_off(columns.into());
+    let scenario = &lab.player().run().scenario().file.title;
+    let title = format!("The pane {} of the lab: {scenario}", pane.id());
+    of_cells(&buf, &title, Background::Light)
+}
+
+fn of_cells(buf: &Buffer, title: &str, background: Background) -> String {
     let page = match background {
         Background::Dark => PageColors {
             ink: "#e4e4e4",
@@ -34,9 +52,10 @@ pub fn svg(lab: &Lab, (columns, rows): (u16, u16), background: Background) -> St
             paper: "#ffffff",
         },
     };
+    let (columns, rows) = (buf.area.width, buf.area.height);
     let width = u32::from(columns) * CELL_WIDTH;
     let height = u32::from(rows) * CELL_HEIGHT;
-    let title = xml(&lab.player().run().scenario().file.title);
+    let title = xml(title);
     let mut out = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
          font-family=\"{CELL_FONTS}\" font-size=\"{FONT_SIZE}\">\n<title>{title}</title>\n\

@@ -2,20 +2,18 @@
 
 use crate::support::desk::Desk;
 use crate::support::scenarios::{preset, view};
-use crate::support::words::{has, has_all, without_lists};
+use crate::support::words::{has, without_lists};
 use gyrolab::engine::run::Simulation;
 use gyrolab::engine::scenario::{Document, Problem, Problems};
 use gyrolab::engine::text::printable::is_steering;
 use gyrolab::lab::Lab;
 use gyrolab::lab::view::HideablePart;
 use gyrolab::lab::view::theme::Marker;
-use gyrolab::lessons::handout::{self, Paper};
 use gyrolab::lessons::play::{self, LessonWalk};
 use gyrolab::lessons::predictions::{LockedAnswer, Predictions};
 use gyrolab::lessons::{
-    KeptNumbers, Lesson, LessonBlock, LessonPage, PredictionAnswer, opening, reading, shipped,
+    KeptNumbers, Lesson, LessonBlock, PredictionAnswer, opening, reading, shipped,
 };
-use gyrolab::tui::screen;
 use proptest::prelude::*;
 use std::collections::BTreeSet;
 use std::fs;
@@ -24,7 +22,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// A lesson with a block of every kind.
-const WHOLE: &str = r#"# The push
+pub const WHOLE: &str = r#"# The push
 
 Before the first page.
 
@@ -88,7 +86,7 @@ hint = "g, then 10."
 ```
 "#;
 
-fn read(text: &str) -> Lesson {
+pub fn read(text: &str) -> Lesson {
     reading::read("a.md", text).unwrap_or_else(|problems| panic!("{problems}"))
 }
 
@@ -366,17 +364,13 @@ const NASTY: [&str; 16] = [
 ];
 
 /// A lab as the program makes one to play lessons.
-fn lab() -> Lab {
+pub fn lab() -> Lab {
     let scenario = Arc::new(preset("method-2", &[]));
     let view = view(&scenario, Marker::Ascii, false);
     Lab::new("method-2", scenario, view, false)
 }
 
-fn picture(lab: &Lab) -> String {
-    screen::text(lab, false, (80, 24))
-}
-
-fn on(_: u64, _: u64) -> ControlFlow<()> {
+pub fn on(_: u64, _: u64) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
@@ -487,7 +481,7 @@ fn a_file_that_a_lesson_opens_is_looked_for_beside_the_lesson() {
 }
 
 /// The lessons that are shipped, the template, and [`WHOLE`].
-fn lessons() -> Vec<Lesson> {
+pub fn lessons() -> Vec<Lesson> {
     let shipped = shipped::LESSONS
         .iter()
         .map(|lesson| opening::open(lesson.name));
@@ -588,83 +582,4 @@ fn a_locked_prediction_stays_and_shows_what_the_page_hides() {
         .unwrap();
     let all = "is gone (round 1), stays as it is (round 2, after its outcome was seen)";
     assert_eq!(predictions.in_words(finer).as_deref(), Some(all));
-}
-
-#[test]
-fn a_worksheet_asks_everything_and_answers_nothing() {
-    for lesson in lessons() {
-        let of = |paper| handout::handout(&lesson, paper, lab(), &picture, &mut on).unwrap();
-        let (sheet, results) = (of(Paper::Worksheet), of(Paper::Results));
-        for page in &lesson.pages {
-            let at = sheet.find(&format!("## {}\n", page.heading)).unwrap();
-            let own = sheet[at + 3..].split("\n## ").next().unwrap();
-            for predict in page.predicts() {
-                let ask = predict.ask.filled(|_, _| "@".to_owned());
-                has(own, ask.split('@').next().unwrap());
-            }
-            for block in &page.blocks {
-                if let LessonBlock::Shown(shown) = block
-                    && shown.language == "sh"
-                {
-                    has(own, &shown.text);
-                }
-            }
-            assert!(
-                own.contains("Came out: __") || page.compares().next().is_none(),
-                "{own}"
-            );
-        }
-        for text in lesson.pages.iter().flat_map(LessonPage::compares) {
-            let words = text.text.filled(|_, _| "@".to_owned());
-            let first = words.split('@').max_by_key(|words| words.len()).unwrap();
-            assert!(
-                results.contains(first) && !sheet.contains(first),
-                "{}: {first}",
-                lesson.name
-            );
-        }
-    }
-}
-
-#[test]
-fn the_handout_has_pictures_and_room_and_no_notes() {
-    for lesson in lessons() {
-        let paper = handout::handout(&lesson, Paper::Results, lab(), &picture, &mut on).unwrap();
-        let headings: Vec<_> = paper
-            .lines()
-            .filter(|line| line.starts_with("## "))
-            .collect();
-        let pages: Vec<_> = lesson
-            .pages
-            .iter()
-            .map(|page| format!("## {}", page.heading))
-            .collect();
-        assert_eq!(headings, pages);
-        for page in &lesson.pages {
-            for notes in page.notes() {
-                let notes = notes.filled(|_, _| String::new());
-                let first = notes.lines().next().unwrap();
-                assert!(!paper.contains(first), "{}: {first}", lesson.name);
-            }
-        }
-        assert!(!paper.contains("```notes") && !paper.contains("```lab"));
-    }
-    let paper = handout::handout(&read(WHOLE), Paper::Results, lab(), &picture, &mut on).unwrap();
-    has_all(
-        &paper,
-        [
-            "# The push\n\nA push, and what the time step has to do with it. About 10 minutes.\n\nBefore the first page.\n\n## Watch\n\n```text\n",
-            "**Prediction.** With a time step ten times shorter, the wobble ...\n\n- [ ] 1 stays as it is\n- [ ] 2 is ten times smaller\n- [ ] 3 is gone\n",
-            ". You said: ____________.\n\n```sh\ngyrolab run wobble-push\n```\n\n## Your turn\n",
-            "At 60 s the top is at z = **0.",
-            "`{ code }` and \\{braces} stay.",
-        ],
-    );
-    let begin = paper.find("## Watch").unwrap();
-    let end = paper.find("**Prediction.**").unwrap();
-    assert!(
-        !paper[begin..end].contains("NOT RELIABLE"),
-        "the health is hidden before the prediction"
-    );
-    assert!(paper[end..].contains("NOT RELIABLE"));
 }

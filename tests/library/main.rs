@@ -23,6 +23,7 @@ mod fits;
 mod flat;
 mod flights;
 mod friction;
+mod handouts;
 mod health;
 mod journal;
 mod kept;

@@ -24,7 +24,11 @@ fn exit_codes() {
     for (args, expected) in [
         ("lesson", 0),
         ("lesson --template", 0),
+        ("lesson --list", 0),
+        ("lesson my.md --list", 2),
         ("lesson my.md --handout", 0),
+        ("lesson my.md --teacher", 0),
+        ("lesson my.md --teacher --handout", 2),
         ("lesson no-such-lesson", 1),
         ("lesson ./no-such-file.md", 1),
         ("lesson my.md --page 9", 1),
@@ -65,6 +69,26 @@ fn without_a_name_there_is_a_line_for_each_lesson_and_nothing_else() {
         })
         .collect();
     assert_eq!(Ground::new().stdout("lesson"), known);
+}
+
+#[test]
+fn the_long_list_has_every_lesson_under_its_level_in_the_order_of_the_short_one() {
+    let list = Ground::new().stdout("lesson --list");
+    let places: Vec<_> = LESSONS
+        .iter()
+        .map(|lesson| list.find(&format!("\n  {} ", lesson.name)).unwrap())
+        .collect();
+    assert!(places.is_sorted());
+    has_all(
+        &list,
+        [
+            "school\n  why-it-does-not-fall ",
+            "\n\nfirst year\n",
+            "\n\nmechanics course\n",
+            " 15 min  Why does it not fall?\n",
+            "Needs one-step-by-hand; Octave, MATLAB or Python\n",
+        ],
+    );
 }
 
 #[test]
@@ -113,12 +137,12 @@ fn a_handout_obeys_the_rules_for_files() {
     assert_eq!(ground.stdout("lesson my.md --handout -o -"), paper);
     done(ground.run("lesson my.md --handout -o paper.md"));
     assert_eq!(ground.read("paper.md"), paper);
-    done(ground.run("lesson my.md --handout -o paper.pdf"));
-    assert!(
-        fs::read(ground.file("paper.pdf"))
-            .unwrap()
-            .starts_with(b"%PDF-1.4")
-    );
+    let made = done(ground.run("lesson my.md --handout -o paper.html"));
+    assert_eq!(stderr(&made), "gyrolab: wrote paper.html\n");
+    has(&ground.read("paper.html"), "<html lang=\"en\">");
+    let instead = "write FILE.html and print it from a browser";
+    ground.refused("lesson my.md --handout -o paper.pdf", 2, &[instead]);
+    ground.refused("lesson my.md --teacher -o paper.pdf", 2, &[instead]);
     ground.write("paper.md", "mine");
     let words = "paper.md exists; --force replaces it";
     ground.refused("lesson my.md --handout -o paper.md", 1, &[words]);
@@ -141,7 +165,7 @@ fn a_handout_obeys_the_rules_for_files() {
     ground.refused("lesson wrong.md --handout -o wrong-paper.md", 1, &[&told]);
     assert_eq!(
         ground.files(),
-        ["my.md", "paper.md", "paper.pdf", "wrong.md"]
+        ["my.md", "paper.html", "paper.md", "wrong.md"]
     );
 }
 

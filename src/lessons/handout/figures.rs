@@ -4,28 +4,40 @@ use crate::engine::data::RunQuantity;
 use crate::engine::run::Simulation;
 use crate::engine::scenario::Scenario;
 use crate::engine::scenario::screen::ABOVE;
-use crate::engine::text::number::short;
+use crate::engine::text::number::shortest;
 use crate::lab::Lab;
 use crate::lab::view::{FourthStrip, Pane};
-use crate::lessons::lesson::DrawnAnswer;
+use crate::lessons::lesson::{DrawnAnswer, Lesson, LessonPage};
 use crate::lessons::play::LessonProgressCallback;
 use crate::plot::chart::{Chart, ChartAxis, ChartSeries, Panel, SeriesStyle};
 use crate::plot::{COLUMN_PT, PageFormat, PageScene, format};
 use crate::report::figure::of_runs::FigureRun;
 use crate::report::figure::{FigureSource, FigureSpec, labels::FigureLabels, quantity};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 const HEIGHT: &str = "z_m";
 const TILT: &str = "tilt_deg";
-/// The least range of an axis next to a question, of the traced point's arm and in degrees: a small swing, which may be
-/// the answer, is not magnified.
+/// The least range of an axis next to a question, of the traced point's arm and in degrees.
 const LEAST_ARM_SHARE: f64 = 0.1;
 const LEAST_TILT_DEG: f64 = 5.0;
+/// The room beyond the run's values, of their range.
+const MARGIN: f64 = 0.05;
+
+/// The vertical axes of the figures of a lesson.
+pub(super) struct AxisRanges {
+    /// The column that stands for the traces where the lab chooses: the one that the questions are about.
+    usual: &'static str,
+    /// The ranges so far. An axis never shows less than it did on an earlier page: what has become small looks small.
+    shown: BTreeMap<&'static str, (f64, f64)>,
+}
 
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Figure {
     pub caption: String,
     pub svg: String,
+    /// Whether it has small letters and needs the width of the paper.
+    pub is_table: bool,
 }
 
 /// Returns what `lab` shows: a figure for each of its panes. `is_asked` if the page has a question.
@@ -33,6 +45,7 @@ pub(super) fn of_lab(
     lab: &Lab,
     pane_svg: fn(&Lab, Pane) -> String,
     is_asked: bool,
+    ranges: &mut AxisRanges,
     go_on: LessonProgressCallback<'_>,
 ) -> Vec<Figure> {
     let look = &lab.view().look;
@@ -40,20 +53,18 @@ pub(super) fn of_lab(
     for pane in &look.show {
         figures.extend(match pane {
             Pane::Traces => {
-                let column = traced_column(look.detail_of);
+                let column = ranges.column(look.detail_of);
                 let labels = FigureLabels {
-                    y_range: is_asked.then(|| wide_range(column, lab)).flatten(),
+                    y_range: ranges.of_run(column, lab, is_asked),
                     ..FigureLabels::default()
                 };
                 of_run(lab, column, labels, go_on)
             }
             Pane::Above => of_run(lab, ABOVE, FigureLabels::default(), go_on),
             Pane::ThreeD | Pane::Step => Some(Figure {
-                caption: format!(
-                    "The lab at t = {} s.",
-                    short(lab.player().run().now().time_s)
-                ),
+                caption: format!("The lab at t = {} s.", time_now(lab)),
                 svg: pane_svg(lab, *pane),
+                is_table: *pane == Pane::Step,
             }),
             Pane::Lesson | Pane::Parameters => None,
         });
@@ -61,30 +72,51 @@ pub(super) fn of_lab(
     figures
 }
 
-/// Returns the column that stands for the traces on paper.
-fn traced_column(strip: FourthStrip) -> &'static str {
-    match strip {
-        FourthStrip::Auto | FourthStrip::None | FourthStrip::Z => HEIGHT,
-        FourthStrip::X => "x_m",
-        FourthStrip::Y => "y_m",
-        FourthStrip::Tilt => TILT,
-        FourthStrip::Distance => "distance_m",
-        FourthStrip::Column(name) => name,
+impl AxisRanges {
+    pub fn new(lesson: &Lesson) -> Self {
+        let mut predicts = lesson.pages.iter().flat_map(LessonPage::predicts);
+        let asked = predicts.find_map(|predict| match predict.draw {
+            Some(DrawnAnswer::OverTime(column)) => Some(column),
+            _ => None,
+        });
+        Self {
+            usual: asked.unwrap_or(HEIGHT),
+            shown: BTreeMap::new(),
+        }
     }
-}
 
-/// Returns the range of the run's values of `column`, widened so that a small swing is not magnified.
-fn wide_range(column: &str, lab: &Lab) -> Option<(f64, f64)> {
-    let player = lab.player();
-    let least = match column {
-        HEIGHT => LEAST_ARM_SHARE * player.run().scenario().arm_m(),
-        TILT => LEAST_TILT_DEG,
-        _ => return None,
-    };
-    let low = player.number(&format!("measured_lowest_{column}"))?;
-    let high = player.number(&format!("measured_highest_{column}"))?;
-    let margin = (0.5 * (least - (high - low))).max(0.05 * (high - low));
-    Some((low - margin, high + margin))
+    /// Returns the column that stands on paper for the traces with this fourth strip.
+    fn column(&self, strip: FourthStrip) -> &'static str {
+        match strip {
+            FourthStrip::Auto | FourthStrip::None => self.usual,
+            FourthStrip::X => "x_m",
+            FourthStrip::Y => "y_m",
+            FourthStrip::Z => HEIGHT,
+            FourthStrip::Tilt => TILT,
+            FourthStrip::Distance => "distance_m",
+            FourthStrip::Column(name) => name,
+        }
+    }
+
+    /// Returns the range for `column` of the run of `lab`; none if its extremes are not known. `is_asked` if the page has a
+    /// question: a small swing, which may be the answer, is not magnified.
+    fn of_run(&mut self, column: &'static str, lab: &Lab, is_asked: bool) -> Option<(f64, f64)> {
+        let player = lab.player();
+        let least = match column {
+            HEIGHT => LEAST_ARM_SHARE * player.run().scenario().arm_m(),
+            TILT => LEAST_TILT_DEG,
+            _ => return None,
+        };
+        let low = player.number(&format!("measured_lowest_{column}"))?;
+        let high = player.number(&format!("measured_highest_{column}"))?;
+        let missing = if is_asked { least - (high - low) } else { 0.0 };
+        let margin = (0.5 * missing).max(MARGIN * (high - low));
+        let own = (low - margin, high + margin);
+        let earlier = *self.shown.get(column).unwrap_or(&own);
+        let range = (own.0.min(earlier.0), own.1.max(earlier.1));
+        self.shown.insert(column, range);
+        (range.0 < range.1).then_some(range)
+    }
 }
 
 /// Returns the figure of this kind of the run of `lab` up to its present step; none at the start, or where it cannot be
@@ -98,7 +130,7 @@ fn of_run(
     let player = lab.player();
     let step = player.step_number();
     let scenario = lab.runs().journal().scenario_until(step).ok()?;
-    let end = short(player.run().now().time_s);
+    let end = time_now(lab);
     let caption = match kind {
         ABOVE => format!("The path from above, 0 to {end} s."),
         column => format!("{} over time, 0 to {end} s.", words(column)),
@@ -119,7 +151,14 @@ fn of_run(
     Some(Figure {
         svg: svg(&scene)?,
         caption,
+        is_table: false,
     })
+}
+
+/// Returns the time of the run, s, to a thousandth.
+fn time_now(lab: &Lab) -> String {
+    let time_s = lab.player().run().now().time_s;
+    shortest(libm::round(time_s * 1000.0) / 1000.0)
 }
 
 fn words(column: &str) -> String {
@@ -166,6 +205,7 @@ pub(super) fn frame(drawn: DrawnAnswer, lab: &Lab) -> Option<Figure> {
     Some(Figure {
         svg: svg(&scene)?,
         caption,
+        is_table: false,
     })
 }
 
@@ -183,14 +223,14 @@ fn empty(x: ChartAxis, y: ChartAxis, start: [f64; 2]) -> Chart {
 /// Returns the range of `column` that tells nothing of the motion: it depends on the body and on the start alone. None if
 /// it is not known.
 fn natural_range(column: &str, start: f64, scenario: &Scenario) -> Option<(f64, f64)> {
-    let arm = scenario.arm_m();
+    let reach = 1.1 * scenario.arm_m();
     Some(match column {
-        HEIGHT if start >= 0.0 => (0.0, 1.1 * arm),
-        HEIGHT | "x_m" | "y_m" => (-1.1 * arm, 1.1 * arm),
-        TILT if start <= 90.0 => (0.0, 95.0),
+        HEIGHT if start > 0.2 * reach => (0.0, reach),
+        HEIGHT | "x_m" | "y_m" => (-reach, reach),
+        TILT if start <= 90.0 => (0.0, 120.0),
         TILT => (0.0, 185.0),
         "azimuth_deg" => (start - 30.0, start + 390.0),
-        _ if start.abs() > 0.0 => (-1.5 * start.abs(), 1.5 * start.abs()),
+        _ if column.starts_with('w') && start != 0.0 => (-1.5 * start.abs(), 1.5 * start.abs()),
         _ => return None,
     })
 }

@@ -20,7 +20,14 @@ pub(super) fn written(head: &Head, parts: &[Part], paper: Paper) -> String {
         body += &part(block);
     }
     for page in parts.chunk_by(|_, next| !matches!(next, Part::Heading(_))) {
-        body += "<section>\n";
+        let is_whole = page
+            .iter()
+            .any(|part| matches!(part, Part::Question(_) | Part::Goals(_)));
+        body += if is_whole {
+            "<section class=\"whole\">\n"
+        } else {
+            "<section>\n"
+        };
         for block in page {
             body += &part(block);
         }
@@ -47,15 +54,15 @@ fn part(part: &Part) -> String {
     match part {
         Part::Heading(heading) => format!("<h2>{}</h2>\n", xml(heading)),
         Part::Text(text) => of_markdown(text),
-        Part::Shown(code) => format!("<pre>{}</pre>\n", xml(code.text.trim_end())),
-        Part::Screen(text) => format!("<pre>{}</pre>\n", xml(text)),
+        Part::Shown(code) => pre(&code.text),
+        Part::Screen(text) => pre(text),
         Part::Figures(figures) => {
             let class = if figures.len() > 1 {
                 " side-by-side"
             } else {
                 ""
             };
-            let all: String = figures.iter().map(|it| figure(it, "")).collect();
+            let all: String = figures.iter().map(figure_of_lab).collect();
             format!("<div class=\"figures{class}\">\n{all}</div>\n")
         }
         Part::Question(asked) => question(asked),
@@ -65,7 +72,23 @@ fn part(part: &Part) -> String {
         }
         Part::Compared => line("Predicted") + &line("Came out"),
         Part::Why => line("Why") + &line(""),
+        Part::OwnWords => line("In your own words") + &line(""),
     }
+}
+
+/// Returns `text` with its lines as they are.
+fn pre(text: &str) -> String {
+    let lines: Vec<_> = text.trim_end().lines().map(xml).collect();
+    format!("<pre>{}</pre>\n", lines.join("\n"))
+}
+
+fn figure_of_lab(shown: &Figure) -> String {
+    let class = if shown.is_table {
+        " class=\"table\""
+    } else {
+        ""
+    };
+    figure(shown, class)
 }
 
 fn figure(figure: &Figure, class: &str) -> String {
@@ -90,8 +113,11 @@ fn question(question: &Question) -> String {
     text += &of_markdown(&question.ask);
     text += &match &question.asked {
         AnswerKind::Choice(choices) => {
-            let items: String = choices.iter().map(|choice| tick(choice)).collect();
-            format!("<ol class=\"ticks\">\n{items}</ol>\n")
+            let numbered = (1..).zip(choices);
+            let items: String = numbered
+                .map(|(number, choice)| tick(&format!("{number}\u{2002}{choice}")))
+                .collect();
+            format!("<ul class=\"ticks\">\n{items}</ul>\n")
         }
         AnswerKind::Number { unit } => {
             format!("<p class=\"number\">Answer <i></i> {}</p>\n", xml(unit))

@@ -35,6 +35,7 @@ fn part(part: &Part) -> String {
         }
         Part::Compared => format!("Predicted: {BLANK}\n\nCame out: {BLANK}{BLANK}"),
         Part::Why => format!("Why: {BLANK}{BLANK}{BLANK}"),
+        Part::OwnWords => format!("In your own words: {BLANK}{BLANK}{BLANK}"),
     }
 }
 

@@ -14,8 +14,6 @@ use std::collections::BTreeSet;
 /// The objects of the first font; each takes this many.
 const FIRST_FONT_OBJECT: i32 = 6;
 const OBJECTS: i32 = 5;
-/// The first number that no object of the two fonts has.
-pub const FIRST_FREE_OBJECT: i32 = FIRST_FONT_OBJECT + 2 * OBJECTS;
 /// Lengths in an outline and in a line of letters that differ by less than this count as the same, thousandths of the size.
 const SAME_LENGTH: f64 = 0.5;
 /// Angle of the slanted letters, degrees, as the font they are from has it.
@@ -32,11 +30,11 @@ struct OfPage {
 }
 
 impl Fonts {
-    pub fn from_scenes(scenes: &[PageScene]) -> Self {
+    pub fn from_scene(scene: &PageScene) -> Self {
         Self([false, true].map(|is_italic| {
-            let letters: BTreeSet<char> = scenes
+            let letters: BTreeSet<char> = scene
+                .items
                 .iter()
-                .flat_map(|scene| &scene.items)
                 .filter_map(|item| item.words.as_ref())
                 .flat_map(|words| &words.letters)
                 .filter(|letter| letter.is_italic == is_italic)
