@@ -277,8 +277,10 @@ fn a_teachers_sheet_has_goals_minutes_answers_and_what_to_expect() {
                 );
             }
         }
-        for words in outcomes(&lesson) {
-            has(&sheet, words.trim_end_matches("You said:").trim_end());
+        for compare in lesson.pages.iter().flat_map(LessonPage::compares) {
+            let text = compare.text.filled(|_, _| "@".to_owned());
+            let begin = text.split('@').next().unwrap();
+            has(&sheet, format!("**Comes out.** {begin}"));
         }
         for notes in lesson.pages.iter().flat_map(LessonPage::notes) {
             let notes = notes.filled(|_, _| "@".to_owned());

@@ -49,8 +49,12 @@ pub(super) fn of_lab(
     go_on: LessonProgressCallback<'_>,
 ) -> Vec<Figure> {
     let look = &lab.view().look;
+    let panes = match look.show.as_slice() {
+        [] => &[Pane::Traces, Pane::Above],
+        chosen => chosen,
+    };
     let mut figures = Vec::new();
-    for pane in &look.show {
+    for pane in panes {
         figures.extend(match pane {
             Pane::Traces => {
                 let column = ranges.column(look.detail_of);
@@ -101,6 +105,9 @@ impl AxisRanges {
     /// Returns the range for `column` of the run of `lab`; none if its extremes are not known. `is_asked` if the page has a
     /// question: a small swing, which may be the answer, is not magnified.
     fn of_run(&mut self, column: &'static str, lab: &Lab, is_asked: bool) -> Option<(f64, f64)> {
+        if let Some(chosen) = chosen_range(column, lab) {
+            return Some(chosen);
+        }
         let player = lab.player();
         let least = match column {
             HEIGHT => LEAST_ARM_SHARE * player.run().scenario().arm_m(),
@@ -117,6 +124,18 @@ impl AxisRanges {
         self.shown.insert(column, range);
         (range.0 < range.1).then_some(range)
     }
+}
+
+/// Returns the range that the lesson has chosen for the strip of `column`.
+fn chosen_range(column: &str, lab: &Lab) -> Option<(f64, f64)> {
+    let look = &lab.view().look;
+    let chosen = match (column, look.detail_of) {
+        (HEIGHT, _) => look.z_range_m,
+        (TILT, FourthStrip::Tilt) => look.detail_range,
+        (column, FourthStrip::Column(shown)) if shown == column => look.detail_range,
+        _ => None,
+    };
+    chosen.map(|[low, high]| (low, high))
 }
 
 /// Returns the figure of this kind of the run of `lab` up to its present step; none at the start, or where it cannot be
@@ -184,14 +203,18 @@ pub(super) fn frame(drawn: DrawnAnswer, lab: &Lab) -> Option<Figure> {
             let axis = |name| quantity::axis(name).within((-reach, reach));
             Chart {
                 is_true_to_scale: true,
-                ..empty(axis("x_m"), axis("y_m"), [place.x, place.y])
+                ..empty(axis("x_m"), axis("y_m"), Some([place.x, place.y]))
             }
         }
         DrawnAnswer::OverTime(column) => {
             let value = RunQuantity::find(column)?.value_at(start);
-            let range = natural_range(column, value, scenario)?;
+            let range =
+                chosen_range(column, lab).or_else(|| natural_range(column, value, scenario))?;
             let time = quantity::axis("t_s").within((0.0, end_s));
-            empty(time, quantity::axis(column).within(range), [0.0, value])
+            let value_axis = quantity::axis(column).within(range);
+            // A force at the start would tell how the motion begins.
+            let is_given = !column.ends_with("_N");
+            empty(time, value_axis, is_given.then_some([0.0, value]))
         }
     };
     let mut scene = chart.scene();
@@ -209,13 +232,13 @@ pub(super) fn frame(drawn: DrawnAnswer, lab: &Lab) -> Option<Figure> {
     })
 }
 
-/// Returns axes with nothing in them but the point where the motion starts.
-fn empty(x: ChartAxis, y: ChartAxis, start: [f64; 2]) -> Chart {
-    let series = ChartSeries::new("start", vec![start], SeriesStyle::points(0));
+/// Returns axes with nothing in them but the point where the motion starts, if that is given.
+fn empty(x: ChartAxis, y: ChartAxis, start: Option<[f64; 2]>) -> Chart {
+    let series = start.map(|start| ChartSeries::new("start", vec![start], SeriesStyle::points(0)));
     Chart {
         width_pt: COLUMN_PT,
         x,
-        panels: vec![Panel::new(y, vec![series])],
+        panels: vec![Panel::new(y, series.into_iter().collect())],
         ..Chart::default()
     }
 }
