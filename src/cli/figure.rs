@@ -12,10 +12,12 @@ use crate::engine::scenario::head::is_file;
 use crate::engine::scenario::{Document, Problem, Problems};
 use crate::engine::text::printable::{PrintablePath, printable};
 use crate::physics::scheme;
+use crate::plot::chart::MOST_CURVES;
 use crate::plot::{PT_PER_MM, PageFormat};
 use crate::report::figure::kind::{FIGURE_KIND_NAMES, FigureKind};
 use crate::report::figure::of_runs::FigureRun;
 use crate::report::figure::{FigureSource, FigureSpec, WIDTHS_MM};
+use crate::studies::sweep::axis;
 use crate::studies::table::TableSource;
 use anyhow::{bail, ensure};
 use clap::Args;
@@ -67,6 +69,10 @@ pub(super) struct FigureArgs {
     /// Draw the run by each of these schemes
     #[arg(long, value_name = "A,B", value_delimiter = ',', conflicts_with = "scheme", value_parser = PossibleValuesParser::new(scheme::names()))]
     schemes: Vec<String>,
+
+    /// Draw the run with each of these values of a key, or with N from A to B; may be repeated
+    #[arg(long, value_name = "KEY=V1,V2|A..B:N")]
+    vary: Vec<String>,
 
     #[command(flatten)]
     labels: LabelArgs,
@@ -283,7 +289,7 @@ fn add(source: &mut FigureSource, name: &str, args: &FigureArgs) -> anyhow::Resu
     Ok(())
 }
 
-/// Adds the run of `document`, changed, by every scheme that is named.
+/// Adds the run of `document`, changed, by every scheme and with every value of the keys that vary.
 fn add_runs(
     source: &mut FigureSource,
     named: &str,
@@ -295,12 +301,39 @@ fn add_runs(
     for scheme in by_scheme.chain(as_it_is) {
         let mut changes = args.changes.clone();
         changes.scheme = scheme.cloned().or(changes.scheme);
-        source.runs.push(FigureRun {
-            scenario: Arc::new(changed(document.clone(), &changes, &args.length)?),
-            named: named.to_owned(),
-        });
+        for values in combinations(&args.vary)? {
+            let mut varied = changes.clone();
+            varied.set.extend(values);
+            source.runs.push(FigureRun {
+                scenario: Arc::new(changed(document.clone(), &varied, &args.length)?),
+                named: named.to_owned(),
+            });
+            ensure!(
+                source.runs.len() <= MOST_CURVES,
+                "more than {MOST_CURVES} runs: a figure tells no more apart; gyrolab sweep takes many"
+            );
+        }
     }
     Ok(())
+}
+
+/// Returns what to `--set` for each combination of the values that `vary`, arguments of `--vary`, names.
+fn combinations(vary: &[String]) -> anyhow::Result<Vec<Vec<String>>> {
+    let mut all = vec![Vec::new()];
+    for argument in vary {
+        let axis = axis::axis(argument)?;
+        let mut longer = Vec::new();
+        for before in &all {
+            for value in axis.values.iter().take(MOST_CURVES + 1) {
+                let mut values: Vec<String> = before.clone();
+                values.push(format!("{}={value}", axis.key));
+                longer.push(values);
+            }
+        }
+        longer.truncate(MOST_CURVES + 1); // more are refused
+        all = longer;
+    }
+    Ok(all)
 }
 
 /// Writes what the command line asks for over `spec`.
@@ -337,6 +370,7 @@ fn refuse_for_table(args: &FigureArgs) -> anyhow::Result<()> {
         || args.from.or(args.to).is_some()
         || args.measured.is_some()
         || !args.schemes.is_empty()
+        || !args.vary.is_empty()
         || !args.labels.label.is_empty()
         || args.changes.is_some()
         || args.length.is_some();

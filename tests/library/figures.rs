@@ -321,9 +321,25 @@ fn runs_that_coincide_are_one_line_with_both_names() {
     let far = run("loops", &["motion.steps=500"]);
     let runs = [rk4, strang, far];
     let scene = drawn(&runs, &spec("z_m,tilt_deg")).scene;
-    says(&scene, &["Cusps, rk4 = Cusps, strang"]);
+    says(&scene, &["Cusps, rk4 and Cusps, strang"]);
     let apart = drawn(&runs[1..], &spec("z_m,tilt_deg")).scene;
-    assert!(!words(&apart).iter().any(|word| word.contains(" = Loops")));
+    assert!(!words(&apart).iter().any(|word| word.contains(" and ")));
+}
+
+#[test]
+fn runs_of_one_preset_are_named_by_the_settings_that_differ() {
+    let tilted = |tilt: &str| {
+        run(
+            "cusps",
+            &["motion.steps=20", &format!("start.tilt_deg={tilt}")],
+        )
+    };
+    let runs = [tilted("20"), tilted("30"), tilted("40")];
+    let scene = drawn(&runs, &spec("tilt_deg")).scene;
+    says(&scene, &["θ₀ = 20°", "θ₀ = 30°", "θ₀ = 40°"]);
+    // Of runs without any difference the names are those that the user typed.
+    let same = [tilted("20"), tilted("20")];
+    says(&drawn(&same, &spec("tilt_deg")).scene, &["cusps"]);
 }
 
 #[test]

@@ -98,7 +98,7 @@ impl Chart {
         let room = longest_name(self.width_pt);
         for panel in self.panels.iter_mut().chain(magnified) {
             let names = [first, second].map(|index| panel.series[index].name.as_str());
-            let joined = format!("{} = {}", names[0], names[1]);
+            let joined = names.join(" and ");
             if ink::width(&joined, LABEL_PT) <= room {
                 panel.series[first].name = joined;
                 panel.series[second] = ChartSeries::named(String::new());

@@ -26,6 +26,7 @@ pub mod of_table;
 mod path;
 pub mod quantity;
 mod redraw;
+mod setting;
 mod size;
 mod source;
 mod space;

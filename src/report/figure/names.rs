@@ -2,10 +2,12 @@
 
 use super::chords::EVERY_STEP;
 use super::job::{FigureJob, FigureRun};
+use super::setting::{self, CurveSetting};
 use crate::engine::text::number::significant;
 use crate::plot::chart::legend::longest_name;
 use crate::plot::ink::{self, LABEL_PT};
 use crate::plot::letters;
+use toml::Table;
 
 /// A name for each of the runs, as markup with room in the legend; empty where there is nothing to tell apart.
 pub(super) fn names(job: &FigureJob<'_>) -> Vec<String> {
@@ -22,13 +24,32 @@ pub(super) fn names(job: &FigureJob<'_>) -> Vec<String> {
     if let ([run], true) = (runs, job.is_beside()) {
         differs = [false, true, run.scenario.motion.scheme.order.is_some()];
     }
-    runs.iter()
-        .map(|run| match (differs, runs) {
-            ([false, false, false], [_]) => String::new(),
-            ([false, false, false], _) => letters::shortened(&run.named, LABEL_PT, room_pt),
-            _ => by_parts(run, differs, room_pt),
-        })
-        .collect()
+    if let ([_], [false, false, false]) = (runs, differs) {
+        return vec![String::new()];
+    }
+    let names: Vec<_> = runs
+        .iter()
+        .map(|run| by_parts(run, differs, room_pt))
+        .collect();
+    let is_told = |name: &String| names.iter().filter(|other| *other == name).count() == 1;
+    if names.iter().all(is_told) {
+        return names;
+    }
+    by_settings(runs, &names, room_pt)
+}
+
+/// Returns names of `runs` that say in which settings they differ, since `names` are not all different. Where no setting does
+/// either, the run is named as the user did.
+fn by_settings(runs: &[FigureRun], names: &[String], room_pt: f64) -> Vec<String> {
+    let files = runs.iter().map(|run| Table::try_from(&run.scenario.file));
+    let tables: Vec<Table> = files.map(Result::unwrap_or_default).collect();
+    let settings = CurveSetting::that_differ(&tables);
+    let all = names.iter().zip(&settings).zip(runs);
+    let told = all.map(|((name, of_run), run)| match (name.as_str(), &of_run[..]) {
+        ("", []) => letters::shortened(&run.named, LABEL_PT, room_pt),
+        (name, of_run) => setting::name(name, of_run, room_pt),
+    });
+    told.collect()
 }
 
 /// Returns the name of `run` by those of its [`PARTS`] that differ.

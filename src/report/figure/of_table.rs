@@ -63,7 +63,7 @@ fn numbers(table: &TableSource, name: &str) -> Result<Vec<f64>, String> {
 }
 
 /// `markup`, or where it is longer than `room_pt` `plain`, which is cut where that is too long as well.
-fn within_room(markup: String, plain: &str, room_pt: f64) -> String {
+pub(super) fn within_room(markup: String, plain: &str, room_pt: f64) -> String {
     if ink::width(&markup, LABEL_PT) <= room_pt {
         markup
     } else {

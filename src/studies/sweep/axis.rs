@@ -160,6 +160,19 @@ pub fn parse(argument: &str) -> Result<VaryFile, Problems> {
     })
 }
 
+/// Returns the key and the values that `--vary` is given.
+///
+/// # Errors
+/// When it is no such argument, or the key takes no such value.
+pub fn axis(argument: &str) -> Result<SweepAxis, Problems> {
+    SweepAxis::new(&parse(argument)?, "vary").map_err(|mut problems| {
+        for problem in &mut problems {
+            place(problem, argument);
+        }
+        Problems::from(problems)
+    })
+}
+
 fn read(argument: &str) -> Result<VaryFile, String> {
     let (key, written) = argument
         .split_once('=')

@@ -8,9 +8,10 @@ use crate::plot::chart::legend::longest_name;
 use crate::plot::chart::{ChartAxis, ChartSeries, Panel, SeriesStyle};
 use crate::plot::extent;
 use crate::report::figure::quantity;
+use crate::report::figure::setting::{self, CurveSetting};
 use crate::studies::table::{SweepTable, TableSource};
 use columns::{QuantityColumn, QuantityColumns, QuantityOwner};
-use curves::{CurveSetting, SweepCurve};
+use curves::SweepCurve;
 
 /// Panels on a page where none was asked for by name.
 const MOST_PANELS: usize = 7;
@@ -158,7 +159,7 @@ impl SweepFigure<'_> {
 
     /// What a curve with these `settings` is called in the legend.
     fn name(&self, word: &str, settings: &[CurveSetting]) -> String {
-        curves::name(word, settings, self.room_pt)
+        setting::name(word, settings, self.room_pt)
     }
 
     /// The points of `part`, which has these `values`, a series for each curve that has some.

@@ -1,17 +1,12 @@
 //! The curves of a sweep: its rows by what else was varied, and what each is called; and the lines of theory, one for all
 //! curves of which it says the same.
 
-use crate::engine::text::number::shortest;
 use crate::plot::COLUMN_PT;
 use crate::plot::chart::SeriesStyle;
-use crate::plot::chart::ticks::with_minus;
-use crate::plot::letters;
-use crate::report::figure::of_table::{RowIndices, grouped, within_room};
-use crate::report::figure::quantity;
+use crate::report::figure::of_table::{RowIndices, grouped};
+use crate::report::figure::setting::CurveSetting;
 use crate::studies::table::{SweepTable, TableSource};
 
-/// The key whose values are names.
-const SCHEME_KEY: &str = "motion.scheme";
 /// Numbers that differ by no more than this part of themselves are the same.
 const SAME_NUMBER: f64 = 1e-6;
 /// From this many rows on a line looks smooth at the width of a column; with fewer its points are marked.
@@ -26,13 +21,6 @@ pub(super) struct SweepCurve {
     pub rows: RowIndices,
     /// The values of what else was varied.
     pub settings: Vec<CurveSetting>,
-}
-
-/// A key and its value: as at an axis, "*θ*_{0} = 20°", and in full.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct CurveSetting {
-    markup: String,
-    plain: String,
 }
 
 /// The curves of a sweep, of whose keys `along` is on the axis below.
@@ -61,42 +49,6 @@ pub(super) fn curves(table: &TableSource, swept: &SweepTable, along: &str) -> Ve
             rows,
         })
         .collect()
-}
-
-/// What a curve with these `settings` is called, as markup no longer than `room_pt`; `word` stands before.
-pub(super) fn name(word: &str, settings: &[CurveSetting], room_pt: f64) -> String {
-    let word = Some((word, word)).filter(|_| !word.is_empty());
-    let settings = settings.iter().map(|it| (&*it.markup, &*it.plain));
-    let (markup, plain): (Vec<&str>, Vec<&str>) = word.into_iter().chain(settings).unzip();
-    within_room(markup.join(", "), &plain.join(", "), room_pt)
-}
-
-impl CurveSetting {
-    fn new(scenario: &toml::Table, key: &str, value: &str) -> Self {
-        if key == SCHEME_KEY {
-            return Self {
-                markup: letters::escape(value),
-                plain: value.to_owned(),
-            };
-        }
-        let axis = quantity::axis_in(scenario, key);
-        let said = match value.parse() {
-            Ok(number) => {
-                let unit = axis.unit;
-                let space = if unit.is_empty() || unit == "°" {
-                    ""
-                } else {
-                    " "
-                };
-                format!("{}{space}{unit}", with_minus(&shortest(number)))
-            }
-            Err(_) => letters::escape(value),
-        };
-        Self {
-            markup: format!("{} = {said}", axis.name),
-            plain: format!("{key} = {value}"),
-        }
-    }
 }
 
 /// A line of theory.

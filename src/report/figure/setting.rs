@@ -1,0 +1,115 @@
+//! A key and its value in the name of a curve.
+
+use super::of_table::within_room;
+use super::quantity;
+use crate::engine::text::number::shortest;
+use crate::plot::chart::ticks::with_minus;
+use crate::plot::letters;
+use toml::{Table, Value};
+
+/// The key whose values are names.
+const SCHEME_KEY: &str = "motion.scheme";
+/// The keys of a scenario file that say nothing of its motion, and those that a name tells in other ways.
+const NOT_NAMED: [&str; 8] = [
+    "gyrolab",
+    "title",
+    "about",
+    "source",
+    "view",
+    "expected",
+    "motion.scheme",
+    "motion.time_step_s",
+];
+const STEPS_KEY: &str = "motion.steps";
+
+/// A key and its value: as at an axis, "*θ*_{0} = 20°", and in full.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct CurveSetting {
+    markup: String,
+    plain: String,
+}
+
+impl CurveSetting {
+    pub fn new(scenario: &Table, key: &str, value: &str) -> Self {
+        if key == SCHEME_KEY {
+            return Self {
+                markup: letters::escape(value),
+                plain: value.to_owned(),
+            };
+        }
+        let axis = quantity::axis_in(scenario, key);
+        let said = match value.parse() {
+            Ok(number) => {
+                let unit = axis.unit;
+                let space = if unit.is_empty() || unit == "°" {
+                    ""
+                } else {
+                    " "
+                };
+                format!("{}{space}{unit}", with_minus(&shortest(number)))
+            }
+            Err(_) => letters::escape(value),
+        };
+        Self {
+            markup: format!("{} = {said}", axis.name),
+            plain: format!("{key} = {value}"),
+        }
+    }
+
+    /// Returns the settings in which `scenarios` differ, of each of them: what it has at the keys at which not all have the
+    /// same. Title, scheme, time step and number of steps are left out.
+    pub fn that_differ(scenarios: &[Table]) -> Vec<Vec<Self>> {
+        let all: Vec<Vec<(String, String)>> = scenarios.iter().map(flat).collect();
+        let value = |of: usize, key: &str| all[of].iter().find(|(other, _)| other == key);
+        let mut keys: Vec<&String> = Vec::new();
+        for (key, _) in all.iter().flatten() {
+            let is_same = (1..all.len()).all(|of| value(of, key) == value(0, key));
+            if !is_same && !keys.contains(&key) {
+                keys.push(key);
+            }
+        }
+        let of_one = scenarios.iter().enumerate().map(|(of, scenario)| {
+            let here = keys.iter().filter_map(|key| value(of, key));
+            here.map(|(key, value)| Self::new(scenario, key, value))
+                .collect()
+        });
+        of_one.collect()
+    }
+}
+
+/// Returns the keys of `scenario` that a name tells, and their values as text.
+fn flat(scenario: &Table) -> Vec<(String, String)> {
+    let mut found = Vec::new();
+    for (key, value) in scenario {
+        add_flat(key.clone(), value, &mut found);
+    }
+    found
+}
+
+fn add_flat(key: String, value: &Value, found: &mut Vec<(String, String)>) {
+    if NOT_NAMED.contains(&key.as_str()) || key == STEPS_KEY {
+        return;
+    }
+    match value {
+        Value::Table(table) => {
+            for (name, inner) in table {
+                add_flat(format!("{key}.{name}"), inner, found);
+            }
+        }
+        Value::Array(array) => {
+            for (place, inner) in array.iter().enumerate() {
+                add_flat(format!("{key}.{place}"), inner, found);
+            }
+        }
+        Value::String(text) => found.push((key, text.clone())),
+        other => found.push((key, other.to_string())),
+    }
+}
+
+/// Returns what a curve with these `settings` is called, as markup no longer than `room_pt`; `word` stands before.
+pub(super) fn name(word: &str, settings: &[CurveSetting], room_pt: f64) -> String {
+    let before = Some((word, word)).filter(|_| !word.is_empty());
+    let written = settings.iter().map(|it| (&*it.markup, &*it.plain));
+    let (markup, plain): (Vec<&str>, Vec<&str>) = before.into_iter().chain(written).unzip();
+    within_room(markup.join(", "), &plain.join(", "), room_pt)
+}
