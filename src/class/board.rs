@@ -79,7 +79,7 @@ fn round_lines(predict: &Predict, state: &ClassState, seats: &[SeatStatus]) -> S
         let votes = counted(tally.votes as u64, "vote");
         let end = match question.seconds_left(unix_ms()) {
             _ if round < question.round() => String::new(),
-            Some(left) => format!(", closes in {left} s"),
+            Some(left) => format!(", {left} s left"),
             None if question.is_closed => ", closed".to_owned(),
             None => String::new(),
         };

@@ -78,17 +78,17 @@ impl Projector {
 /// Returns how many have answered the question `name`, how long its round is open, and the bars if all may see them.
 fn vote_lines(state: &ClassState, name: &str) -> Vec<Paragraph> {
     let question = state.question(name);
-    let end = match question.seconds_left(unix_ms()) {
-        Some(left) => format!(" · closes in {left} s"),
-        None if question.is_closed => " · closed".to_owned(),
-        None => String::new(),
+    let (countdown, end) = match question.seconds_left(unix_ms()) {
+        Some(left) => (format!("{left} s left · "), ""),
+        None if question.is_closed => (String::new(), " · closed"),
+        None => (String::new(), ""),
     };
     let round = match question.round() {
         1 => String::new(),
         round => format!("round {round} · "),
     };
     let counted = format!(
-        "{round}{} of {} have answered{end}",
+        "{countdown}{round}{} of {} have answered{end}",
         state.answered, state.here
     );
     let mut lines = vec![Paragraph::new(SheetLineKind::Note, counted)];

@@ -322,7 +322,10 @@ impl Student {
             let short = format!("aside, k: back · {page}, class on {}", state.page);
             format!("aside, k: back · {of} · {on}\n{short}\naside, k: back · {page}")
         } else if !self.follows() {
-            format!("on your own · {of} · {on}\n{of} · {on}")
+            format!(
+                "on your own · {of} · {on}\nalone · {of} · class on {}",
+                state.page
+            )
         } else if state.page == page && asks {
             let counts = format!("following · {of} · {}", state.answered);
             format!("{counts} of {} answered\n{counts} answered", state.here)

@@ -200,7 +200,7 @@ impl Teacher {
             VoteStage::All => " · shown",
         };
         let end = match question.seconds_left(unix_ms()) {
-            Some(left) => format!(" · closes in {left} s"),
+            Some(left) => format!(" · {left} s left"),
             None if question.is_closed => " · closed".to_owned(),
             None => String::new(),
         };

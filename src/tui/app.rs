@@ -147,7 +147,11 @@ fn handle(
     }
     let size = screen.size()?;
     let request = match request {
-        Some(LabRequest::Lesson(key)) if role.intercept(key, lab, lessons) => None,
+        Some(LabRequest::Lesson(key))
+            if !scrolls_page(key, lab, size) && role.intercept(key, lab, lessons) =>
+        {
+            None
+        }
         request => request.and_then(|request| do_in_class(request, lab, lessons, size)),
     };
     match request {
@@ -195,6 +199,11 @@ fn request_of(
     })
 }
 
+/// Returns whether `key` scrolls the page, as the key to the next page does while there is more to be seen.
+pub fn scrolls_page(key: LessonKey, lab: &Lab, size: Rect) -> bool {
+    key == LessonKey::Next && screen::page_goes_on(lab, size)
+}
+
 /// Does what `request` asks of the lessons, on a screen of this `size`; gives back any other request.
 pub fn do_in_class(
     request: LabRequest,
@@ -203,7 +212,7 @@ pub fn do_in_class(
     size: Rect,
 ) -> Option<LabRequest> {
     match request {
-        LabRequest::Lesson(LessonKey::Next) if screen::page_goes_on(lab, size) => {
+        LabRequest::Lesson(key) if scrolls_page(key, lab, size) => {
             screen::scroll_page(lab, Direction::PageDown, size);
         }
         LabRequest::Lesson(key) => {

@@ -11,6 +11,7 @@ mod support;
 
 mod beside;
 mod class;
+mod classroom;
 mod commands;
 mod coverage;
 mod every_key;
