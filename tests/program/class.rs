@@ -5,6 +5,9 @@ use crate::support::ground::{Ground, code, stderr};
 use crate::support::pty::Terminal;
 use crate::support::words::has_all;
 use std::fs;
+use std::path::Path;
+use std::thread;
+use std::time::Duration;
 
 const LESSON: &str = "is-the-wobble-real";
 
@@ -54,6 +57,7 @@ fn a_class_follows_votes_and_loses_nothing() {
     // Stepping aside, and the class goes on meanwhile.
     ben.ask("n", "predict first");
     ben.ask("n", "aside, k: back · 3, class on 2");
+    teacher.ask("n", "1 of 2 have answered; press n again to go on");
     teacher.press("n");
     ben.wait_for("class on 3");
     teacher.press("N");
@@ -79,6 +83,7 @@ fn a_class_follows_votes_and_loses_nothing() {
     resumed.wait_for("2 of 10");
     resumed.wait_for("round 2 · 1 of 2");
     ben.wait_for("following · 2 of 10");
+    resumed.ask("n", "1 of 2 have answered; press n again to go on");
     resumed.press("n");
     again.wait_for("following · 3 of 10");
     let board = ground.stdout("class --board --folder .");
@@ -178,5 +183,158 @@ fn a_damaged_seat_is_named_and_the_exit_code_is_1() {
             &["the file of the seat anna-471108: is damaged"],
         );
         assert!(!stderr(&output).contains("ben"), "{what}");
+    }
+}
+
+#[test]
+#[ignore = "two hundred kills take minutes"]
+fn two_hundred_kills_while_voting_lose_no_locked_vote() {
+    let ground = Ground::new();
+    let mut teacher = teach(&ground, LESSON);
+    teacher.wait_for("1 of 10");
+    let mut seats: Vec<_> = (0..5)
+        .map(|number| sit(&ground, &format!("seat{number}")))
+        .collect();
+    teacher.press("n");
+    for (lab, _) in &seats {
+        lab.wait_for("following · 2 of 10");
+    }
+    let mut dice = Dice(11);
+    let (mut locked, mut open, mut kills) = (0, 0, 0);
+    for round in 1..=40 {
+        for (lab, word) in &mut seats {
+            lab.wait_for("1 2 3 4 or ↑ ↓ choose");
+            if round > 1 {
+                lab.wait_for(&format!("Round {round}: your teacher asks again."));
+            }
+            lab.press(&format!("{}\r", dice.whole(1, 4)));
+            thread::sleep(Duration::from_millis(dice.whole(0, 60)));
+            lab.kill();
+            kills += 1;
+            // What the screen showed as locked has been kept.
+            let was_locked = !lab.words().contains("1 2 3 4 or ↑ ↓ choose");
+            let row = format!("{LESSON},finer,{round},{word},");
+            let votes = ground.stdout("class --votes --folder .");
+            assert!(
+                votes.contains(&row) || !was_locked,
+                "{word}, round {round}:\n{votes}"
+            );
+            locked += u32::from(was_locked);
+            open += u32::from(!votes.contains(&row));
+            *lab = ground.open("--folder . --seat");
+            lab.ask(&format!("{word}\r"), "following · 2 of 10");
+            if !votes.contains(&row) {
+                lab.wait_for("1 2 3 4 or ↑ ↓ choose");
+                lab.press("2\r");
+            }
+            lab.wait_until("a locked vote", |lab| {
+                !lab.words().contains("1 2 3 4 or ↑ ↓ choose")
+            });
+        }
+        teacher.wait_for(&format!("round {round} · 5 of 5 answered"));
+        teacher.ask("k", "ask again");
+        teacher.press("2");
+    }
+    let votes = ground.stdout("class --votes --folder .");
+    let rows = votes.matches(&format!("{LESSON},finer,")).count();
+    assert_eq!(rows, 200, "{votes}");
+    println!(
+        "{kills} kills, {locked} after the vote was seen as locked, {open} before it was kept"
+    );
+}
+
+#[test]
+fn a_seat_waits_for_its_class_and_the_projector_shows_it() {
+    let ground = Ground::new();
+    let mut anna = ground.open("--folder . --seat");
+    anna.wait_for("A name for your seat");
+    anna.ask("anna\r", "Enter goes on.");
+    anna.ask("\r", "The class starts here when your teacher starts it.");
+    let mut projector = ground.open("class --projector --folder .");
+    projector.wait_for("The class has not begun.");
+    let mut teacher = teach(&ground, LESSON);
+    teacher.wait_for("1 of 10");
+    anna.wait_for("following · 1 of 10");
+    projector.wait_for("1 of 10 · Is the wobble real?");
+    teacher.press("n");
+    projector.wait_for("0 of 1 have answered");
+    // A marked answer counts when the page is turned.
+    anna.ask("3", "Enter this is my prediction");
+    teacher.ask("n", "0 of 1 have answered; press n again to go on");
+    teacher.press("n");
+    projector.wait_for("3 of 10");
+    anna.wait_for("following · 3 of 10");
+    let votes = ground.stdout("class --votes --folder .");
+    has_all(&votes, &[&format!("{LESSON},finer,1,anna-"), ",3,false,2,"]);
+    // No key of the projector does anything; the teacher's lab is restarted.
+    projector.press("npLx");
+    teacher.kill();
+    projector.wait_for("waiting");
+    let mut resumed = teach(&ground, "--resume");
+    resumed.wait_for("3 of 10");
+    projector.wait_for("3 of 10 · Is the wobble real?");
+    resumed.quit();
+    projector.wait_for("class is over");
+    projector.quit();
+    anna.quit();
+}
+
+#[test]
+fn a_new_group_keeps_the_votes_of_the_one_before() {
+    let ground = Ground::new();
+    let mut teacher = teach(&ground, LESSON);
+    teacher.wait_for("1 of 10");
+    let (mut anna, word) = sit(&ground, "anna");
+    teacher.press("n");
+    vote(&mut anna);
+    let refused = ground.run("class --new --folder .");
+    assert_eq!(code(&refused), 1);
+    has_all(stderr(&refused), &["a class is on in"]);
+    anna.quit();
+    teacher.quit();
+    let kept = ground.run("class --new --folder .");
+    assert_eq!(code(&kept), 0);
+    let told = stderr(&kept);
+    let (_, folder) = told.rsplit_once("--folder ").unwrap();
+    let row = format!("{LESSON},finer,1,{word},2,false,2,");
+    let earlier = ground.stdout(&format!("class --votes --folder {}", folder.trim()));
+    has_all(&earlier, &[&row]);
+    assert_eq!(ground.stdout("class --votes --folder .").lines().count(), 1);
+    let mut again = ground.open("--folder . --seat");
+    again.ask(&format!("{word}\r"), "there is no seat of that word");
+}
+
+#[test]
+fn a_rehearsal_leaves_nothing_behind() {
+    let ground = Ground::new();
+    fs::create_dir(ground.path().join("full")).unwrap();
+    ground.write("full/file.txt", "");
+    let lines = [
+        "class is-the-wobble-real --rehearse 31",
+        "class is-the-wobble-real --rehearse 2 --new --folder .",
+    ];
+    for wrong in lines {
+        assert_eq!(code(&ground.run(wrong)), 2, "{wrong}");
+    }
+    let mut refused = ground.open(&format!("class {LESSON} --rehearse 2 --folder full"));
+    refused.wait_for("a rehearsal needs an empty folder");
+    refused.wait_for_end();
+    for end in ["q", "TERM"] {
+        let mut teacher = ground.open(&format!("class {LESSON} --rehearse 2"));
+        teacher.wait_for("A rehearsal with 2 players.");
+        let words = teacher.words();
+        let (_, rest) = words.split_once("--folder ").unwrap();
+        let folder = rest.split([',', ' ']).next().unwrap().to_owned();
+        teacher.wait_for("2 here");
+        assert!(Path::new(&folder).is_dir(), "{folder}");
+        teacher.press("n");
+        teacher.wait_until("a vote", |lab| !lab.words().contains("0 of 2 answered"));
+        if end == "q" {
+            teacher.quit();
+        } else {
+            teacher.signal(end);
+            teacher.wait_for_end();
+        }
+        assert!(!Path::new(&folder).exists(), "{folder} after {end}");
     }
 }
