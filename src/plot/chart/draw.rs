@@ -98,7 +98,10 @@ impl Chart {
         let room = longest_name(self.width_pt);
         for panel in self.panels.iter_mut().chain(magnified) {
             let names = [first, second].map(|index| panel.series[index].name.as_str());
-            let joined = names.join(" and ");
+            let joined = match names {
+                [a, b] if a == b => a.to_owned(),
+                both => both.join(" and "),
+            };
             if ink::width(&joined, LABEL_PT) <= room {
                 panel.series[first].name = joined;
                 panel.series[second] = ChartSeries::named(String::new());

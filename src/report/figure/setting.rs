@@ -60,16 +60,16 @@ impl CurveSetting {
     /// same. Title, scheme, time step and number of steps are left out.
     pub fn that_differ(scenarios: &[Table]) -> Vec<Vec<Self>> {
         let all: Vec<Vec<(String, String)>> = scenarios.iter().map(flat).collect();
-        let value = |of: usize, key: &str| all[of].iter().find(|(other, _)| other == key);
+        let entry = |of: usize, key: &str| all[of].iter().find(|(other, _)| other == key);
         let mut keys: Vec<&String> = Vec::new();
         for (key, _) in all.iter().flatten() {
-            let is_same = (1..all.len()).all(|of| value(of, key) == value(0, key));
+            let is_same = (1..all.len()).all(|of| entry(of, key) == entry(0, key));
             if !is_same && !keys.contains(&key) {
                 keys.push(key);
             }
         }
         let of_one = scenarios.iter().enumerate().map(|(of, scenario)| {
-            let here = keys.iter().filter_map(|key| value(of, key));
+            let here = keys.iter().filter_map(|key| entry(of, key));
             here.map(|(key, value)| Self::new(scenario, key, value))
                 .collect()
         });
