@@ -117,15 +117,20 @@ impl Handout<'_> {
         let mut ranges = AxisRanges::new(self.lesson);
         for page in &self.lesson.pages {
             walk.enter(page, go_on)?;
-            let picture = self.picture(page, &walk.lab, &mut ranges, go_on);
+            let asks = page.predicts().next().is_some();
+            // After the first question a picture could show what came out.
+            let may_be_seen = self.paper == Paper::Results || !has_asked || asks;
+            let picture = may_be_seen
+                .then(|| self.picture(page, &walk.lab, &mut ranges, go_on))
+                .flatten();
             if self.paper == Paper::Worksheet && has_asked {
                 parts.extend(blank_page(page, picture));
             } else {
                 parts.extend(self.told_page(page, &walk, picture));
-                has_asked |= page.predicts().next().is_some();
+                has_asked |= asks;
             }
             if self.paper == Paper::Worksheet {
-                add_frames(&mut parts, page, self.lesson, &walk.lab);
+                add_frames(&mut parts, page, &walk, &ranges);
             }
             if page.number < self.lesson.pages.len() {
                 walk.leave(page, go_on)?;
@@ -226,16 +231,15 @@ fn blank_page(page: &LessonPage, mut picture: Option<Part>) -> Vec<Part> {
 }
 
 /// Gives the questions that `page` compares with what came out their axes: by then it is known how long that takes.
-fn add_frames(parts: &mut [Part], page: &LessonPage, lesson: &Lesson, lab: &Lab) {
+fn add_frames(parts: &mut [Part], page: &LessonPage, walk: &LessonWalk<'_>, ranges: &AxisRanges) {
     for compare in page.compares() {
-        let drawn = lesson
-            .predict(&compare.prediction)
-            .and_then(|predict| predict.draw);
+        let asked = walk.lesson.predict(&compare.prediction);
+        let drawn = asked.and_then(|predict| predict.draw);
         for part in &mut *parts {
             if let (Part::Question(question), Some(drawn)) = (part, drawn)
                 && question.name == compare.prediction
             {
-                question.frame = figures::frame(drawn, lab);
+                question.frame = ranges.frame(drawn, &walk.lab);
             }
         }
     }

@@ -22,7 +22,7 @@ const MOST_BEFORE: u64 = 1_000_000;
 
 /// A lab that goes through a lesson.
 pub struct LessonWalk<'a> {
-    lesson: &'a Lesson,
+    pub lesson: &'a Lesson,
     pub lab: Lab,
     pub kept: KeptNumbers,
     /// Nothing is predicted: what a page hides until then is hidden as long as the page is open.

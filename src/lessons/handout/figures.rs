@@ -10,7 +10,7 @@ use crate::lab::view::{FourthStrip, Pane};
 use crate::lessons::lesson::{DrawnAnswer, Lesson, LessonPage};
 use crate::lessons::play::LessonProgressCallback;
 use crate::plot::chart::{Chart, ChartAxis, ChartSeries, Panel, SeriesStyle};
-use crate::plot::{COLUMN_PT, PageFormat, PageScene, format};
+use crate::plot::{COLUMN_PT, PT_PER_MM, PageFormat, PageScene, format};
 use crate::report::figure::of_runs::FigureRun;
 use crate::report::figure::{FigureSource, FigureSpec, labels::FigureLabels, quantity};
 use std::collections::BTreeMap;
@@ -21,6 +21,8 @@ const TILT: &str = "tilt_deg";
 /// The least range of an axis next to a question, of the traced point's arm and in degrees.
 const LEAST_ARM_SHARE: f64 = 0.1;
 const LEAST_TILT_DEG: f64 = 5.0;
+/// The width of a path from above, which is about as high.
+const ABOVE_PT: f64 = 62.0 * PT_PER_MM;
 /// The room beyond the run's values, of their range.
 const MARGIN: f64 = 0.05;
 
@@ -36,8 +38,20 @@ pub(super) struct AxisRanges {
 pub(super) struct Figure {
     pub caption: String,
     pub svg: String,
-    /// Whether it has small letters and needs the width of the paper.
-    pub is_table: bool,
+    pub kind: FigureKind,
+}
+
+/// What decides how large a figure is on paper.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum FigureKind {
+    /// Curves, as large as the figure says.
+    Chart,
+    /// The lab's scene in space.
+    Space,
+    /// Small letters, which need the width of the paper.
+    Table,
+    /// Empty axes next to a question.
+    Frame,
 }
 
 /// Returns what `lab` shows: a figure for each of its panes. `is_asked` if the page has a question.
@@ -68,7 +82,10 @@ pub(super) fn of_lab(
             Pane::ThreeD | Pane::Step => Some(Figure {
                 caption: format!("The lab at t = {} s.", time_now(lab)),
                 svg: pane_svg(lab, *pane),
-                is_table: *pane == Pane::Step,
+                kind: match pane {
+                    Pane::Step => FigureKind::Table,
+                    _ => FigureKind::Space,
+                },
             }),
             Pane::Lesson | Pane::Parameters => None,
         });
@@ -124,6 +141,58 @@ impl AxisRanges {
         self.shown.insert(column, range);
         (range.0 < range.1).then_some(range)
     }
+
+    /// Returns the range of heights that a figure has shown, with as much room again; none for another column.
+    fn around_shown(&self, column: &str) -> Option<(f64, f64)> {
+        let (low, high) = *self.shown.get(column).filter(|_| column == HEIGHT)?;
+        let room = 0.5 * (high - low);
+        Some((low - room, high + room))
+    }
+
+    /// Returns the empty axes in which `drawn` is drawn, for the run of `lab` and for the time that it has taken. They show where
+    /// that run starts.
+    pub fn frame(&self, drawn: DrawnAnswer, lab: &Lab) -> Option<Figure> {
+        let run = lab.player().run();
+        let (scenario, end_s) = (run.scenario(), run.now().time_s);
+        let simulation = Simulation::new(Arc::clone(scenario));
+        let start = simulation.now();
+        let chart = match drawn {
+            DrawnAnswer::FromAbove => {
+                let reach = 1.1 * scenario.arm_m();
+                let place = start.position();
+                let axis = |name| quantity::axis(name).within((-reach, reach));
+                Chart {
+                    width_pt: ABOVE_PT,
+                    is_true_to_scale: true,
+                    ..empty(axis("x_m"), axis("y_m"), Some([place.x, place.y]))
+                }
+            }
+            DrawnAnswer::OverTime(column) => {
+                let value = RunQuantity::find(column)?.value_at(start);
+                let range = chosen_range(column, lab)
+                    .or_else(|| self.around_shown(column))
+                    .or_else(|| natural_range(column, value, scenario))?;
+                let time = quantity::axis("t_s").within((0.0, end_s));
+                let value_axis = quantity::axis(column).within(range);
+                // A force at the start would tell how the motion begins.
+                let is_given = !column.ends_with("_N");
+                empty(time, value_axis, is_given.then_some([0.0, value]))
+            }
+        };
+        let mut scene = chart.scene();
+        let caption = match drawn {
+            DrawnAnswer::FromAbove => "Draw the path that you expect, seen from above.".to_owned(),
+            DrawnAnswer::OverTime(column) => {
+                format!("Draw what you expect: {} over time.", words(column))
+            }
+        };
+        scene.title = format!("Empty axes. {caption}");
+        Some(Figure {
+            svg: svg(&scene)?,
+            caption,
+            kind: FigureKind::Frame,
+        })
+    }
 }
 
 /// Returns the range that the lesson has chosen for the strip of `column`.
@@ -158,6 +227,7 @@ fn of_run(
         spec: FigureSpec {
             kind: Some(kind.to_owned()),
             exact: player.run().shows_exact(),
+            width_pt: (kind == ABOVE).then_some(ABOVE_PT),
             labels,
             ..FigureSpec::default()
         },
@@ -170,7 +240,7 @@ fn of_run(
     Some(Figure {
         svg: svg(&scene)?,
         caption,
-        is_table: false,
+        kind: FigureKind::Chart,
     })
 }
 
@@ -187,49 +257,6 @@ fn words(column: &str) -> String {
 fn svg(scene: &PageScene) -> Option<String> {
     let bytes = format::write(scene, PageFormat::Svg, None).ok()?;
     String::from_utf8(bytes).ok()
-}
-
-/// Returns the empty axes in which `drawn` is drawn, for the run of `lab` and for the time that it has taken. They show where
-/// that run starts.
-pub(super) fn frame(drawn: DrawnAnswer, lab: &Lab) -> Option<Figure> {
-    let run = lab.player().run();
-    let (scenario, end_s) = (run.scenario(), run.now().time_s);
-    let simulation = Simulation::new(Arc::clone(scenario));
-    let start = simulation.now();
-    let chart = match drawn {
-        DrawnAnswer::FromAbove => {
-            let reach = 1.1 * scenario.arm_m();
-            let place = start.position();
-            let axis = |name| quantity::axis(name).within((-reach, reach));
-            Chart {
-                is_true_to_scale: true,
-                ..empty(axis("x_m"), axis("y_m"), Some([place.x, place.y]))
-            }
-        }
-        DrawnAnswer::OverTime(column) => {
-            let value = RunQuantity::find(column)?.value_at(start);
-            let range =
-                chosen_range(column, lab).or_else(|| natural_range(column, value, scenario))?;
-            let time = quantity::axis("t_s").within((0.0, end_s));
-            let value_axis = quantity::axis(column).within(range);
-            // A force at the start would tell how the motion begins.
-            let is_given = !column.ends_with("_N");
-            empty(time, value_axis, is_given.then_some([0.0, value]))
-        }
-    };
-    let mut scene = chart.scene();
-    let caption = match drawn {
-        DrawnAnswer::FromAbove => "Draw the path that you expect, seen from above.".to_owned(),
-        DrawnAnswer::OverTime(column) => {
-            format!("Draw what you expect: {} over time.", words(column))
-        }
-    };
-    scene.title = format!("Empty axes. {caption}");
-    Some(Figure {
-        svg: svg(&scene)?,
-        caption,
-        is_table: false,
-    })
 }
 
 /// Returns axes with nothing in them but the point where the motion starts, if that is given.

@@ -1,6 +1,6 @@
 //! A handout as one HTML file, which any browser prints on A4 or Letter. It is well-formed XML, and needs no other file.
 
-use super::figures::Figure;
+use super::figures::{Figure, FigureKind};
 use super::{BLANK, Head, Paper, Part, Question};
 use crate::engine::text::printable::xml;
 use crate::lessons::lesson::AnswerKind;
@@ -8,6 +8,9 @@ use pulldown_cmark::{Event, Options, Parser, Tag, TagEnd, html};
 
 /// Without a size: the printer's paper is taken.
 const STYLE: &str = include_str!("handout.css");
+/// Stands next to a question whose answer is no picture.
+const ROOM: &str = "<figure class=\"frame\">\n<div class=\"room\"></div>\n\
+    <figcaption>Room to sketch or to calculate.</figcaption>\n</figure>\n";
 
 /// Returns the whole handout.
 pub(super) fn written(head: &Head, parts: &[Part], paper: Paper) -> String {
@@ -20,9 +23,16 @@ pub(super) fn written(head: &Head, parts: &[Part], paper: Paper) -> String {
         body += &part(block);
     }
     for page in parts.chunk_by(|_, next| !matches!(next, Part::Heading(_))) {
-        let is_whole = page
-            .iter()
-            .any(|part| matches!(part, Part::Question(_) | Part::Goals(_)));
+        let is_whole = page.iter().any(|part| {
+            !matches!(
+                part,
+                Part::Heading(_)
+                    | Part::Text(_)
+                    | Part::Shown(_)
+                    | Part::Screen(_)
+                    | Part::Figures(_)
+            )
+        });
         body += if is_whole {
             "<section class=\"whole\">\n"
         } else {
@@ -57,13 +67,10 @@ fn part(part: &Part) -> String {
         Part::Shown(code) => pre(&code.text),
         Part::Screen(text) => pre(text),
         Part::Figures(figures) => {
-            let class = if figures.len() > 1 {
-                " side-by-side"
-            } else {
-                ""
-            };
-            let all: String = figures.iter().map(figure_of_lab).collect();
-            format!("<div class=\"figures{class}\">\n{all}</div>\n")
+            let is_wide = figures.iter().any(|it| it.kind == FigureKind::Table);
+            let class = if is_wide { "column" } else { "row" };
+            let all: String = figures.iter().map(figure).collect();
+            format!("<div class=\"{class}\">\n{all}</div>\n")
         }
         Part::Question(asked) => question(asked),
         Part::Goals(goals) => {
@@ -82,18 +89,15 @@ fn pre(text: &str) -> String {
     format!("<pre>{}</pre>\n", lines.join("\n"))
 }
 
-fn figure_of_lab(shown: &Figure) -> String {
-    let class = if shown.is_table {
-        " class=\"table\""
-    } else {
-        ""
+fn figure(figure: &Figure) -> String {
+    let class = match figure.kind {
+        FigureKind::Chart => "chart",
+        FigureKind::Space => "space",
+        FigureKind::Table => "table",
+        FigureKind::Frame => "frame",
     };
-    figure(shown, class)
-}
-
-fn figure(figure: &Figure, class: &str) -> String {
     format!(
-        "<figure{class}>\n{}<figcaption>{}</figcaption>\n</figure>\n",
+        "<figure class=\"{class}\">\n{}<figcaption>{}</figcaption>\n</figure>\n",
         figure.svg,
         xml(&figure.caption)
     )
@@ -110,6 +114,7 @@ fn line(words: &str) -> String {
 
 fn question(question: &Question) -> String {
     let mut text = "<div class=\"question\">\n<h3>Your prediction</h3>\n".to_owned();
+    text += "<div class=\"asked\">\n<div>\n";
     text += &of_markdown(&question.ask);
     text += &match &question.asked {
         AnswerKind::Choice(choices) => {
@@ -123,13 +128,15 @@ fn question(question: &Question) -> String {
             format!("<p class=\"number\">Answer <i></i> {}</p>\n", xml(unit))
         }
     };
+    text += "</div>\n";
     if question.has_room {
-        text += &match &question.frame {
-            Some(frame) => figure(frame, " class=\"frame\""),
-            None => "<figure class=\"frame\"><div class=\"room\"></div>\
-                     <figcaption>Room to sketch or to calculate.</figcaption></figure>\n"
-                .to_owned(),
-        };
+        text += &question
+            .frame
+            .as_ref()
+            .map_or_else(|| ROOM.to_owned(), figure);
+    }
+    text += "</div>\n";
+    if question.has_room {
         text += &(line("Reason") + &line(""));
     }
     text + "</div>\n"
