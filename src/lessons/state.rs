@@ -192,7 +192,7 @@ impl Lessons {
                 lab.refuse(text);
             }
             (_, LessonKey::Leave) => {
-                lab.refuse("L lists the lessons, q leaves: this page is where you come back to");
+                lab.refuse("nothing is open on this page: L lists the lessons, q leaves");
             }
             (LessonDialog::List { selected, .. }, LessonKey::Move(direction)) => {
                 let last = names.len().saturating_sub(1);

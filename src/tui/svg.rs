@@ -29,13 +29,21 @@ pub fn svg(lab: &Lab, (columns, rows): (u16, u16), background: Background) -> St
     of_cells(&buf, title, background)
 }
 
-/// The picture of what is in one `pane` of `lab`, without its title, on white paper.
+/// The picture of what is in one `pane` of `lab`, without its title and without blank lines above and below it, on white
+/// paper.
 pub fn pane(lab: &Lab, pane: Pane, (columns, rows): (u16, u16)) -> String {
-    let area = Rect::new(0, 0, columns, rows);
-    let mut whole = Buffer::empty(Rect::new(0, 0, columns, rows + 1));
+    let mut whole = Buffer::empty(Rect::new(0, 0, columns, rows));
     screen::draw_pane(lab, pane, whole.area, &mut whole);
-    let mut buf = Buffer::empty(area);
-    buf.content = whole.content.split_off(columns.into());
+    let lines = whole.content.chunks(columns.into()).skip(1);
+    let is_blank = |line: &&[Cell]| line.iter().all(|cell| cell.symbol() == " ");
+    let mut shown: Vec<&[Cell]> = lines.skip_while(is_blank).collect();
+    while shown.last().is_some_and(is_blank) {
+        shown.pop();
+    }
+    let buf = Buffer {
+        area: Rect::new(0, 0, columns, shown.len() as u16),
+        content: shown.concat(),
+    };
     let scenario = &lab.player().run().scenario().file.title;
     let title = format!("The pane {} of the lab: {scenario}", pane.id());
     of_cells(&buf, &title, Background::Light)

@@ -126,16 +126,21 @@ impl AxisRanges {
             return Some(chosen);
         }
         let player = lab.player();
-        let least = match column {
+        let least_range = match column {
             HEIGHT => LEAST_ARM_SHARE * player.run().scenario().arm_m(),
             TILT => LEAST_TILT_DEG,
             _ => return None,
         };
         let low = player.number(&format!("measured_lowest_{column}"))?;
         let high = player.number(&format!("measured_highest_{column}"))?;
-        let missing = if is_asked { least - (high - low) } else { 0.0 };
+        let missing = if is_asked {
+            least_range - (high - low)
+        } else {
+            0.0
+        };
         let margin = (0.5 * missing).max(MARGIN * (high - low));
-        let own = (low - margin, high + margin);
+        let least = if column == TILT { 0.0 } else { f64::MIN };
+        let own = (f64::max(low - margin, least), high + margin);
         let earlier = *self.shown.get(column).unwrap_or(&own);
         let range = (own.0.min(earlier.0), own.1.max(earlier.1));
         self.shown.insert(column, range);
