@@ -43,7 +43,7 @@ impl Lab {
         }
     }
 
-    /// Takes the run to `step` before returning, as long as `go_on` says so.
+    /// Takes the run to `step` before returning, as long as `go_on` says so, and turns the camera to the axle there.
     ///
     /// The window of the traces depends on the one before. It is chosen after 1, 2, 4 and so on steps, so that the picture
     /// does not depend on how fast the steps are taken.
@@ -65,6 +65,8 @@ impl Lab {
             self.arrive();
             let reached = self.player.step_number();
             if stepped.is_err() || reached >= step || reached < next {
+                self.view.forget_camera();
+                self.view.turn_camera(&self.player);
                 return stepped;
             }
             part = part.saturating_mul(2);

@@ -136,17 +136,17 @@ impl View {
         }
     }
 
-    /// Turns the camera so that the axle is seen aslant, unless its direction was chosen. A moving picture is left as it is:
-    /// the motion shows where the axle points. So is that of a run that an edit began anew, to be compared with the previous.
+    /// Turns the camera so that the axle is seen aslant at the start of a run, unless its direction was chosen. Later it stays:
+    /// where it turned at a pause, the axle would seem to jump. So it does for a run that an edit began anew, to be compared
+    /// with the previous.
     pub(in crate::lab) fn turn_camera(&mut self, player: &Player) {
         if self.look.camera.is_some() {
             return;
         }
         let axle = player.reading.state.axle();
         let is_new = self.camera == Camera::default();
-        let is_still = !player.is_running() || player.step_number() == 0;
-        let is_to_turn = is_still && !player.has_just_restarted() && !self.camera.reads(&axle);
-        if is_new || is_to_turn {
+        let is_at_start = player.step_number() == 0 && !player.has_just_restarted();
+        if is_new || is_at_start && !self.camera.reads(&axle) {
             self.camera = self.camera.aslant(&axle);
         }
     }

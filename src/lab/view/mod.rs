@@ -310,15 +310,20 @@ impl View {
             ..ViewSettings::default()
         };
         (self.since_s, self.magnified, self.cursor, self.swing_mark) = (None, 1.0, None, None);
-        if self.look.camera.is_none() {
-            self.camera = Camera::default();
-        }
+        self.forget_camera();
         self.set_look(usual.patched(&patch).unwrap_or(usual));
         if !self.may_show(self.focus) {
             self.keep_focus_among(&self.to_show());
         }
         if let Some(fill) = patch.get("fill").and_then(Value::as_str) {
             self.fill(Pane::named(fill));
+        }
+    }
+
+    /// Lets the camera turn to the axle once more, unless its direction was chosen.
+    pub(in crate::lab) fn forget_camera(&mut self) {
+        if self.look.camera.is_none() {
+            self.camera = Camera::default();
         }
     }
 
