@@ -12,7 +12,18 @@ const WRONG: &str = "is larger";
 /// Makes the seat `word`, which has locked these answers to the first question: round, words, whether it came late; `tasks`
 /// are lines of TOML.
 fn seat(ground: &Ground, word: &str, answers: &[(u32, &str, bool)], tasks: &str) {
-    let mut text = format!("format = 2\n[lessons.lessons.{LESSON}]\npage = 3\n");
+    seat_that_saw("\"finer\"", ground, word, answers, tasks);
+}
+
+/// The same of a seat that has seen the outcomes of the questions `seen`, in quotes with commas between them.
+fn seat_that_saw(
+    seen: &str,
+    ground: &Ground,
+    word: &str,
+    answers: &[(u32, &str, bool)],
+    tasks: &str,
+) {
+    let mut text = format!("format = 2\n[lessons.lessons.{LESSON}]\npage = 3\nseen = [{seen}]\n");
     for (round, answer, late) in answers {
         text += &format!(
             "[[lessons.lessons.{LESSON}.predictions.finer]]\nround = {round}\nanswer = \"{answer}\"\n\
@@ -86,6 +97,16 @@ fn a_student_fetches_their_own_answers_and_nothing_else() {
             "**Came out.**",
         ],
     );
+    seat_that_saw("", &ground, "ben-000001", &[(1, WRONG, false)], "");
+    let not_seen = done(ssh(&ground, "answers ben-000001"));
+    has_all(
+        stdout(&not_seen),
+        &[
+            "**Predicted.** is larger",
+            "You have not seen this page yet",
+        ],
+    );
+    assert!(!stdout(&not_seen).contains(RIGHT), "it tells the answer");
     for (command, message) in [
         ("answers", "answers SEAT"),
         ("answers anna", "the word of your seat"),

@@ -65,7 +65,7 @@ fn predicted(predict: &Predict, place: &LessonProgress, walk: &LessonWalk<'_>) -
     Some(format!("**Question.** {ask}\n\n**Predicted.** {answer}"))
 }
 
-/// Returns what came out; nothing where nothing was predicted: it would give the answer away.
+/// Returns what came out. Where nothing was predicted, or the outcome was not seen yet, it would give the answer away.
 fn came_out(
     lesson: &Lesson,
     compare: &Compare,
@@ -74,6 +74,9 @@ fn came_out(
 ) -> Option<String> {
     let predict = lesson.predict(&compare.prediction)?;
     place.predictions.to(predict).next()?;
+    if !place.seen.contains(&compare.prediction) {
+        return Some("**Came out.** You have not seen this page yet.".to_owned());
+    }
     let text = compare.filled(lesson, &place.predictions, &walk.lab, &walk.kept);
     let right = match (&predict.asked, &predict.right) {
         (AnswerKind::Choice(choices), Some(Right::Choice(right))) => choices.get(right - 1),
