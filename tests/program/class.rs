@@ -15,6 +15,19 @@ fn teach(ground: &Ground, args: &str) -> Terminal {
     ground.open(&format!("class {args} --folder ."))
 }
 
+/// The teacher's lab at the end of the run of its first page.
+fn begin(ground: &Ground) -> Terminal {
+    let mut teacher = teach(ground, LESSON);
+    teacher.wait_for("1 of 10");
+    teacher.wait_for("► ×10");
+    teacher.ask(
+        "n",
+        "the run is still playing for the class; press n again to jump to its end",
+    );
+    teacher.ask("n", "Is it the top that wobbles?");
+    teacher
+}
+
 /// A student's lab in a new seat, and the seat's word.
 fn sit(ground: &Ground, name: &str) -> (Terminal, String) {
     let mut lab = ground.open("--folder . --seat");
@@ -40,8 +53,7 @@ fn a_class_follows_votes_and_loses_nothing() {
     let ground = Ground::new();
     let header = "lesson,question,round,seat,choice,late,page,time\n";
     assert_eq!(ground.stdout("class --votes --folder ."), header);
-    let mut teacher = teach(&ground, LESSON);
-    teacher.wait_for("1 of 10");
+    let mut teacher = begin(&ground);
     let (mut anna, word) = sit(&ground, "anna");
     let (mut ben, _) = sit(&ground, "ben");
     teacher.wait_for("2 here");
@@ -99,8 +111,7 @@ fn a_class_follows_votes_and_loses_nothing() {
 fn a_seat_reaches_nothing_of_another() {
     let ground = Ground::new();
     ground.write("secret.csv", "t_s,x_m\n0,1\n");
-    let mut teacher = teach(&ground, LESSON);
-    teacher.wait_for("1 of 10");
+    let mut teacher = begin(&ground);
     let (mut anna, word) = sit(&ground, "anna");
     anna.press("x");
     for name in ["../ben-0001/run.csv", "/tmp/run.csv", ".gyrolab/seat"] {
@@ -128,8 +139,7 @@ fn a_seat_reaches_nothing_of_another() {
 #[ignore = "thirty labs and two hundred kills take minutes"]
 fn thirty_seats_and_two_hundred_kills_lose_no_vote_and_no_page() {
     let ground = Ground::new();
-    let mut teacher = teach(&ground, LESSON);
-    teacher.wait_for("1 of 10");
+    let mut teacher = begin(&ground);
     let mut seats: Vec<_> = (0..30)
         .map(|number| sit(&ground, &format!("seat{number}")))
         .collect();
@@ -190,8 +200,7 @@ fn a_damaged_seat_is_named_and_the_exit_code_is_1() {
 #[ignore = "two hundred kills take minutes"]
 fn two_hundred_kills_while_voting_lose_no_locked_vote() {
     let ground = Ground::new();
-    let mut teacher = teach(&ground, LESSON);
-    teacher.wait_for("1 of 10");
+    let mut teacher = begin(&ground);
     let mut seats: Vec<_> = (0..5)
         .map(|number| sit(&ground, &format!("seat{number}")))
         .collect();
@@ -252,8 +261,7 @@ fn a_seat_waits_for_its_class_and_the_projector_shows_it() {
     anna.ask("\r", "The class starts here when your teacher starts it.");
     let mut projector = ground.open("class --projector --folder .");
     projector.wait_for("The class has not begun.");
-    let mut teacher = teach(&ground, LESSON);
-    teacher.wait_for("1 of 10");
+    let mut teacher = begin(&ground);
     anna.wait_for("following · 1 of 10");
     projector.wait_for("1 of 10 · Is the wobble real?");
     teacher.press("n");
@@ -282,8 +290,7 @@ fn a_seat_waits_for_its_class_and_the_projector_shows_it() {
 #[test]
 fn a_new_group_keeps_the_votes_of_the_one_before() {
     let ground = Ground::new();
-    let mut teacher = teach(&ground, LESSON);
-    teacher.wait_for("1 of 10");
+    let mut teacher = begin(&ground);
     let (mut anna, word) = sit(&ground, "anna");
     teacher.press("n");
     vote(&mut anna);
@@ -326,6 +333,7 @@ fn a_rehearsal_leaves_nothing_behind() {
         let (_, rest) = words.split_once("--folder ").unwrap();
         let folder = rest.split([',', ' ']).next().unwrap().to_owned();
         teacher.wait_for("2 here");
+        teacher.wait_for("Is it the top that wobbles?");
         assert!(Path::new(&folder).is_dir(), "{folder}");
         teacher.press("n");
         teacher.wait_until("a vote", |lab| !lab.words().contains("0 of 2 answered"));

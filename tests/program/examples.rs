@@ -18,6 +18,7 @@ const NOT_CARRIED_OUT: &[(&str, &str)] = &[
         "750 s of the exact motion with friction take half a second",
     ),
     ("gyrolab lesson is-the-wobble-real\n", "needs a terminal"),
+    ("--rehearse", "needs a terminal"),
 ];
 
 /// The commands below "Examples:" of a help: each with the lines that continue it.
