@@ -279,7 +279,7 @@ impl Student {
             ..ClassOverlay::default()
         };
         if overlay.is_followed {
-            overlay.border = "k: step aside".to_owned();
+            overlay.border = "k: step aside\nk: aside".to_owned();
         }
         let now_ms = unix_ms();
         for (name, question) in state.questions.get(&open.lesson.name).into_iter().flatten() {
@@ -288,9 +288,9 @@ impl Student {
         }
         if let Some((predict, question)) = asked {
             if let Some(left) = question.seconds_left(now_ms) {
-                overlay.border = format!("the round closes in {left} s");
+                overlay.border = format!("the round closes in {left} s\n{left} s left");
             } else if question.is_closed_at(now_ms) && open.is_open(predict) {
-                overlay.border = "closed: an answer now counts as late".to_owned();
+                overlay.border = "closed: an answer now counts as late\nclosed".to_owned();
             }
             if !question.bars.is_empty() {
                 overlay.votes = Some((predict.name.clone(), vec![votes::drawn(&question.bars)]));

@@ -74,8 +74,8 @@ impl ClassMenu {
     pub(super) fn border(&self) -> &'static str {
         match self {
             Self::Closed => "k: votes, seats, gather, countdown\nk: the class's menu\nk: class",
-            Self::Open(_) => "digit or Enter: do it; Esc: back",
-            Self::Seats(_) => "Enter closes, opens; Esc: back",
+            Self::Open(_) => "digit or Enter: do it; Esc: back\nEsc: back",
+            Self::Seats(_) => "Enter closes, opens; Esc: back\nEsc: back",
         }
     }
 }

@@ -52,13 +52,17 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let Some(sheet) = &view.sheet else {
         return;
     };
-    let framed = longest(
-        sheet.framed.lines().map(str::to_owned),
-        area.width.saturating_sub(5).into(),
-    );
+    let page = ScrolledPage::new(sheet, below_rule(area), view);
+    // On a page without a free row, what the class says is on the rule: the shortest form.
+    let class_words = match sheet.border.lines().last() {
+        Some(shortest) if page.is_full => shortest,
+        _ => "",
+    };
+    let framed_room = area.width.saturating_sub(columns(class_words) as u16 + 5);
+    let framed = longest(sheet.framed.lines().map(str::to_owned), framed_room.into());
     let (title, place) = match framed.as_str() {
         "" => (&sheet.title, sheet.place.as_str()),
-        _ => (&framed, ""),
+        _ => (&framed, class_words),
     };
     // Which page it is goes before the whole of a long title.
     let room = area.width.saturating_sub(columns(place) as u16 + 5);
@@ -69,7 +73,6 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     if inside.is_empty() {
         return;
     }
-    let page = ScrolledPage::new(sheet, inside, view);
     for (line, row) in page.shown().zip(inside.rows()) {
         draw_line(line, row, &view.theme, buf);
     }
@@ -87,7 +90,9 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
         height: 1,
         ..inside
     };
-    write_border(&sheet.border, more, border, quiet, buf);
+    if !page.is_full {
+        write_border(&sheet.border, more, border, quiet, buf);
+    }
 }
 
 fn draw_line(line: &LessonLine, row: Rect, theme: &Theme, buf: &mut Buffer) {
@@ -156,6 +161,8 @@ struct ScrolledPage {
     first: usize,
     /// So many lines are shown. The last row is kept free for what the class says, and on a longer page for its keys.
     height: usize,
+    /// Whether the page needs every row.
+    is_full: bool,
 }
 
 impl ScrolledPage {
@@ -186,7 +193,8 @@ impl ScrolledPage {
             }
         }
         let rows = inside.height as usize;
-        let has_last_row = lines.len() > rows || !sheet.border.is_empty();
+        let is_full = lines.len() == rows;
+        let has_last_row = lines.len() > rows || !is_full && !sheet.border.is_empty();
         let shown = rows.saturating_sub(usize::from(has_last_row));
         let last = lines.len().saturating_sub(shown);
         let usual = seen.1.saturating_sub(shown).min(seen.0);
@@ -195,6 +203,7 @@ impl ScrolledPage {
             lines,
             first,
             height: shown,
+            is_full,
         }
     }
 
