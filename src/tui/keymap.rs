@@ -200,16 +200,25 @@ fn restarted(lab: &TheLab, _: Option<u64>) -> KeyCommands {
     Ok([start].into_iter().chain(run).collect())
 }
 
+/// Until when the page hides what answers its question; `None` if it hides nothing.
+fn hidden_until(lab: &TheLab) -> Option<&'static str> {
+    let view = lab.view();
+    match view.asked() {
+        Some(_) => Some("you have predicted"),
+        None => view.hides_answers().then_some("the round is over"),
+    }
+}
+
 fn exact_toggled(lab: &TheLab) -> KeyCommands {
-    if lab.view().hides_answers() {
-        return Err("the exact motion comes back when the question is answered".to_owned());
+    if let Some(when) = hidden_until(lab) {
+        return Err(format!("the exact motion comes back when {when}"));
     }
     one(Command::Exact(!lab.player().run().shows_exact()))
 }
 
 fn advice_taken(lab: &TheLab) -> KeyCommands {
-    if lab.view().hides_answers() {
-        return Err("what fixes the run is shown when the question is answered".to_owned());
+    if let Some(when) = hidden_until(lab) {
+        return Err(format!("what fixes the run is told when {when}"));
     }
     one(lab.adviser().followed(lab.player())?)
 }

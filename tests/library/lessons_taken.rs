@@ -327,7 +327,7 @@ fn a_task_is_done_by_hand_or_shown() {
     stage
         .press("N")
         .arrive()
-        .shows("[x] done after the hint: be at 4 s");
+        .shows("[ ] done before; not now: be at 4 s");
     let (mut again, _other_folder, _) = taken(3);
     again.press("hh").arrive().shows("[x] shown by the lab");
     again.press("nn").shows("this is the last page");

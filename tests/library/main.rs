@@ -31,6 +31,7 @@ mod kept;
 mod keys;
 mod laws;
 mod lessons;
+mod lessons_asked;
 mod lessons_played;
 mod lessons_taken;
 mod limits;

@@ -554,3 +554,17 @@ fn every_column_can_be_chosen_as_a_strip() {
     assert_eq!(stage.lab.view().look.detail_of, first);
     stage.press("3j").press("jj").shows("Ly (J s) ");
 }
+
+#[test]
+fn a_strip_keeps_the_range_that_is_chosen_for_it() {
+    let mut stage = at("wobble-push", &["motion.time_step_s=0.002"], 100, LARGE);
+    stage.commands("z_range_m = [0.5, 1]\ndetail_of = 'tilt'\ndetail_range = [0, 90]");
+    stage.wait(1.0).shows("1.000").shows("0.500").shows("90.0");
+    // Another column has a range of its own.
+    stage.commands("detail_of = 'energy_J'");
+    assert_eq!(stage.lab.view().look.detail_range, None);
+    stage
+        .commands("z_range_m = 'auto'")
+        .wait(1.0)
+        .shows_no("0.500");
+}

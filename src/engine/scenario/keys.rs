@@ -6,7 +6,7 @@ use super::kind::Range::{self, Any, NotNegative, Positive};
 use super::kind::ValueKind::{
     self, Flag, Line, Number, OneOf, Pane, Panes, Paragraph, Settings, Vector, Whole, WholeOr,
 };
-use super::kind::float;
+use super::kind::check_range;
 pub use super::kind::{PITCH_DEG, ZOOM_RANGE};
 use super::limits::MOST_POINTS;
 use super::problem::{Problem, Problems, nearest};
@@ -101,8 +101,8 @@ pub const KEYS: &[SchemaRow] = &[
     may("view.window_s", Number(Positive), "length of time that the overview spans, s (default: the whole run)"),
     may("view.detail_s", ValueKind::By(is_window), "length of time that the traces show, s, or auto: a few swings of the axle, or the whole run if it has few").or(DefaultValue::Word("auto")),
     may("view.detail_of", OneOf(&DETAILS), "the strip of the traces below those of x, y and z: a column of the CSV, or tilt; distance: from the exact motion; auto: that or the tilt, on a large screen").or(DefaultValue::Word("auto")),
-    may("view.detail_range", ValueKind::By(is_range), "least and greatest value that the strip detail_of shows, in its unit: [0, 130]; auto: those of the run in its window").or(DefaultValue::Word("auto")),
-    may("view.z_range_m", ValueKind::By(is_range), "least and greatest z that the strip of z shows, m: [0.6, 0.95]; auto: those of the run in its window").or(DefaultValue::Word("auto")),
+    may("view.detail_range", ValueKind::By(check_range), "least and greatest value that the strip detail_of shows, in its unit: [0, 130]; auto: those of the run in its window").or(DefaultValue::Word("auto")),
+    may("view.z_range_m", ValueKind::By(check_range), "least and greatest z that the strip of z shows, m: [0.6, 0.95]; auto: those of the run in its window").or(DefaultValue::Word("auto")),
     may("view.exact", Flag, "whether the exact motion is drawn beside the run").or(DefaultValue::Flag(false)),
     may("view.show", Panes(&[]), "the panes that share the screen, where it has room for them; empty: as many as there is room for, without those that are shown on request only (default)"),
     may("view.hide", Panes(&HIDEABLE), "what is not shown: panes, the line about the numbers' health, theory's predicted numbers, the line look_at, the arrows of the 3-D view (default: empty)"),
@@ -130,21 +130,6 @@ fn is_window(value: &Value) -> Result<(), String> {
         Some(AUTO) => Ok(()),
         Some(_) => Err(format!("must be a number greater than zero, or \"{AUTO}\"")),
         None => Number(Positive).check(value),
-    }
-}
-
-/// Checks a range of values on an axis.
-fn is_range(value: &Value) -> Result<(), String> {
-    let numbers: Option<Vec<_>> = match value {
-        Value::String(word) if word == AUTO => return Ok(()),
-        Value::Array(ends) => ends.iter().map(float).collect(),
-        _ => None,
-    };
-    match numbers.as_deref() {
-        Some([low, high]) if low < high && (high - low).is_finite() => Ok(()),
-        _ => Err(format!(
-            "must be two numbers in brackets, the lower one first, or \"{AUTO}\""
-        )),
     }
 }
 

@@ -199,6 +199,19 @@ fn check_vector(value: &Value) -> Result<(), String> {
     check_each(numbers, |item| number(item).map(drop))
 }
 
+/// Checks the two ends of an axis, or the word for those that the data have.
+pub(super) fn check_range(value: &Value) -> Result<(), String> {
+    let wanted = "two numbers in brackets, the lower one first, or \"auto\"";
+    if value.as_str() == Some(screen::AUTO) {
+        return Ok(());
+    }
+    let numbers: Option<Vec<_>> = items(value, wanted)?.iter().map(float).collect();
+    match numbers.as_deref() {
+        Some([low, high]) if low < high && (high - low).is_finite() => Ok(()),
+        _ => Err(format!("must be {wanted}")),
+    }
+}
+
 fn check_words(value: &Value, words: &[&str]) -> Result<(), String> {
     check_each(items(value, "a list in brackets")?, |item| {
         check_word(text(item)?, words)

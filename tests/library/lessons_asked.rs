@@ -1,0 +1,161 @@
+//! Pages with a question: nothing answers it before it is answered.
+
+use crate::support::stage::{SMALL, Stage};
+use gyrolab::lab::view::Pane;
+use gyrolab::lessons::page::ClassOverlay;
+use gyrolab::lessons::{AnswerKind, PredictionAnswer, opening, shipped};
+
+/// What the lab says of the exact motion, of reliability and of theory.
+const ANSWERS: [&str; 6] = [
+    "reliable",
+    "exact under run",
+    "╌╌ exact",
+    "off exact",
+    "previous run",
+    "a: rerun",
+];
+
+/// A lesson on this page, whose run has arrived.
+fn on_page(lesson: &str, page: usize) -> Stage {
+    let mut stage = Stage::open("method-2", &[], SMALL);
+    stage.lesson(lesson, page).arrive();
+    stage
+}
+
+#[track_caller]
+fn answers_nothing(stage: &Stage, place: &str) {
+    let picture = stage.picture();
+    for answer in ANSWERS {
+        assert!(!picture.contains(answer), "{place}: {answer}\n{picture}");
+    }
+}
+
+#[test]
+fn a_question_of_a_lesson_stays_unanswered_until_the_reader_answers() {
+    let mut questions = 0;
+    for lesson in shipped::LESSONS {
+        let pages = opening::open(lesson.name).unwrap().pages;
+        for page in pages.iter().filter(|page| page.predicts().next().is_some()) {
+            let place = format!("{} {}", lesson.name, page.number);
+            let mut stage = on_page(lesson.name, page.number);
+            assert!(stage.lab.view().asked().is_some(), "{place}");
+            // The run has not gone beyond what is shown.
+            assert_eq!(stage.lab.player().run().furthest(), stage.step(), "{place}");
+            answers_nothing(&stage, &place);
+            let before = stage.lab.player().run().scenario().clone();
+            stage
+                .press("\t")
+                .press("t")
+                .shows("when you have predicted");
+            stage.press("a").shows("when you have predicted").wait(6.0);
+            let after = stage.lab.player().run().scenario();
+            assert_eq!(before.motion, after.motion, "{place}");
+            answers_nothing(&stage, &place);
+            while stage.lab.view().focus != Pane::Lesson {
+                stage.press("\t");
+            }
+            while let Some(asked) = stage.class.open_lesson().unwrap().asked() {
+                let is_number = matches!(asked.asked, AnswerKind::Number { .. });
+                stage.press(if is_number { "7\n" } else { "1\n" });
+                questions += 1;
+            }
+            assert!(!stage.lab.view().hides_answers(), "{place}");
+        }
+    }
+    assert!(questions >= 60, "{questions}");
+}
+
+/// The page of a lesson that asks for a force in N.
+fn asked_for_newtons() -> Stage {
+    on_page("what-holds-the-weight-up", 5)
+}
+
+fn locked(stage: &Stage) -> Vec<PredictionAnswer> {
+    let predictions = &stage.class.open_lesson().unwrap().place.predictions;
+    predictions
+        .all()
+        .map(|(_, given)| given.answer.clone())
+        .collect()
+}
+
+#[test]
+fn a_number_takes_its_unit_and_another_of_its_kind() {
+    for (typed, newtons) in [
+        ("99", 99.0),
+        ("99 N", 99.0),
+        ("98,5N", 98.5),
+        ("9.9e1 newton", 99.0),
+        ("99000 mN", 99.0),
+        ("-3 N", -3.0),
+        (".5", 0.5),
+    ] {
+        let mut stage = asked_for_newtons();
+        stage.press(typed).press("\n");
+        assert_eq!(
+            locked(&stage),
+            [PredictionAnswer::Number(newtons)],
+            "{typed}"
+        );
+    }
+    for (typed, said) in [
+        ("99 kg", "is asked for in N, not in kg"),
+        ("9 about", "is asked for in N, not in about"),
+        ("9..9", "is asked for in N, not in"),
+        ("--", "must be a number"),
+    ] {
+        let mut stage = asked_for_newtons();
+        stage.press(typed).press("\n").shows(said);
+        assert_eq!(locked(&stage), [], "{typed}");
+    }
+}
+
+#[test]
+fn letters_at_a_number_question_are_no_keys_of_the_lab() {
+    let mut stage = asked_for_newtons();
+    stage.press("p").shows("a number is asked for");
+    stage.press("about");
+    assert!(stage.lab.player().run().scenario().pushes.is_empty());
+    assert_eq!(stage.lab.runs().journal().done(), 0);
+    assert_eq!(stage.class.open_lesson().unwrap().place.page, 5);
+    // In the lab they are.
+    stage.press("\t").press("p");
+    assert_eq!(stage.lab.player().run().scenario().pushes.len(), 1);
+}
+
+#[test]
+fn what_answers_a_question_stays_hidden_while_a_round_is_open() {
+    let mut stage = on_page("what-holds-the-weight-up", 1);
+    let of_class = |stage: &mut Stage, round: u32, is_closed: bool| {
+        let overlay = ClassOverlay {
+            rounds: [("mean".to_owned(), (round, is_closed))].into(),
+            ..ClassOverlay::default()
+        };
+        stage.class.set_overlay(overlay, &mut stage.lab);
+        stage.wait(6.0);
+    };
+    of_class(&mut stage, 1, false);
+    stage.press("1\n").wait(6.0);
+    answers_nothing(&stage, "answered, and the round is open");
+    stage.press("t").shows("when the round is over").wait(6.0);
+    of_class(&mut stage, 1, true);
+    stage.shows("reliable");
+    of_class(&mut stage, 2, false);
+    answers_nothing(&stage, "asked again");
+    stage.press("2\n").wait(6.0);
+    answers_nothing(&stage, "answered again");
+    of_class(&mut stage, 2, true);
+    stage.shows("reliable");
+}
+
+#[test]
+fn a_follower_reads_sentences_with_keys_in_them() {
+    let mut stage = on_page("cusps-loops-and-waves", 1);
+    let overlay = ClassOverlay {
+        is_followed: true,
+        ..ClassOverlay::default()
+    };
+    stage.class.set_overlay(overlay, &mut stage.lab);
+    stage
+        .wait(0.0)
+        .shows("Press space, and - for a slower film.");
+}
