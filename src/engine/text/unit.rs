@@ -177,7 +177,9 @@ impl Unit {
 }
 
 /// Other words for units, in lower case and without blanks, and the ends of the names that these units have here.
-const ALIASES: [(&str, &str); 21] = [
+const ALIASES: [(&str, &str); 23] = [
+    ("newton", "_N"),
+    ("newtons", "_N"),
     ("sec", "_s"),
     ("sek", "_s"),
     ("second", "_s"),

@@ -59,7 +59,7 @@ impl OpenLesson {
             lab.refuse(if self.has_chosen() {
                 "Enter locks the answer that you chose. n again leaves it open"
             } else {
-                "predict first: what you write down you see better. n again leaves it open"
+                "write down a prediction first. n again leaves it open"
             });
             return;
         }
