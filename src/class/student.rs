@@ -328,9 +328,10 @@ impl Student {
             )
         } else if state.page == page && asks {
             let counts = format!("following · {of} · {}", state.answered);
-            format!("{counts} of {} answered\n{counts} answered", state.here)
+            let answered = format!("{counts} of {} answered\n{counts} answered", state.here);
+            format!("{answered}\nfollowing · {of}\n{of}")
         } else {
-            format!("following · {of}")
+            format!("following · {of}\n{of}")
         }
     }
 
