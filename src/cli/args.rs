@@ -181,7 +181,7 @@ named_values! {
     Marker, &Self::ALL, Self::name;
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Default, Args)]
 pub(super) struct LengthArgs {
     /// Length of the run in time steps [default: the scenario's]
     #[arg(long, value_name = "N", conflicts_with = "duration", allow_negative_numbers = true, value_parser = length)]
@@ -336,13 +336,19 @@ pub(super) fn changed(
     length: &LengthArgs,
 ) -> Result<Scenario, Problems> {
     change(&mut document, changes)?;
+    change_length(&mut document, length)?;
+    document.scenario()
+}
+
+/// Gives the run of `document` the length that the command line asks for, if it does.
+pub(super) fn change_length(document: &mut Document, length: &LengthArgs) -> Result<(), Problems> {
     if let Some(steps) = length.steps {
         document.set(&format!("motion.steps={steps}"))?;
     }
-    let scenario = document.scenario()?;
     let Some(duration) = length.duration else {
-        return Ok(scenario);
+        return Ok(());
     };
+    let scenario = document.scenario()?;
     if duration / scenario.motion.time_step_s > MOST_RUN_STEPS_BY_TIME {
         let rule = format!("{duration:e} s are more than {MOST_RUN_STEPS_BY_TIME:e} time steps");
         let mut problem = Problem::at("", rule);
@@ -350,8 +356,7 @@ pub(super) fn changed(
         return Err(Problems::one(document.origin(), problem));
     }
     let steps = Simulation::step_at(&scenario, duration).max(1);
-    document.set(&format!("motion.steps={steps}"))?;
-    document.scenario()
+    document.set(&format!("motion.steps={steps}"))
 }
 
 pub(super) fn change(document: &mut Document, changes: &SetArgs) -> Result<(), Problems> {

@@ -2,7 +2,7 @@
 
 mod throws;
 
-use super::args::{MapArgs, STDIN, STDIN_WORDS, SetArgs, change, open};
+use super::args::{LengthArgs, MapArgs, STDIN, STDIN_WORDS, SetArgs, change, change_length, open};
 use super::argument_values::{positive, time};
 use super::progress::{self, Interrupted, Interruption, Meter};
 use super::{one_on_stdout, print, print_result, refuse, tell, tell_notes, tell_of_rows};
@@ -41,6 +41,9 @@ pub(super) struct FitArgs {
 
     #[command(flatten)]
     pub(super) changes: SetArgs,
+
+    #[command(flatten)]
+    pub(super) length: LengthArgs,
 
     #[command(flatten)]
     pub(super) columns: MapArgs,
@@ -414,6 +417,7 @@ fn scenario(args: &FitArgs) -> Result<(Document, Option<&'static str>), Problems
         written.map_err(|problem| Problems::one(args.scenario.clone(), problem))?;
     }
     change(&mut document, &args.changes)?;
+    change_length(&mut document, &args.length)?;
     document.scenario()?;
     Ok((document, own))
 }

@@ -1,9 +1,9 @@
 //! `gyrolab sweep`: a grid of runs, a row each.
 
-use super::args::{SetArgs, change};
+use super::args::{LengthArgs, SetArgs, change, change_length};
 use super::info::listed;
 use super::progress::{self, Interrupted, Interruption, Meter};
-use super::{print, tell, tell_of_rows};
+use super::{print, refuse, tell, tell_of_rows};
 use crate::engine::scenario::presets::{self, PRESETS};
 use crate::engine::scenario::problem::nearest;
 use crate::engine::scenario::{Document, Problem, Problems};
@@ -15,6 +15,7 @@ use crate::studies::sweep::part::{Opened, PartialSweep, SweepFileError};
 use crate::studies::sweep::{self, EmptyRows, SWEEPS, Shard, Sweep, SweepFile, axis};
 use anyhow::bail;
 use clap::Args;
+use clap::error::ErrorKind;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -28,6 +29,9 @@ pub(super) struct SweepArgs {
 
     #[command(flatten)]
     pub(super) changes: SetArgs,
+
+    #[command(flatten)]
+    pub(super) length: LengthArgs,
 
     /// Vary a key over N values from A to B, or over these values; may be repeated
     ///
@@ -49,7 +53,7 @@ pub(super) struct SweepArgs {
     pub(super) shard: Option<Shard>,
 
     /// Join these CSVs, which are all shards of one sweep, into one
-    #[arg(long, value_name = "PART.csv", num_args = 1.., requires = "output", conflicts_with_all = ["scenario", "set", "time_step", "scheme"])]
+    #[arg(long, value_name = "PART.csv", num_args = 1.., requires = "output", conflicts_with_all = ["scenario", "set", "time_step", "scheme", "steps", "duration"])]
     pub(super) join: Vec<PathBuf>,
 
     /// Write the CSV to this file; until it is whole the rows are in FILE.part, and the same command goes on there
@@ -70,6 +74,11 @@ pub(super) fn sweep(args: &SweepArgs) -> anyhow::Result<ExitCode> {
             tell_of_rows(sweep.rows(), output);
             Ok(ExitCode::SUCCESS)
         }
+        (None, Some(_)) => refuse(
+            "sweep",
+            ErrorKind::MissingRequiredArgument,
+            "--output needs a sweep, a scenario, or --join; gyrolab sweep alone lists the sweeps",
+        ),
         _ => print(&list()?),
     }
 }
@@ -102,14 +111,20 @@ fn open_document(name: &str) -> Result<Document, Problems> {
     }
 }
 
+/// Changes `base`, from which the points of a sweep differ, as the command line says.
+fn change_base(base: &mut Document, args: &SweepArgs) -> Result<(), Problems> {
+    change(base, &args.changes)?;
+    change_length(base, &args.length)
+}
+
 fn sweep_of(name: &str, args: &SweepArgs) -> Result<Sweep, Problems> {
     let mut document = open_document(name)?;
     let (mut file, base) = if document.is_sweep() {
         let file = SweepFile::read(&document)?;
-        let base = Sweep::base(&file, &document, |base| change(base, &args.changes))?;
+        let base = Sweep::base(&file, &document, |base| change_base(base, args))?;
         (file, base)
     } else {
-        change(&mut document, &args.changes)?;
+        change_base(&mut document, args)?;
         let base = document.scenario()?;
         (SweepFile::default(), base)
     };

@@ -729,3 +729,30 @@ fn more_shards_than_files_may_be_open_are_joined() {
     made(&ground.shell(&format!("ulimit -n 64; \"$G\" {join}")));
     assert_eq!(ground.read("joined.csv"), whole);
 }
+
+#[test]
+fn the_length_of_every_run_of_a_sweep_is_chosen() {
+    let ground = Ground::new();
+    let steps = |args: &str| {
+        let vary = "--vary start.tilt_deg=20,30 --measure t_s";
+        ground.stderr(&format!("sweep cusps {vary} {args} -o out.csv --force"));
+        let first = ground.read("out.csv");
+        first
+            .lines()
+            .find(|line| line.contains("steps ="))
+            .unwrap_or_default()
+            .to_owned()
+    };
+    assert!(steps("--duration 0.25").ends_with("steps = 250"));
+    assert!(steps("--steps 40").ends_with("steps = 40"));
+    ground.refused(
+        "sweep cusps --steps 4 --duration 1 -o out.csv",
+        2,
+        &["cannot be used with"],
+    );
+    ground.refused(
+        "sweep -o out.csv",
+        2,
+        &["--output needs a sweep, a scenario, or --join"],
+    );
+}
