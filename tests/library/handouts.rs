@@ -279,8 +279,9 @@ fn a_teachers_sheet_has_goals_minutes_answers_and_what_to_expect() {
         }
         for compare in lesson.pages.iter().flat_map(LessonPage::compares) {
             let text = compare.text.filled(|_, _| "@".to_owned());
-            let begin = text.split('@').next().unwrap();
-            has(&sheet, format!("**Comes out.** {begin}"));
+            let mut sentences = text.split(". ");
+            let told = sentences.find(|told| !told.contains("You ")).unwrap();
+            has(&sheet, told.split('@').next().unwrap());
         }
         for notes in lesson.pages.iter().flat_map(LessonPage::notes) {
             let notes = notes.filled(|_, _| "@".to_owned());
