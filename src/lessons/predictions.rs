@@ -104,11 +104,14 @@ impl Predictions {
         page.predicts().next().is_some() && self.open_on(page).next().is_none()
     }
 
-    /// Returns what is hidden once all predictions of `page` are locked, if `hidden` is hidden before: all of it but what
-    /// the page has hidden itself.
+    /// Returns what is hidden once all predictions of `page` are locked, if `hidden` is hidden before: all of it but the
+    /// answers that the page has hidden itself.
     pub fn hidden_after_lock(page: &LessonPage, hidden: &[HideablePart]) -> Vec<HideablePart> {
         let own = page.lab().map(Setup::hides).unwrap_or_default();
-        let others = hidden.iter().copied().filter(|part| !own.contains(part));
+        let others = hidden
+            .iter()
+            .copied()
+            .filter(|part| !part.is_answer() || !own.contains(part));
         others.collect()
     }
 }

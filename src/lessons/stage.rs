@@ -115,9 +115,13 @@ impl LessonStage<'_> {
             list.extend(before.map(|command| LocatedCommand { command, line }));
         }
         for placed in &self.setup.commands {
-            if self.is_hiding || placed.command.looked("hide").is_none() {
-                list.push(placed.clone());
+            let mut shown = placed.clone();
+            if !self.is_hiding && placed.command.looked("hide").is_some() {
+                let hidden = self.setup.hides().into_iter();
+                let others: Vec<_> = hidden.filter(|part| !part.is_answer()).collect();
+                shown.command = Command::look("hide", others);
             }
+            list.push(shown);
         }
         Commands {
             origin: self.lesson.origin.clone(),

@@ -39,7 +39,7 @@ const TASKS: [PlayedTask; 18] = [
     played("does-steeper-precess-faster", 8, &["/gravity\n19.6\n⎋", "rP\n32.667\n↓↓\n20\np ", "/rim height\n2\n⎋"], ["/gravity\n15\n⎋", "/tilt\n60\n⎋"]),
     played("halve-the-step", 9, &["/dt\n0.0016\n⎋"], ["/dt\n0.005\n⎋", "/dt\n0.001\n⎋"]),
     played("is-the-wobble-real", 9, &["/Lz body\n75\n/dt\n0.002\n⎋", "/dt\n0.001\n/Lz body\n80\n⎋"], ["/Lz body\n75\n⎋", "/Lz body\n200\n/dt\n0.002\n⎋"]),
-    played("kappa-and-the-scheme", 9, &["/scheme\nstrang\n⎋", "/dt\n0.00002\n⎋"], ["/dt\n0.002\n⎋", "/rim height\n0.5657\n⎋"]),
+    played("kappa-and-the-scheme", 9, &["/scheme\nstrang\n⎋", "/dt\n0.00001\n⎋"], ["/dt\n0.002\n⎋", "/rim height\n0.5657\n⎋"]),
     played("method-1-and-its-z", 8, &["/Lx\n175\n⎋"], ["/Lx\n350\n⎋", "/Lz\n1000\n⎋"]),
     played("method-2-and-its-straight-line", 9, &["/dt\n0.05\n⎋"], ["/dt\n0.04\n⎋", "/dt\n0.01\n⎋"]),
     played("one-step-by-hand", 8, &["/dt\n0.01\n⎋1g", "/gravity\n98\n⎋1g", "/mass\n5\n⎋1g"], ["/dt\n0.1\n⎋1g", "/Lz\n10000\n⎋1g"]),
@@ -47,7 +47,7 @@ const TASKS: [PlayedTask; 18] = [
     played("the-wheel-one-carries", 10, &["P\n5.55\n↓↓\n4\np "], ["P\n11\n↓↓\n4\np ", " "]),
     played("what-holds-the-weight-up", 9, &["P\n11\n↓↓\n20\np ", "/gravity\n12\n⎋ "], ["P\n30\n↓↓\n20\np ", "/mass\n0.6\n⎋ "]),
     played("what-is-conserved", 9, &["/scheme\nstrang\n⎋"], ["/dt\n0.001\n⎋", "/scheme\nrk4\n⎋"]),
-    played("which-way-does-your-phone-tumble", 5, &["/wx\n0.3\n/wz\n8\n⎋300g", "/wx\n0.3\n/wy\n8\n⎋300g"], ["/wx\n12\n⎋300g", "300g"]),
+    played("which-way-does-your-phone-tumble", 5, &["/wx\n0.3\n/wz\n8\n⎋300g", "/wx\n0.3\n/wy\n8\n⎋300g"], ["/wx\n6\n⎋300g", "300g"]),
     played("why-it-does-not-fall", 8, &["P\n32.667\n↓\nup\n↓\n10\np "], ["P\n20\n↓\nup\n↓\n10\np ", "P\n32.667\n↓↓\n10\np "]),
     played("why-it-seems-to-stand-still", 7, &["g57 s\n"], ["g10 s\n", "/dt\n0.1\n⎋g57 s\n"]),
 ];

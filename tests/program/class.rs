@@ -67,7 +67,7 @@ fn a_class_follows_votes_and_loses_nothing() {
     let votes = ground.stdout("class --votes --folder .");
     has_all(&votes, &[&format!("{LESSON},finer,1,{word},2,false,2,")]);
     // Stepping aside, and the class goes on meanwhile.
-    ben.ask("n", "predict first");
+    ben.ask("n", "write down a prediction");
     ben.ask("n", "aside, k: back · 3, class on 2");
     teacher.ask("n", "1 of 2 have answered; press n again to go on");
     teacher.press("n");

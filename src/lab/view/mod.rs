@@ -356,8 +356,7 @@ impl View {
 
     /// Whether `part` is hidden: what answers an open question is, too.
     pub fn hides(&self, part: HideablePart) -> bool {
-        let is_answer = matches!(part, HideablePart::Health | HideablePart::Predicted);
-        self.look.hide.contains(&part) || is_answer && self.hides_answers()
+        self.look.hide.contains(&part) || part.is_answer() && self.hides_answers()
     }
 
     /// The answer that the page beside the run waits for.

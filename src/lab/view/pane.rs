@@ -15,3 +15,10 @@ pub enum HideablePart {
     #[serde(untagged)]
     Pane(Pane),
 }
+
+impl HideablePart {
+    /// Returns whether it can answer a question of a lesson.
+    pub fn is_answer(self) -> bool {
+        matches!(self, Self::Health | Self::Predicted)
+    }
+}
