@@ -149,8 +149,11 @@ impl Student {
     /// Looks at the files: whether the seat is still this lab's, and what the teacher shows.
     fn look(&mut self, lab: &mut Lab, lessons: &mut Lessons) {
         if !self.seat.is_held(&self.lock_token) {
-            self.ended =
-                Some("this seat was opened in another lab, which goes on from here, or it is gone");
+            self.ended = Some(if self.seat.is_there() {
+                "this seat was opened in another lab, which goes on from here"
+            } else {
+                "this seat is gone: ask your teacher, or take a new one"
+            });
         }
         let change = self.follower.look(lab);
         let state = self.follower.state();

@@ -297,8 +297,8 @@ fn a_new_group_keeps_the_votes_of_the_one_before() {
     let refused = ground.run("class --new --folder .");
     assert_eq!(code(&refused), 1);
     has_all(stderr(&refused), &["a class is on in"]);
-    anna.quit();
     teacher.quit();
+    anna.wait_for("the class is over");
     let kept = ground.run("class --new --folder .");
     assert_eq!(code(&kept), 0);
     let told = stderr(&kept);
@@ -307,6 +307,10 @@ fn a_new_group_keeps_the_votes_of_the_one_before() {
     let earlier = ground.stdout(&format!("class --votes --folder {}", folder.trim()));
     has_all(&earlier, &[&row]);
     assert_eq!(ground.stdout("class --votes --folder .").lines().count(), 1);
+    // A lab that had its seat open leaves nothing in the new group.
+    anna.wait_for_end();
+    assert!(anna.sent_text().contains("this seat is gone"));
+    assert!(!ground.file(&format!(".gyrolab/seats/{word}")).exists());
     let mut again = ground.open("--folder . --seat");
     again.ask(&format!("{word}\r"), "there is no seat of that word");
 }
@@ -337,12 +341,17 @@ fn a_rehearsal_leaves_nothing_behind() {
         assert!(Path::new(&folder).is_dir(), "{folder}");
         teacher.press("n");
         teacher.wait_until("a vote", |lab| !lab.words().contains("0 of 2 answered"));
+        let mut zoe = ground.open(&format!("--folder {folder} --seat"));
+        zoe.wait_for("A name for your seat");
+        zoe.ask("zoe\r", "Enter goes on.");
+        zoe.ask("\r", "following · 2 of 10");
         if end == "q" {
             teacher.quit();
         } else {
             teacher.signal(end);
             teacher.wait_for_end();
         }
+        zoe.wait_for_end();
         assert!(!Path::new(&folder).exists(), "{folder} after {end}");
     }
 }

@@ -241,7 +241,10 @@ impl HeldSession {
 
     /// Writes `content`. If writing fails, the old file is unchanged.
     pub(super) fn save(&self, content: &SessionContent) -> io::Result<()> {
-        private_files::make_folder(&self.folder)?; // somebody may have removed it
+        // Somebody may have removed it. Where more is gone, such as the seat of a class, nothing of it is to come back.
+        if self.folder.parent().is_some_and(Path::is_dir) {
+            private_files::make_folder(&self.folder)?;
+        }
         let SessionContent { place, work } = content;
         let texts = format!("place {}\n{place}{}", place.len(), work.as_str());
         let path = file(&self.folder, &self.name, "session");
