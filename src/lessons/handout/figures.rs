@@ -217,7 +217,7 @@ fn chosen_range(column: &str, lab: &Lab) -> Option<(f64, f64)> {
 fn of_run(
     lab: &Lab,
     kind: &str,
-    labels: FigureLabels,
+    mut labels: FigureLabels,
     go_on: LessonProgressCallback<'_>,
 ) -> Option<Figure> {
     let player = lab.player();
@@ -228,10 +228,15 @@ fn of_run(
         ABOVE => format!("The path from above, 0 to {end} s."),
         column => format!("{} over time, 0 to {end} s.", words(column)),
     };
+    let exact = player.run().shows_exact();
+    if exact {
+        // The file's time step would be named, though the page may have set another.
+        labels.names = vec!["computed".to_owned()];
+    }
     let source = FigureSource {
         spec: FigureSpec {
             kind: Some(kind.to_owned()),
-            exact: player.run().shows_exact(),
+            exact,
             width_pt: (kind == ABOVE).then_some(ABOVE_PT),
             labels,
             ..FigureSpec::default()
