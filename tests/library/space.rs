@@ -10,6 +10,7 @@ use gyrolab::tui::theme::Role;
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;
 use ratatui::widgets::Widget;
+use std::ops::ControlFlow;
 
 const COLORS: Theme = Theme {
     palette: Palette::TrueColor,
@@ -297,7 +298,12 @@ fn the_scene_fills_its_pane() {
         ("cusps", 4000),
         ("falling", 10_000),
     ] {
-        let stage = stage(preset, step, "");
+        let mut stage = stage(preset, 0, "");
+        // As where a lab opens at that step: the camera is turned to the axle.
+        stage
+            .lab
+            .begin_at(step, |_, _| ControlFlow::Continue(()))
+            .unwrap();
         for (size, least) in SIZES.into_iter().zip([0.76, 0.78, 0.81]) {
             let picture = draw(Pane::Space, &stage, size);
             let (across, down) = filled_share(&picture, size.1 >= 18);
