@@ -24,7 +24,7 @@ fn begin(ground: &Ground) -> Terminal {
         "n",
         "the run is still playing for the class; press n again to jump to its end",
     );
-    teacher.ask("n", "Is it the top that wobbles?");
+    teacher.ask("n", "that wobbles?");
     teacher
 }
 
@@ -337,7 +337,7 @@ fn a_rehearsal_leaves_nothing_behind() {
         let (_, rest) = words.split_once("--folder ").unwrap();
         let folder = rest.split([',', ' ']).next().unwrap().to_owned();
         teacher.wait_for("2 here");
-        teacher.wait_for("Is it the top that wobbles?");
+        teacher.wait_for("that wobbles?");
         assert!(Path::new(&folder).is_dir(), "{folder}");
         teacher.press("n");
         teacher.wait_until("a vote", |lab| !lab.words().contains("0 of 2 answered"));
