@@ -327,7 +327,7 @@ fn a_seat_without_a_class_waits_and_shows_nothing_of_a_run() {
     ben.press("k")
         .shows("The class starts here")
         .press("\n")
-        .shows("Begin");
+        .shows("n next");
     let mut teacher = class.teach(2);
     settle(&mut [&mut teacher, &mut anna, &mut ben]);
     anna.shows("following · 2 of 4");
