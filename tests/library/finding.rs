@@ -77,7 +77,9 @@ fn ctrl_u_takes_away_what_is_searched_for() {
 #[test]
 fn a_word_is_explained_by_its_sentence() {
     for size in [SMALL, LARGE, Rect::new(0, 0, 40, 12)] {
-        open(size).press("?strobed").shows("as under a strobe");
+        open(size)
+            .press("?under-sampled")
+            .shows("as under a strobe");
     }
 }
 

@@ -42,7 +42,7 @@ const TASKS: [PlayedTask; 18] = [
     played("kappa-and-the-scheme", 9, &["/scheme\nstrang\n⎋", "/dt\n0.00001\n⎋"], ["/dt\n0.002\n⎋", "/rim height\n0.5657\n⎋"]),
     played("method-1-and-its-z", 8, &["/Lx\n175\n⎋"], ["/Lx\n350\n⎋", "/Lz\n1000\n⎋"]),
     played("method-2-and-its-straight-line", 9, &["/dt\n0.05\n⎋"], ["/dt\n0.04\n⎋", "/dt\n0.01\n⎋"]),
-    played("one-step-by-hand", 8, &["/dt\n0.01\n⎋1g", "/gravity\n98\n⎋1g", "/mass\n5\n⎋1g"], ["/dt\n0.1\n⎋1g", "/Lz\n10000\n⎋1g"]),
+    played("one-step-by-hand", 8, &["/dt\n0.01\n⎋1g", "/gravity\n98\n⎋1g", "/mass each\n5\n⎋1g"], ["/dt\n0.1\n⎋1g", "/Lz\n10000\n⎋1g"]),
     played("the-sleeping-top-wakes", 8, &["/rim height\n0.9\n⎋", "/gravity\n8\n⎋"], ["/gravity\n9.5\n⎋", "/tilt\n0\n⎋"]),
     played("the-wheel-one-carries", 10, &["P\n5.55\n↓↓\n4\np "], ["P\n11\n↓↓\n4\np ", " "]),
     played("what-holds-the-weight-up", 9, &["P\n11\n↓↓\n20\np ", "/gravity\n12\n⎋ "], ["P\n30\n↓↓\n20\np ", "/mass\n0.6\n⎋ "]),
