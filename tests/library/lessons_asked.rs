@@ -121,17 +121,19 @@ fn letters_at_a_number_question_are_no_keys_of_the_lab() {
     assert_eq!(stage.lab.player().run().scenario().pushes.len(), 1);
 }
 
+/// Makes the stage one of a class that is at this round of the question.
+fn of_class(stage: &mut Stage, round: u32, is_closed: bool) {
+    let overlay = ClassOverlay {
+        rounds: [("mean".to_owned(), (round, is_closed))].into(),
+        ..ClassOverlay::default()
+    };
+    stage.class.set_overlay(overlay, &mut stage.lab);
+    stage.wait(6.0);
+}
+
 #[test]
 fn what_answers_a_question_stays_hidden_while_a_round_is_open() {
     let mut stage = on_page("what-holds-the-weight-up", 1);
-    let of_class = |stage: &mut Stage, round: u32, is_closed: bool| {
-        let overlay = ClassOverlay {
-            rounds: [("mean".to_owned(), (round, is_closed))].into(),
-            ..ClassOverlay::default()
-        };
-        stage.class.set_overlay(overlay, &mut stage.lab);
-        stage.wait(6.0);
-    };
     stage.commands("step = 50");
     of_class(&mut stage, 1, false);
     stage.press("1\n").wait(6.0);

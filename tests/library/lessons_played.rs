@@ -2,7 +2,7 @@
 //! right way, and in wrong ways, after which the page is still there and has a hint.
 
 use crate::support::stage::{SMALL, Stage};
-use gyrolab::lab::sheet::SheetLineKind;
+use gyrolab::lab::sheet::{Paragraph, SheetLineKind};
 use gyrolab::lab::view::Pane;
 use gyrolab::lessons::{opening, shipped};
 use gyrolab::tui::screen;
@@ -147,7 +147,7 @@ fn a_wrong_way_leaves_the_task_open_and_a_hint_to_ask_for() {
             assert!(open.place.tasks.is_empty(), "{place}");
             press(&mut stage, "h");
             let sheet = stage.lab.view().sheet.clone().unwrap();
-            let mut hints = sheet.paragraphs.iter().map(|one| one.text());
+            let mut hints = sheet.paragraphs.iter().map(Paragraph::text);
             assert!(hints.any(|text| text.starts_with("Hint: ")), "{place}");
         }
     }
