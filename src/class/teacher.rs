@@ -324,10 +324,11 @@ impl ClassRole for Teacher {
 
     fn leave(&mut self) -> Result<String, String> {
         self.state.is_on = false;
-        self.folder.publish(&self.state)?;
+        let published = self.folder.publish(&self.state);
         if let Some(rehearsal) = &self.rehearsal {
-            return Ok(rehearsal.at_end.clone());
+            return Ok(rehearsal.at_end.clone()); // its folder may be removed already
         }
+        published?;
         let root = PrintablePath(&self.folder.root);
         Ok(format!("gyrolab class --resume --folder {root} goes on"))
     }
