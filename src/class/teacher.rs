@@ -7,6 +7,7 @@ use super::votes::{self, FEWEST_VOTES_SHOWN, SeatStatus, Tally, present, seat_st
 use super::{CLASS_POLL_INTERVAL, ClassRole, LEAST_WAIT, unix_ms};
 use crate::engine::data::find_shipped;
 use crate::engine::scenario::Scenario;
+use crate::engine::text::number::counted;
 use crate::engine::text::printable::PrintablePath;
 use crate::lab::action::LessonKey;
 use crate::lab::sheet::{Paragraph, SheetLineKind};
@@ -79,6 +80,13 @@ impl Teacher {
             rehearsal: Some(rehearsal),
             ..self
         }
+    }
+
+    /// Returns what is said before the class is ended, while students are here.
+    fn quit_warning(&self) -> Option<String> {
+        let here = self.state.here as u64;
+        let is_needed = here > 0 && self.rehearsal.is_none();
+        is_needed.then(|| format!("{} here: q again ends the class", counted(here, "seat")))
     }
 
     fn publish(&mut self) {
@@ -286,6 +294,7 @@ impl ClassRole for Teacher {
             self.look(lab, lessons);
             self.publish();
             lessons.set_overlay(self.overlay(lessons), lab);
+            lab.set_quit_warning(self.quit_warning());
         }
         ControlFlow::Continue(())
     }

@@ -5,7 +5,7 @@ use super::lesson::admit;
 use super::new_lab::{DEFAULT, of_workbench};
 use super::workbench::{furnish, open_at};
 use super::{answers, print, rehearsal, sessions, settings, tell};
-use crate::class::folder::ClassFolder;
+use crate::class::folder::{ClassFolder, ClassState};
 use crate::class::projector::Projector;
 use crate::class::student::Student;
 use crate::class::teacher::{Rehearsal, Teacher};
@@ -104,6 +104,23 @@ fn begin_anew(dir: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// Refuses to begin the lesson `name` once more where the class, whose state was `before`, left it with votes: after a crash
+/// all would be back on its first page.
+fn refuse_begun(folder: &ClassFolder, before: &ClassState, name: &str) -> anyhow::Result<()> {
+    let seats = seat_statuses(folder).map_err(anyhow::Error::msg)?;
+    let has_voted = |seat: &SeatStatus| {
+        let place = seat.lessons.get(name);
+        place.is_some_and(|place| !place.predictions.is_empty())
+    };
+    ensure!(
+        before.lesson != name || before.page < 2 || !seats.iter().any(has_voted),
+        "{}: the class is on page {} of it: --resume without the lesson goes on there, --new begins with another group",
+        printable(folder.short(name)),
+        before.page
+    );
+    Ok(())
+}
+
 /// Opens the teacher's lab of the class in `dir`, or of a rehearsal.
 pub(super) fn teach(
     args: &ClassArgs,
@@ -129,6 +146,9 @@ pub(super) fn teach(
         }
         None => (before.lesson.clone(), before.page.max(1)),
     };
+    if lesson.is_some() && rehearsal.is_none() {
+        refuse_begun(&folder, &before, &name)?;
+    }
     admit(&name, &confined).context("the lesson of a class lies in its folder")?;
     let opened = opening::open(&name)?;
     let workbench = WorkbenchArgs {

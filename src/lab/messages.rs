@@ -125,10 +125,9 @@ impl Messages {
         }
     }
 
-    /// Warns at `now` that leaving stops the export; asked again right after it, the lab ends.
-    pub(super) fn warn_of_export(&mut self, now: Duration) {
+    /// Says at `now` what leaving the lab would end; asked again right after it, the lab ends.
+    pub(super) fn warn(&mut self, text: impl Into<String>, now: Duration) {
         self.was_warned = true;
-        let text = "an export is under way: q again leaves it unfinished, and writes nothing";
         self.say(text, now);
     }
 
@@ -225,7 +224,7 @@ mod tests {
         assert!(!messages.expire(at(1000)));
         assert_eq!(messages.text(), Some("the end"));
         assert!(messages.take_back() && messages.text().is_none());
-        messages.warn_of_export(at(0));
+        messages.warn("an export is under way", at(0));
         let cleared = messages.clear(None);
         assert!(cleared.anything && cleared.was_warned);
         let counted = messages.clear(Some(4));

@@ -106,6 +106,8 @@ pub struct Lab {
     now: Duration,
     /// Whether the picture has changed since it was drawn.
     changed: bool,
+    /// What is said before the lab is left, where leaving ends something for others.
+    quit_warning: Option<String>,
 }
 
 impl Lab {
@@ -125,6 +127,7 @@ impl Lab {
             settings: Settings::default(),
             now: Duration::ZERO,
             changed: true,
+            quit_warning: None,
         };
         lab.edits.list_values(&lab.player);
         lab.view.turn_camera(&lab.player);
@@ -147,6 +150,11 @@ impl Lab {
     pub fn take_advice(&mut self) {
         self.adviser.is_on = true;
         self.read_now(); // a run that stands still is not read again by itself
+    }
+
+    /// Says `warning` before the lab is left; `None`: it is left at once.
+    pub fn set_quit_warning(&mut self, warning: Option<String>) {
+        self.quit_warning = warning;
     }
 
     /// Shows so many swings in the traces, if the run has more.

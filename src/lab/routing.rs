@@ -103,13 +103,22 @@ impl Lab {
                 return Err("there is no shell to go back to: q leaves".to_owned());
             }
             Action::Suspend => return Ok(Some(LabRequest::Suspend)),
-            Action::Quit if self.files.is_exporting() && !cleared.was_warned => {
-                self.messages.warn_of_export(self.now);
-            }
-            Action::Quit => return Ok(Some(LabRequest::Quit)),
+            Action::Quit => match self.quit_warning() {
+                Some(warning) if !cleared.was_warned => self.messages.warn(warning, self.now),
+                _ => return Ok(Some(LabRequest::Quit)),
+            },
             _ => {} // tui has the entries of the help, and carries them out
         }
         Ok(None)
+    }
+
+    /// Returns what to say before the lab is left, where leaving ends something.
+    fn quit_warning(&self) -> Option<String> {
+        if self.files.is_exporting() {
+            let text = "an export is under way: q again leaves it unfinished, and writes nothing";
+            return Some(text.to_owned());
+        }
+        self.quit_warning.clone()
     }
 
     fn ask(&mut self, ask: Ask) -> Result<(), String> {

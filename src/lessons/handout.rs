@@ -4,9 +4,9 @@
 //! from the screen, and the pages that show what came out have room in the place of their words. Notes are left out, and
 //! so is how a task is done.
 //!
-//! - [`markdown`]: a handout as Markdown, with the lab's screen as text.
-//! - [`html`]: a handout as one HTML file; its pictures are inline SVG, which [`figures`] draws.
-//! - [`answers`](mod@answers): what a student predicted beside what came out.
+//! - `markdown`: a handout as Markdown, with the lab's screen as text.
+//! - [`html`]: a handout as one HTML file; its pictures are inline SVG, which `figures` draws.
+//! - `answers`: what a student predicted beside what came out.
 
 mod answers;
 mod figures;

@@ -323,16 +323,11 @@ impl OpenLesson {
         is_new
     }
 
-    /// States the page's numbers once the run has arrived.
+    /// States the page's numbers once the run has arrived. The outcomes that it shows count as seen from the start of its run.
     fn state(&mut self, lab: &Lab) -> bool {
-        let has_arrived = self.follows.unwrap_or(true)
-            && self.under_way.is_none()
-            && lab.script().is_done()
-            && lab.player().steps_to_go().is_none();
-        if !self.is_under_way() || !has_arrived {
+        if !self.is_under_way() {
             return false;
         }
-        self.place.stated = Some(stated(&self.lesson, &self.place, lab));
         let page = self.lesson.page(self.place.page);
         for compare in page.into_iter().flat_map(LessonPage::compares) {
             // What the page itself asks for comes out once it is answered.
@@ -340,7 +335,14 @@ impl OpenLesson {
                 self.place.seen.insert(compare.prediction.clone());
             }
         }
-        true
+        let has_arrived = self.follows.unwrap_or(true)
+            && self.under_way.is_none()
+            && lab.script().is_done()
+            && lab.player().steps_to_go().is_none();
+        if has_arrived {
+            self.place.stated = Some(stated(&self.lesson, &self.place, lab));
+        }
+        has_arrived
     }
 
     /// Goes on with `lesson`, the file as it is now, on the same page; the run stays where it is.

@@ -100,8 +100,13 @@ fn a_class_follows_votes_and_loses_nothing() {
     again.wait_for("following · 3 of 10");
     let board = ground.stdout("class --board --folder .");
     has_all(&board, &["2 here", &word, "3 of 10"]);
-    resumed.quit();
+    resumed.end_class();
     ben.wait_for("the class is over");
+    // Begun anew by mistake, all would be back on the first page.
+    let mut mistaken = teach(&ground, LESSON);
+    mistaken.wait_for_end();
+    let said = mistaken.sent_text();
+    assert!(said.contains("--resume without the lesson"), "{said}");
     ground.stdout("class --answers --folder . -o answers");
     let answers = ground.read(&format!("answers/{word}.md"));
     has_all(&answers, &["**Predicted.** is about fifty times smaller"]);
@@ -281,7 +286,7 @@ fn a_seat_waits_for_its_class_and_the_projector_shows_it() {
     let mut resumed = teach(&ground, "--resume");
     resumed.wait_for("3 of 10");
     projector.wait_for("3 of 10 · Is the wobble real?");
-    resumed.quit();
+    resumed.end_class();
     projector.wait_for("class is over");
     projector.quit();
     anna.quit();
@@ -297,7 +302,7 @@ fn a_new_group_keeps_the_votes_of_the_one_before() {
     let refused = ground.run("class --new --folder .");
     assert_eq!(code(&refused), 1);
     has_all(stderr(&refused), &["a class is on in"]);
-    teacher.quit();
+    teacher.end_class();
     anna.wait_for("the class is over");
     let kept = ground.run("class --new --folder .");
     assert_eq!(code(&kept), 0);

@@ -2,7 +2,7 @@
 
 use super::Teacher;
 use crate::class::folder::VoteStage;
-use crate::class::votes::{self, SeatStanding, SeatStatus, in_order};
+use crate::class::votes::{self, FEWEST_VOTES_SHOWN, SeatStanding, SeatStatus, in_order};
 use crate::class::{login, unix_ms};
 use crate::lab::Lab;
 use crate::lab::action::{Direction, LessonKey};
@@ -170,6 +170,11 @@ impl Teacher {
         let words = match act {
             ClassAct::Question(QuestionAct::Show) => match question.stage {
                 VoteStage::Counted => "show the votes to you alone",
+                VoteStage::Teacher if self.state.answered < FEWEST_VOTES_SHOWN => {
+                    return format!(
+                        "show the votes to all (bars from {FEWEST_VOTES_SHOWN} votes on)"
+                    );
+                }
                 VoteStage::Teacher => "show the votes to all",
                 VoteStage::All if question.is_closed => CLOSED,
                 VoteStage::All => "close the round",
