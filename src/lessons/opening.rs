@@ -7,8 +7,11 @@ use crate::engine::export::Destination;
 use crate::engine::scenario::head::read_whole;
 use crate::engine::scenario::problem::nearest;
 use crate::engine::scenario::{Problem, Problems, presets};
+use crate::engine::text::shipped::Shipped;
 use crate::lab::command::Command;
+use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 
 /// The longest file that is read as a lesson, bytes.
 pub const LONGEST_LESSON_FILE: u64 = 1 << 20;
@@ -20,13 +23,7 @@ pub fn open(name: &str) -> Result<Lesson, Problems> {
         return read_file(Path::new(name));
     }
     match shipped::find(name) {
-        Some(lesson) => {
-            let origin = format!("presets/lessons/{name}.md");
-            Ok(Lesson {
-                name: name.to_owned(),
-                ..read(&origin, lesson.text)?
-            })
-        }
+        Some(lesson) => open_shipped(lesson),
         None => {
             let near = nearest(name, shipped::LESSONS.iter().map(|lesson| lesson.name));
             let rule =
@@ -34,6 +31,23 @@ pub fn open(name: &str) -> Result<Lesson, Problems> {
             Err(Problems::one(name, Problem::at("", rule)))
         }
     }
+}
+
+/// The shipped lessons that were read, by their names: the list asks for all of them at every key.
+static READ: Mutex<BTreeMap<&str, Lesson>> = Mutex::new(BTreeMap::new());
+
+fn open_shipped(shipped: &'static Shipped) -> Result<Lesson, Problems> {
+    let mut known = READ.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(lesson) = known.get(shipped.name) {
+        return Ok(lesson.clone());
+    }
+    let origin = format!("presets/lessons/{}.md", shipped.name);
+    let lesson = Lesson {
+        name: shipped.name.to_owned(),
+        ..read(&origin, shipped.text)?
+    };
+    known.insert(shipped.name, lesson.clone());
+    Ok(lesson)
 }
 
 /// As [`open`], where nothing may wait for a file.

@@ -52,7 +52,9 @@ impl Chart {
         for (panel, placed) in self.panels.iter_mut().zip(&layout.panels) {
             for series in &mut panel.series {
                 let is_curve = !series.points.is_empty() && series.band.is_empty();
-                if is_curve && !placed.has_in(&placed.frame, series) {
+                let mut places = series.points.iter().map(|point| placed.place(point));
+                let has_point = places.any(|place| placed.frame.holds(place));
+                if is_curve && !has_point && !placed.has_in(&placed.frame, series) {
                     series.name.clear();
                 }
             }
@@ -61,32 +63,27 @@ impl Chart {
 
     /// Makes one curve of runs whose curves coincide in all panels.
     fn join_coinciding(&mut self, layout: &ChartLayout) {
-        let squares: Vec<Vec<Squares>> = self
-            .panels
-            .iter()
-            .zip(&layout.panels)
-            .map(|(panel, placed)| {
-                let pieces = panel.series.iter().map(|series| placed.pieces(series));
-                pieces.map(|pieces| Squares::new(&pieces)).collect()
-            })
-            .collect();
-        let count = self
-            .panels
-            .iter()
-            .map(|panel| panel.series.len())
-            .min()
-            .unwrap_or(0);
+        let counts = self.panels.iter().map(|panel| panel.series.len());
+        let count = counts.min().unwrap_or(0);
         for first in 0..count {
             for second in first + 1..count {
-                let can_join = self.panels.iter().all(|panel| {
-                    let [a, b] = [&panel.series[first], &panel.series[second]];
-                    a.can_join(b)
-                });
-                if can_join && squares.iter().all(|all| all[first].coincide(&all[second])) {
+                if self.coincide(first, second, layout) {
                     self.join(first, second);
                 }
             }
         }
+    }
+
+    /// Returns whether two runs look like one in all panels.
+    fn coincide(&self, first: usize, second: usize, layout: &ChartLayout) -> bool {
+        let mut panels = self.panels.iter().zip(&layout.panels);
+        panels.all(|(panel, placed)| {
+            let [a, b] = [&panel.series[first], &panel.series[second]];
+            a.can_join(b) && {
+                let [a, b] = [a, b].map(|series| Squares::new(&placed.pieces(series)));
+                a.coincide(&b)
+            }
+        })
     }
 
     /// Draws the curve `second` of each panel no more: that of `first` has both names, if they have room in the legend.
