@@ -12,7 +12,8 @@ use std::collections::HashSet;
 const TOLERANCE: f64 = 0.02;
 /// And at most, of however wide a line, pt.
 const UNSEEN_PT: f64 = 0.014;
-/// A solid line of more points than this is drawn by the outline of its ink if that has fewer: a file of 40 kB.
+/// A line of more points than this is drawn by the outline of its ink if that has fewer: a file of 40 kB. Dashes would not be
+/// told apart in it.
 const MANY_LINE_POINTS: usize = 5_000;
 /// The part of white in the color of a band, which its line has pure.
 pub const BAND_WHITE: f64 = 0.72;
@@ -146,7 +147,7 @@ pub fn draw_curve(
         .map(|piece| simplified(piece, within_pt))
         .collect();
     let count: usize = lines.iter().map(Vec::len).sum();
-    if pen.dash_pt.is_empty() && count > MANY_LINE_POINTS {
+    if count > MANY_LINE_POINTS {
         let area = stroke_outline::area(&lines, pen.width_pt);
         // There is none of lines that need too large a grid.
         if !area.0.is_empty() && area.0.len() < count {
