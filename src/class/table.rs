@@ -22,7 +22,7 @@ const FIRST_COLUMNS: [&str; 7] = [
 
 /// A column of the table: what a seat answered in one round of a question, or how far it got with a task.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Column {
+enum TableColumn {
     Answer {
         lesson: String,
         question: String,
@@ -79,18 +79,18 @@ pub fn csv(folder: &ClassFolder, seats: &[SeatStatus]) -> Result<String, csv::Er
 }
 
 /// Returns the columns that `seat` has something for.
-fn columns(seat: &SeatStatus) -> Vec<Column> {
+fn columns(seat: &SeatStatus) -> Vec<TableColumn> {
     let mut columns = Vec::new();
     for (lesson, place) in &seat.lessons {
         for (question, given) in place.predictions.all() {
-            columns.push(Column::Answer {
+            columns.push(TableColumn::Answer {
                 lesson: lesson.clone(),
                 question: question.clone(),
                 round: given.round,
             });
         }
         for heading in place.tasks.keys() {
-            columns.push(Column::Task {
+            columns.push(TableColumn::Task {
                 lesson: lesson.clone(),
                 heading: heading.clone(),
             });
@@ -99,7 +99,7 @@ fn columns(seat: &SeatStatus) -> Vec<Column> {
     columns
 }
 
-impl Column {
+impl TableColumn {
     fn title(&self, folder: &ClassFolder) -> String {
         let title = match self {
             Self::Answer {

@@ -38,12 +38,12 @@ pub(super) struct AxisRanges {
 pub(super) struct Figure {
     pub caption: String,
     pub svg: String,
-    pub kind: FigureKind,
+    pub kind: PaperFigureKind,
 }
 
 /// What decides how large a figure is on paper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum FigureKind {
+pub(super) enum PaperFigureKind {
     /// Curves, as large as the figure says.
     Chart,
     /// The lab's scene in space.
@@ -83,8 +83,8 @@ pub(super) fn of_lab(
                 caption: format!("The lab at t = {} s.", time_now(lab)),
                 svg: pane_svg(lab, *pane),
                 kind: match pane {
-                    Pane::Step => FigureKind::Table,
-                    _ => FigureKind::Space,
+                    Pane::Step => PaperFigureKind::Table,
+                    _ => PaperFigureKind::Space,
                 },
             }),
             Pane::Lesson | Pane::Parameters => None,
@@ -195,7 +195,7 @@ impl AxisRanges {
         Some(Figure {
             svg: svg(&scene)?,
             caption,
-            kind: FigureKind::Frame,
+            kind: PaperFigureKind::Frame,
         })
     }
 }
@@ -250,7 +250,7 @@ fn of_run(
     Some(Figure {
         svg: svg(&scene)?,
         caption,
-        kind: FigureKind::Chart,
+        kind: PaperFigureKind::Chart,
     })
 }
 

@@ -1,6 +1,6 @@
 //! A handout as one HTML file, which any browser prints on A4 or Letter. It is well-formed XML, and needs no other file.
 
-use super::figures::{Figure, FigureKind};
+use super::figures::{Figure, PaperFigureKind};
 use super::{BLANK, Head, Paper, Part, Question};
 use crate::engine::text::printable::xml;
 use crate::lessons::lesson::AnswerKind;
@@ -67,7 +67,7 @@ fn part(part: &Part) -> String {
         Part::Shown(code) => pre(&code.text),
         Part::Screen(text) => pre(text),
         Part::Figures(figures) => {
-            let is_wide = figures.iter().any(|it| it.kind == FigureKind::Table);
+            let is_wide = figures.iter().any(|it| it.kind == PaperFigureKind::Table);
             let class = if is_wide { "column" } else { "row" };
             let all: String = figures.iter().map(figure).collect();
             format!("<div class=\"{class}\">\n{all}</div>\n")
@@ -91,10 +91,10 @@ fn pre(text: &str) -> String {
 
 fn figure(figure: &Figure) -> String {
     let class = match figure.kind {
-        FigureKind::Chart => "chart",
-        FigureKind::Space => "space",
-        FigureKind::Table => "table",
-        FigureKind::Frame => "frame",
+        PaperFigureKind::Chart => "chart",
+        PaperFigureKind::Space => "space",
+        PaperFigureKind::Table => "table",
+        PaperFigureKind::Frame => "frame",
     };
     format!(
         "<figure class=\"{class}\">\n{}<figcaption>{}</figcaption>\n</figure>\n",
