@@ -1,4 +1,4 @@
-//! The main loop: it carries out what keys mean, advances the run with time, and draws a frame when something has changed.
+//! The main loop: handles keys, advances the run with time, and draws a frame when something has changed.
 
 use crate::class::ClassRole;
 use crate::lab::action::{Direction, LessonKey};
@@ -19,11 +19,16 @@ use std::time::{Duration, Instant};
 
 /// Longest wait for events while nothing changes.
 const LONGEST_IDLE_WAIT: Duration = Duration::from_millis(500);
-/// The same while something is done in the background: an export, a search for advice.
+/// Longest wait for events during a background job: an export or a search for advice.
 const ATTENTIVE: Duration = Duration::from_millis(100);
 
-/// Runs `lab` with its `lessons`, in its role in a class, on the terminal until the user leaves. It saves the lab in
-/// `session`, if given.
+/// Runs `lab` with its `lessons` and its `role` in a class on the terminal, until the user leaves.
+///
+/// It saves the state of the lab in `session`, if given.
+///
+/// # Errors
+///
+/// Returns an error if the terminal cannot be opened, read or written.
 pub fn run(
     lab: &mut Lab,
     lessons: &mut Lessons,
@@ -60,7 +65,7 @@ pub fn run(
         if is_over {
             return Ok(());
         }
-        // The answer to a key is drawn at once, without waiting for the next frame; so is the step that was asked for.
+        // Draw the answer to a key, or the requested step, at once instead of waiting for the next frame.
         let now = begin.elapsed();
         if (acted || has_arrived || pacing.is_due(now)) && lab.take_changed() {
             let bytes = screen.draw(|area, buf| screen::draw(lab, true, area, buf))?;
@@ -69,7 +74,7 @@ pub fn run(
     }
 }
 
-/// Advances run, class and lessons. Returns whether the run has arrived where it was to go, and whether the lab is to end.
+/// Advances run, class and lessons. Returns (true if the run has just reached its target, true if the lab must end).
 pub(super) fn advance_all(
     lab: &mut Lab,
     lessons: &mut Lessons,
@@ -84,7 +89,7 @@ pub(super) fn advance_all(
     (has_arrived, is_over)
 }
 
-/// Saves the state of `lab` in `session`, and shows a message as long as saving fails.
+/// Saves the state of `lab` in `session`, and shows a message while saving fails.
 fn keep(lab: &mut Lab, lessons: &Lessons, role: &dyn ClassRole, session: Option<&Session>) {
     let Some(session) = session else {
         return;
@@ -93,8 +98,10 @@ fn keep(lab: &mut Lab, lessons: &Lessons, role: &dyn ClassRole, session: Option<
     lab.set_trouble(role.trouble().or_else(|| session.trouble()));
 }
 
-/// Panics for tests of how the program ends; it is compiled with debug assertions only. `GYROLAB_PANIC_AFTER_MS=1000` makes
-/// this thread panic after a second, `GYROLAB_PANIC_ASIDE_AFTER_MS=1000` a background thread.
+/// Panics on request, for tests of how the program ends. Compiled with debug assertions only.
+///
+/// `GYROLAB_PANIC_AFTER_MS=1000` makes this thread panic after a second, and `GYROLAB_PANIC_ASIDE_AFTER_MS=1000` a
+/// background thread.
 #[cfg(debug_assertions)]
 #[expect(clippy::panic, reason = "it is what the tests ask for")]
 fn panic_if_asked(elapsed: Duration) {
@@ -111,12 +118,12 @@ fn panic_if_asked(elapsed: Duration) {
     }
 }
 
-/// How long to wait for events, if the next frame is due in `to_frame`.
+/// Returns how long to wait for events if the next frame is due in `to_frame`.
 pub(super) fn idle_time(lab: &Lab, lessons: &Lessons, to_frame: Duration) -> Duration {
     if lab.player().is_flat_out() {
         Duration::ZERO
     } else if lab.player().is_busy() || lab.has_changed() {
-        // Wait at least a little: a run too slow to change anything by the next frame must not keep the processor busy.
+        // Wait at least 1 ms: a run too slow to change anything by the next frame must not keep the processor busy.
         to_frame.max(Duration::from_millis(1))
     } else {
         let is_attentive =
@@ -143,7 +150,7 @@ fn handle(
     let is_signal = event == Event::Suspend;
     let request = request_of(event, lab, screen, pointer)?;
     if matches!(request, Some(LabRequest::Quit | LabRequest::Suspend)) {
-        keep(lab, lessons, role, session); // what was pressed just before it came with it
+        keep(lab, lessons, role, session); // includes the effect of the keys pressed just before
     }
     let size = screen.size()?;
     let request = match request {
@@ -167,11 +174,11 @@ fn handle(
         Some(LabRequest::Suspend) if !can_be_resumed() => lab.refuse(NO_SHELL),
         Some(LabRequest::Suspend) => screen.suspend(!is_signal)?,
     }
-    screen::fit(lab, screen.size()?); // all of it is to be drawn, at the size there is now
+    screen::fit(lab, screen.size()?); // redraw everything at the current size
     Ok(ControlFlow::Continue(()))
 }
 
-/// Does in the lab what `event` means. Returns what only the main loop can do.
+/// Carries out `event` in the lab. Returns a request if only the main loop can fulfill it.
 fn request_of(
     event: Event,
     lab: &mut Lab,
@@ -190,7 +197,7 @@ fn request_of(
         }
         Event::Typed(Typed::Mouse(mouse)) => pointer.act(mouse, screen.size()?, lab),
         Event::Suspend => Some(LabRequest::Suspend),
-        // A screen that was smaller for a moment has lost a part of its content, even if it has its old size again.
+        // A screen that was smaller for a moment has lost some of its content, even if it has its old size again.
         Event::Resized => Some(LabRequest::Redraw),
         Event::Resumed => {
             screen.resume()?;
@@ -199,12 +206,12 @@ fn request_of(
     })
 }
 
-/// Returns whether `key` scrolls the page, as the key to the next page does while there is more to be seen.
+/// Returns true if `key` scrolls the page: the next-page key does so until the end of the page is visible.
 pub fn scrolls_page(key: LessonKey, lab: &Lab, size: Rect) -> bool {
     key == LessonKey::Next && screen::page_goes_on(lab, size)
 }
 
-/// Does what `request` asks of the lessons, on a screen of this `size`; gives back any other request.
+/// Carries out a `request` to the lessons on a screen of this `size`. Returns any other request unchanged.
 pub fn do_in_class(
     request: LabRequest,
     lab: &mut Lab,

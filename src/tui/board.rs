@@ -1,4 +1,4 @@
-//! Lines that are drawn again and again, without a lab: the board of a class.
+//! Lines of text, redrawn at intervals without a lab: the board of a class.
 
 use super::decoder::Typed;
 use super::job_control::can_be_resumed;
@@ -15,11 +15,16 @@ use ratatui::style::{Modifier, Style};
 use std::io;
 use std::time::Duration;
 
-/// How often the lines are written anew.
+/// Time between two updates of the lines.
 const BOARD_INTERVAL: Duration = Duration::from_millis(500);
 
-/// Shows `lines`, which are given the width of the screen, until q, Esc or Ctrl-C. Where they are more than the screen has
-/// rows, arrows and page keys scroll them.
+/// Shows `lines`, called with the width of the screen, until q, Esc or Ctrl-C.
+///
+/// If there are more lines than rows, arrows and page keys scroll them.
+///
+/// # Errors
+///
+/// Returns an error if the terminal cannot be opened, read or written.
 pub fn run(lines: impl Fn(usize) -> Vec<String>) -> io::Result<()> {
     let mut screen = Screen::enter()?;
     let is_ascii = marker(|name| std::env::var(name).ok()) == Marker::Ascii;
@@ -53,7 +58,7 @@ pub fn run(lines: impl Fn(usize) -> Vec<String>) -> io::Result<()> {
     }
 }
 
-/// How many of `lines` a screen of this size shows. Where it has no room for all, its last row names the keys.
+/// Returns how many of `lines` a screen of this size shows. If they do not all fit, the last row names the keys.
 fn rows_of(lines: &[String], size: Rect) -> usize {
     let rows = usize::from(size.height);
     if lines.len() <= rows {

@@ -1,8 +1,9 @@
 //! Decodes the bytes of a terminal into keys and pastes.
 //!
-//! Bytes arrive in pieces of any length. An unfinished sequence waits a short time for its next byte. After that time, or at
-//! a byte that cannot belong to it, the sequence is dropped and decoding starts anew. Ctrl-C ends every sequence. Reports of
-//! the focus and the like, and older ones of the mouse, are recognised and ignored, so that they are not taken for keys.
+//! Bytes arrive in pieces of any length. An unfinished sequence waits a short time for its next byte. After that time,
+//! or at a byte that cannot belong to it, the sequence is dropped and decoding restarts. Ctrl-C ends every sequence.
+//! Focus reports, old mouse reports and similar sequences are recognized and ignored, so that they are not mistaken for
+//! keys.
 
 use crate::lab::MOST_PASTED;
 use crate::lab::view::theme::Background;
@@ -11,15 +12,15 @@ use crate::tui::mouse::{Did, Mouse};
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
-/// How long a sequence may wait for its next byte. A single Esc is recognised only after this time.
+/// Longest wait for the next byte of a sequence. A single Esc is recognized only after this time.
 const BYTE_GAP: Duration = Duration::from_millis(50);
-/// How long a sequence may take as a whole.
+/// Longest time for a whole sequence.
 const WHOLE_SEQUENCE_LIMIT: Duration = Duration::from_millis(500);
-/// How long a paste may wait for its next byte: on a slow line it comes in pieces.
+/// Longest wait for the next byte of a paste, which comes in pieces on a slow line.
 const GAP_IN_PASTE: Duration = Duration::from_secs(3);
-/// The most bytes of a sequence that are kept; every key has fewer.
+/// Maximum bytes kept of a sequence. Every key has fewer.
 const LONGEST_SEQUENCE: usize = 64;
-/// The most bytes of a paste that are kept: one more than the lab takes.
+/// Maximum bytes kept of a paste: one more than the lab accepts, so that the lab can tell that it is too long.
 const LONGEST_PASTE: usize = MOST_PASTED + 1;
 
 const ESC: u8 = 0x1b;
@@ -27,43 +28,45 @@ const BELL: u8 = 0x07;
 const CTRL_C: u8 = 0x03;
 const END_OF_PASTE: &[u8] = b"\x1b[201~";
 
+///  A decoded input.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Typed {
     Key(Key),
-    /// A text that the terminal says is pasted.
+    /// Pasted text, marked as such by the terminal (bracketed paste).
     Paste(String),
     Mouse(Mouse),
-    /// The terminal has answered which background it has.
+    /// The terminal's answer about its background color.
     Background(Background),
 }
 
-/// The decoder with its unfinished sequence and its finished keys.
+/// A decoder with its unfinished sequence and the inputs decoded so far.
 #[derive(Debug, Default)]
 pub struct Decoder {
     typed: VecDeque<Typed>,
     /// The bytes of the unfinished sequence.
     pending: Vec<u8>,
     paste: Option<Paste>,
-    /// When the first and the last byte of the unfinished sequence or paste arrived.
+    /// Arrival times of the first and the last byte of the unfinished sequence or paste.
     came: Option<(Instant, Instant)>,
 }
 
+/// A paste whose end has not arrived.
 #[derive(Debug, Default)]
 struct Paste {
     bytes: Vec<u8>,
-    /// How many bytes at the end match the beginning of [`END_OF_PASTE`].
+    /// Number of bytes at the end that match the beginning of [`END_OF_PASTE`].
     of_end: usize,
 }
 
-/// What the bytes of a sequence or of a character mean.
+/// Result of decoding the bytes of a sequence or a character.
 #[derive(Debug, PartialEq, Eq)]
 enum Decoded {
     Unfinished,
     Typed(Typed),
-    /// Finished, but no key that the lab uses.
+    /// A complete sequence that is no key of the lab.
     Nothing,
     Paste,
-    /// The last byte does not belong to it.
+    /// The last byte does not belong to the sequence.
     Broken,
 }
 
@@ -88,7 +91,7 @@ impl Decoder {
         self.typed.len()
     }
 
-    /// When the unfinished sequence or paste will be dropped, if there is one.
+    /// Returns the time at which the unfinished sequence or paste will be dropped, if any.
     pub fn deadline(&self) -> Option<Instant> {
         let (first, last) = self.came?;
         match self.paste {
@@ -129,7 +132,7 @@ impl Decoder {
             Decoded::Broken => {
                 self.pending.pop();
                 if self.pending.is_empty() {
-                    return; // a byte that begins nothing
+                    return; // no sequence begins with this byte
                 }
                 self.give_up();
                 return self.take(byte);
@@ -138,8 +141,9 @@ impl Decoder {
         self.pending.clear();
     }
 
-    /// Drops the unfinished sequence. Esc, or Esc and one more key, count as typed; a longer sequence cannot have been
-    /// typed so fast and is ignored.
+    /// Drops the unfinished sequence.
+    ///
+    /// Esc, or Esc and one more key, count as typed. A longer sequence cannot have been typed so fast and is ignored.
     fn give_up(&mut self) {
         let count = match self.pending.as_slice() {
             [ESC] => 1,
@@ -155,7 +159,7 @@ impl Decoder {
 
     fn take_pasted(&mut self, mut paste: Paste, byte: u8) {
         if byte == CTRL_C {
-            // No terminal sends it within a paste: the end of the paste was lost, and this is a key.
+            // No terminal sends Ctrl-C within a paste: the end of the paste was lost, and this is a key.
             return self.typed.push_back(Typed::Key(key_of(byte)));
         }
         if byte == END_OF_PASTE[paste.of_end] {
@@ -182,7 +186,7 @@ impl Decoder {
     }
 }
 
-/// Whether `byte` continues the body of the overlong sequence `pending`, so that it need not be kept.
+/// Returns true if `byte` continues the body of the overlong sequence `pending` and need not be kept.
 fn is_body(pending: &[u8], byte: u8) -> bool {
     match pending {
         [ESC, b'[', ..] => (0x20..0x40).contains(&byte),
@@ -199,7 +203,7 @@ fn found(bytes: &[u8]) -> Decoded {
     }
 }
 
-/// A character of more than one byte.
+/// Decodes a character of more than one byte.
 fn character(bytes: &[u8]) -> Decoded {
     let length = match bytes.first() {
         Some(0xc2..=0xdf) => 2,
@@ -237,7 +241,7 @@ fn after_escape(rest: &[u8]) -> Decoded {
             (decoded, _) => decoded,
         },
         [b'P' | b'^' | b'_' | b'X', rest @ ..] => string(rest),
-        _ => Decoded::Broken, // Alt and a key look like Esc and a key, and are taken as that
+        _ => Decoded::Broken, // Alt with a key looks like Esc and a key, and is decoded as such
     }
 }
 
@@ -245,7 +249,7 @@ fn known(key: Option<Key>) -> Decoded {
     key.map_or(Decoded::Nothing, |key| Decoded::Typed(Typed::Key(key)))
 }
 
-/// A string that a terminal sends unasked: it ends with `ESC \` or a bell, and is ignored.
+/// Decodes a string that a terminal sends unasked. It ends with `ESC \` or a bell, and is ignored.
 fn string(rest: &[u8]) -> Decoded {
     match rest {
         [.., CTRL_C] => Decoded::Broken,
@@ -255,7 +259,8 @@ fn string(rest: &[u8]) -> Decoded {
     }
 }
 
-/// The background whose color the terminal reports: `11;rgb:RRRR/GGGG/BBBB`, each part with one to four hexadecimal digits.
+/// Parses the terminal's report of its background color: `11;rgb:RRRR/GGGG/BBBB`, each component with one to four
+/// hexadecimal digits.
 fn background(rest: &[u8]) -> Option<Background> {
     let text = std::str::from_utf8(rest).ok()?;
     let color = text.strip_prefix("11;rgb:")?;
@@ -277,11 +282,11 @@ fn background(rest: &[u8]) -> Option<Background> {
     })
 }
 
-/// The bytes after `ESC [`: parameters, then a last byte from `@` to `~`.
+/// Decodes the bytes after `ESC [`: parameters, then a last byte from `@` to `~`.
 fn control_sequence(rest: &[u8]) -> Decoded {
     match rest {
         [.., 0..0x20] => Decoded::Broken,
-        // The Linux console's F1 to F5, and old mouse reports, continue after a byte that looks like the last one.
+        // The Linux console's F1 to F5 and old mouse reports continue after a byte that looks like the last one.
         [] | [b'['] | [b'M'] | [b'M', _] | [b'M', _, _] => Decoded::Unfinished,
         [b'[', _] | [b'M', ..] => Decoded::Nothing,
         [.., 0x20..0x40] => Decoded::Unfinished,
@@ -294,11 +299,11 @@ fn control_sequence(rest: &[u8]) -> Decoded {
     }
 }
 
-/// The meaning of a report of the mouse, `BUTTON;COLUMN;LINE` counted from 1; `is_down`: no button was released.
+/// Parses a mouse report, `BUTTON;COLUMN;LINE` counted from 1. `is_down` is false if a button was released.
 fn mouse(parameters: &[u8], is_down: bool) -> Option<Mouse> {
     /// Shift, Alt and Ctrl.
     const MODIFIERS: u16 = 4 | 8 | 16;
-    /// More bytes than these are no place on any screen.
+    /// Maximum bytes of a report. No screen position needs more.
     const LONGEST_PLACE: usize = 20;
     let text = std::str::from_utf8(parameters).ok()?;
     if text.len() > LONGEST_PLACE {
@@ -374,7 +379,7 @@ fn numbered(number: u32) -> Option<Key> {
     })
 }
 
-/// A key by its code point, as some terminals send those that have modifiers.
+/// Returns the key with this code point. Some terminals send keys with modifiers in this form.
 fn coded(code: u32, modifiers: u32) -> Option<Key> {
     let c = char::from_u32(code)?;
     Some(match c {

@@ -4,7 +4,7 @@ use crate::lab::view::theme::Marker;
 use ratatui::symbols::pixel::OCTANTS;
 
 impl Marker {
-    /// Dots in a cell, across and down.
+    /// Returns the dots per cell, across and down.
     pub fn dots(self) -> (usize, usize) {
         match self {
             Self::Braille | Self::Octant => (2, 4),
@@ -13,15 +13,15 @@ impl Marker {
         }
     }
 
-    /// Width over height of one dot, in cells twice as high as wide.
+    /// Returns the width of one dot divided by its height, for cells twice as high as wide.
     pub fn dot_aspect(self) -> f64 {
         let (across, down) = self.dots();
         0.5 * down as f64 / across as f64
     }
 
-    /// The bit of the dot at `x`, `y` of a cell.
+    /// Returns the bit of the dot at `x`, `y` in its cell.
     pub fn bit(self, x: usize, y: usize) -> u8 {
-        /// Rows of the Braille patterns' bits, left and right (Unicode, block U+2800).
+        /// Bits of the Braille patterns by row, left and right column (Unicode, block U+2800).
         const BRAILLE: [[u8; 2]; 4] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
         match self {
             Self::Braille => BRAILLE[y % 4][x % 2],
@@ -30,7 +30,7 @@ impl Marker {
         }
     }
 
-    /// The character of a cell with these `bits` in a layer: strong, faint, dashed or ghost.
+    /// Returns the character of a cell with these `bits` in a layer: 0 strong, 1 faint, 2 dashed, 3 ghost.
     pub(super) fn sign(self, layer: usize, bits: u8) -> char {
         match (self, layer) {
             (Self::Braille, _) => char::from_u32(0x2800 + u32::from(bits)).unwrap_or(' '),
@@ -56,7 +56,8 @@ fn half_block(bits: u8) -> char {
     }
 }
 
-/// The stand-in for `symbol` on the Linux console, whose fonts have the 256 characters of the old PC; `None` if they have it.
+/// Returns the substitute for `symbol` on the Linux console, whose fonts have the 256 characters of the old PC. Returns
+/// `None` if they have `symbol`.
 pub fn on_console(symbol: &str) -> Option<&'static str> {
     Some(match symbol {
         "━" => "═",
@@ -69,7 +70,7 @@ pub fn on_console(symbol: &str) -> Option<&'static str> {
     })
 }
 
-/// `symbol` in ASCII, for terminals whose locale is not UTF-8: a stand-in of the same width.
+/// Returns an ASCII substitute of the same width for `symbol`, for terminals whose locale is not UTF-8.
 pub fn ascii(symbol: &str) -> &'static str {
     match symbol {
         "─" | "╴" | "╌" => "-",
@@ -92,7 +93,7 @@ pub fn ascii(symbol: &str) -> &'static str {
         "Ω" => "W",
         "τ" => "T",
         "–" | "—" | "−" | "⁻" => "-",
-        // Of the formulas of a time step.
+        // Symbols in the formulas of a time step.
         "Σ" => "S",
         "Δ" => "D",
         "ᵀ" | "′" => "'",
@@ -108,7 +109,7 @@ pub fn ascii(symbol: &str) -> &'static str {
     }
 }
 
-/// Dots that are drawn, and out of how many: dashes and dots tell the runs apart without colors.
+/// Dots drawn per period, and the period in dots. Dashes and dots distinguish the runs without colors.
 pub type Dashes = (usize, usize);
 
 pub const EXACT_DASHES: Dashes = (4, 8);
@@ -117,14 +118,15 @@ pub const PINNED_DASHES: Dashes = (5, 7);
 /// The previous run: single dots.
 pub const PREVIOUS_DASHES: Dashes = (1, 3);
 
-/// The column and row of a dot; `None` outside of a sheet of this size, as for NaN.
+/// Returns the column and row of a dot. Returns `None` outside a sheet of this size, and for NaN.
 pub fn on_sheet((x, y): (f64, f64), (width, height): (usize, usize)) -> Option<(usize, usize)> {
     let is_inside = x >= 0.0 && y >= 0.0 && x < width as f64 && y < height as f64;
     is_inside.then_some((x as usize, y as usize))
 }
 
-/// The dots of a straight line, each with its share of the way; none of a line that is far longer than a sheet of
-/// `width` and `height` dots.
+/// Returns the dots of a straight line, each with its fraction of the length.
+///
+/// Returns none if the line is far longer than a sheet of `width` and `height` dots.
 pub fn line(
     from: (f64, f64),
     to: (f64, f64),
@@ -132,7 +134,7 @@ pub fn line(
 ) -> impl Iterator<Item = (f64, (f64, f64))> {
     let (dx, dy) = (to.0 - from.0, to.1 - from.1);
     let length = dx.abs().max(dy.abs()).ceil();
-    let is_near = length <= 8.0 * (width + height) as f64; // NaN is not
+    let is_near = length <= 8.0 * (width + height) as f64; // false for NaN
     let dots = if is_near { length as usize + 1 } else { 0 };
     (0..dots).map(move |dot| {
         let share = dot as f64 / length.max(1.0);

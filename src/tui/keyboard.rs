@@ -8,11 +8,11 @@ use std::os::unix::net::UnixStream;
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
-/// The most keys that are decoded ahead; further bytes stay in the system's buffer.
+/// Maximum number of keys decoded ahead. Further bytes stay in the system's buffer.
 const MOST_AHEAD: usize = 256;
 const CHUNK: usize = 4096;
 
-/// Writing to this socket wakes [`Keyboard::wait`].
+/// Socket that wakes [`Keyboard::wait`] when a byte is written to it.
 static WAKE_SOCKET: OnceLock<UnixStream> = OnceLock::new();
 
 /// Ends the [`wait`](Keyboard::wait) in progress, or the next one. Any thread may call it.
@@ -22,7 +22,7 @@ pub fn wake() {
     }
 }
 
-/// Stdin, where it is a terminal in raw mode.
+/// Standard input of a terminal in raw mode.
 #[derive(Debug)]
 pub struct Keyboard {
     decoder: Decoder,
@@ -30,12 +30,12 @@ pub struct Keyboard {
 }
 
 impl Keyboard {
-    /// Call it once per process: [`wake`] wakes only the first keyboard.
+    /// Creates the keyboard. Call it once per process: [`wake`] wakes only the first keyboard.
     pub fn new() -> io::Result<Self> {
         let (ours, others) = UnixStream::pair()?;
         ours.set_nonblocking(true)?;
         others.set_nonblocking(true)?;
-        let _ = WAKE_SOCKET.set(others); // the first one stays
+        let _ = WAKE_SOCKET.set(others); // keeps the first one
         Ok(Self {
             decoder: Decoder::default(),
             bell: ours,
@@ -46,11 +46,13 @@ impl Keyboard {
         self.decoder.take_typed()
     }
 
-    /// Waits at most `wait` until something is typed, a signal arrives, or [`wake`] is called. Then it reads all that has
-    /// arrived, up to a few hundred keys.
+    /// Waits until something is typed, a signal arrives or [`wake`] is called, but at most `wait`.
+    ///
+    /// Then reads everything that has arrived, up to a few hundred keys.
     ///
     /// # Errors
-    /// [`UnexpectedEof`](io::ErrorKind::UnexpectedEof) when the terminal is closed, with or without a signal.
+    ///
+    /// Returns [`UnexpectedEof`](io::ErrorKind::UnexpectedEof) if the terminal is closed, with or without a signal.
     pub fn wait(&mut self, wait: Duration) -> io::Result<()> {
         let end = Instant::now() + wait;
         while self.decoder.ready() < MOST_AHEAD {
@@ -73,7 +75,7 @@ impl Keyboard {
         Ok(())
     }
 
-    /// Waits at most `wait`: whether something was typed, and whether the wait was ended by a signal or by [`wake`].
+    /// Waits at most `wait`. Returns (true if there is input, true if a signal or [`wake`] ended the wait).
     fn poll(&mut self, wait: Duration) -> io::Result<(bool, bool)> {
         let stdin = io::stdin();
         let mut both = [
@@ -91,7 +93,7 @@ impl Keyboard {
         }
         let [terminal, bell] = both.map(|one| one.revents());
         if !terminal.is_empty() && !terminal.contains(PollFlags::IN) {
-            return Err(gone()); // it has hung up, and what was typed before is taken
+            return Err(gone()); // hung up, and all earlier input has been read
         }
         let woken = !bell.is_empty();
         if woken {

@@ -1,5 +1,5 @@
-//! The one table of keys: what is pressed, in which mode, which commands or which action it means, and what the footer and
-//! the help say of it.
+//! The one table of keys: the modes in which a key works, the commands or the action that it means, and its text in the
+//! footer and the help.
 
 pub use crate::lab::Mode;
 use crate::lab::action::{Action, Ask, Direction, FieldEdit, LessonKey, SHIFT_FACTOR, repeated};
@@ -13,7 +13,7 @@ use Key::{
 };
 use Mode::{Browser, Dialog, Find, Help, Lab, Lessons};
 
-/// A key, as no terminal library names it.
+/// A key of the keyboard, independent of any terminal library.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Key {
     Char(char),
@@ -38,31 +38,32 @@ pub enum Key {
     PageDown,
 }
 
+/// A row of the table of keys.
 #[derive(Debug)]
 pub struct Binding {
     pub modes: &'static [Mode],
-    /// Which keys; the first is the one that is shown.
+    /// Keys with this effect. The footer and the help show the first.
     pub keys: &'static [Key],
     pub does: KeyEffect,
-    /// What the footer says, empty where it says nothing.
+    /// Text in the footer; empty if the footer does not list the key.
     pub footer: &'static str,
     pub help: &'static str,
-    /// Further words by which the help finds it.
+    /// Further words by which the search in the help finds the row.
     pub search: &'static str,
-    /// The group of the help in which a key of the lab is listed.
+    /// Group of the help that lists a key of the lab.
     pub purpose: &'static str,
     pub worth: FooterPriority,
 }
 
-/// What a key does.
+/// Effect of a key.
 #[derive(Clone, Copy, Debug)]
 pub enum KeyEffect {
-    /// The commands that this function returns for the count that was typed before the key are carried out.
+    /// Runs the commands that this function returns. Its second argument is the count typed before the key.
     Commands(fn(&TheLab, Option<u64>) -> KeyCommands),
     Action(Action),
 }
 
-/// How long the footer names a key where there is not room for all: the least go first.
+/// Priority of a key in the footer. If there is not room for all, the lowest priorities are omitted first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum FooterPriority {
     Spare,
@@ -79,7 +80,7 @@ const PUSH_GROUP: &str = "push";
 const KEEP_GROUP: &str = "keep and export";
 const OPEN_GROUP: &str = "open another run";
 const LEAVE: &str = "help, close, leave";
-/// The groups of the keys of the lab, in order.
+/// Groups of the lab's keys, in order.
 pub const PURPOSES: [&str; 7] = [
     PLAY,
     LOOK_GROUP,
@@ -90,7 +91,7 @@ pub const PURPOSES: [&str; 7] = [
     LEAVE,
 ];
 
-/// The keys of the traces while they have the focus.
+/// Keys of the traces while they have the focus.
 #[rustfmt::skip]
 pub const TRACES_KEYS: &[Binding] = &[
     row(&[Lab], &[Left], Action::Move(Direction::Left, 1), "cursor", "the cursor to the left: its values are shown; Esc takes it away"),
@@ -100,7 +101,7 @@ pub const TRACES_KEYS: &[Binding] = &[
     row(&[Lab], &[Down], Action::Move(Direction::Down, 1), "", "magnify them less"),
 ];
 
-/// The keys of the path from above while it has the focus.
+/// Keys of the path from above while it has the focus.
 #[rustfmt::skip]
 pub const FROM_ABOVE_KEYS: &[Binding] = &[
     does(&[Lab], &[Char('z')], zoomed_in, "zoom", "show it larger, around what moves; 3z three notches"),
@@ -108,7 +109,7 @@ pub const FROM_ABOVE_KEYS: &[Binding] = &[
     does(&[Lab], &[Home], |lab, _| one(lab.view().zoom_to(1.0)?), "", "show the whole of it"),
 ];
 
-/// The keys of the 3-D view while it has the focus.
+/// Keys of the 3-D view while it has the focus.
 #[rustfmt::skip]
 pub const THREE_D_KEYS: &[Binding] = &[
     does(&[Lab], &[Char('z')], zoomed_in, "zoom", "show it larger, around the wheel; 3z three notches"),
@@ -121,16 +122,16 @@ fn whole_scene(lab: &TheLab) -> KeyCommands {
     Ok(vec![lab.view().zoom_to(1.0)?, usual])
 }
 
-/// So many of the keys of the step pane, the first, go through the phases.
+/// Number of keys, at the beginning of [`STEP_KEYS`], that move through the phases.
 pub const PHASE_KEYS: usize = 2;
 
-/// The keys of the values while they have the focus.
+/// Keys of the values pane while it has the focus.
 #[rustfmt::skip]
 pub const VALUES_KEYS: &[Binding] = &[
     row(&[Lab], &[Char('/')], Action::FindValue, "find", "find a value by a part of its name; Esc shows all again"),
 ];
 
-/// The keys of the step pane while it has the focus.
+/// Keys of the step pane while it has the focus.
 #[rustfmt::skip]
 pub const STEP_KEYS: &[Binding] = &[
     does(&[Lab], &[Char('.')], |lab, count| lab.step_pane().other_phase(repeated(count), lab.view(), lab.player()), "next phase", "the next phase of the time step; after the last, the next time step"),
@@ -143,10 +144,10 @@ pub const STEP_KEYS: &[Binding] = &[
     row(&[Lab], &[PageUp], Action::Move(Direction::PageUp, 1), "", "ten points fewer"),
 ];
 
-/// The keys that mean something while there is a lesson, whichever pane has the focus.
+/// Keys that work while a lesson is open, whichever pane has the focus.
 pub const LESSON_KEYS_EVERYWHERE: &[Binding] = LESSON_KEYS.split_at(5).0;
 
-/// The keys of the page of a lesson while it has the focus; the first of them also elsewhere.
+/// Keys of a lesson's page while it has the focus. The first five also work elsewhere.
 #[rustfmt::skip]
 pub const LESSON_KEYS: &[Binding] = &[
     row(&[Lab], &[Char('n')], Action::Lesson(LessonKey::Next), "next", "the rest of the page, then the next one; while a page's run plays: to its end"),
@@ -185,7 +186,7 @@ pub fn magnified_less(lab: &TheLab, count: Option<u64>) -> KeyCommands {
     one(lab.view().other_magnification(-repeated(count)))
 }
 
-/// One time step, or as many as the count says, on with 1 and back with -1.
+/// Returns the command for one time step, or for `count` steps: forward if `sign` is 1, back if it is -1.
 fn stepped(count: Option<u64>, sign: i64) -> KeyCommands {
     let steps = i64::try_from(count.unwrap_or(1)).unwrap_or(i64::MAX);
     one(match steps {
@@ -200,7 +201,7 @@ fn restarted(lab: &TheLab, _: Option<u64>) -> KeyCommands {
     Ok([start].into_iter().chain(run).collect())
 }
 
-/// Until when the page hides what answers its question; `None` if it hides nothing.
+/// Returns when the page stops hiding the answer to its question, or `None` if it hides nothing.
 fn hidden_until(lab: &TheLab) -> Option<&'static str> {
     let view = lab.view();
     match view.asked() {
@@ -223,12 +224,12 @@ fn advice_taken(lab: &TheLab) -> KeyCommands {
     one(lab.adviser().followed(lab.player())?)
 }
 
-/// What a key means that means one command.
+/// Returns `command` as the meaning of a key.
 pub fn one(command: Command) -> KeyCommands {
     Ok(vec![command])
 }
 
-/// A key that means an action.
+/// Returns the row of a key that means an action.
 pub const fn row(
     modes: &'static [Mode],
     keys: &'static [Key],
@@ -248,7 +249,7 @@ pub const fn row(
     }
 }
 
-/// A key that means commands.
+/// Returns the row of a key that means commands.
 pub const fn does(
     modes: &'static [Mode],
     keys: &'static [Key],
@@ -271,7 +272,7 @@ impl Binding {
         Self { worth, ..self }
     }
 
-    /// The row with further `words` by which the help finds it.
+    /// Returns the row with further `words` by which the help finds it.
     const fn found_by(self, words: &'static str) -> Self {
         Self {
             search: words,
@@ -280,7 +281,7 @@ impl Binding {
     }
 }
 
-/// Every binding but digits and typed text, in the order of footer and help.
+/// All bindings except digits and typed text, in the order of footer and help.
 #[rustfmt::skip]
 pub static BINDINGS: &[Binding] = &[
     row(&[Lab], &[Char(' ')], Action::TogglePause, "pause", "stop the run, or let it go on").to(PLAY).worth(FooterPriority::Kept),
@@ -374,7 +375,7 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Lab, Browser, Lessons, Find, Help, Dialog], &[Ctrl('c')], Action::Quit, "", "leave the lab").to(LEAVE),
 ];
 
-/// What `key` means in `mode` where the pane in focus adds these `keys`, which come before the others.
+/// Returns the effect of `key` in `mode`. The `keys` of the pane in focus have priority over [`BINDINGS`].
 pub fn meaning(
     keys: impl IntoIterator<Item = &'static Binding>,
     mode: Mode,

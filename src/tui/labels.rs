@@ -1,12 +1,11 @@
-//! Labels of a picture. A label goes to the first place beside its mark whose cells are free, or is left out.
+//! Labels of a picture. A label is written at the first free position near its mark, or omitted if none is free.
 
 use crate::engine::text::wrap::columns;
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 
-/// The places of a label: how far its first column is from the mark, counted from the mark to the right, or from the end of
-/// the label to the left, and how many rows down.
+/// Positions of a label, best first, as offsets of its first or last column from the mark and as rows down.
 #[rustfmt::skip]
 pub const AROUND_MARK: &[LabelOffset] = &[
     LabelOffset::Right(3, 0), LabelOffset::Right(2, -1), LabelOffset::Right(2, 1), LabelOffset::Left(2, 0),
@@ -16,7 +15,7 @@ pub const AROUND_MARK: &[LabelOffset] = &[
     LabelOffset::Right(2, 3), LabelOffset::Right(2, -3),
 ];
 
-/// The places of a letter that belongs to a point.
+/// Positions of a letter that names a point.
 #[rustfmt::skip]
 pub const AROUND_POINT: &[LabelOffset] = &[
     LabelOffset::Right(1, 0), LabelOffset::Left(1, 0), LabelOffset::Right(2, 0), LabelOffset::Left(2, 0),
@@ -24,19 +23,20 @@ pub const AROUND_POINT: &[LabelOffset] = &[
     LabelOffset::Left(2, -1), LabelOffset::Left(2, 1), LabelOffset::Right(3, 0), LabelOffset::Left(3, 0),
 ];
 
-/// Above or below the end of an axis; at the pane's edge only where nothing else is free.
+/// Positions above or below the end of an axis. The position at the pane's edge is used only if the others are
+/// occupied.
 #[rustfmt::skip]
 pub const AT_AXIS_END: &[LabelOffset] = &[
     LabelOffset::Right(0, -1), LabelOffset::Right(0, 1), LabelOffset::Right(1, -1), LabelOffset::Right(1, 1),
     LabelOffset::Right(2, -1), LabelOffset::Right(2, 1),
 ];
 
-/// Columns beside a mark and rows below it.
+/// Offset of a label from its mark: columns across, rows down.
 #[derive(Clone, Copy, Debug)]
 pub enum LabelOffset {
-    /// The first column of the label, to the right of the mark.
+    /// Columns from the mark to the first column of the label, to the right.
     Right(i32, i32),
-    /// The last column of the label, to the left of the mark.
+    /// Columns from the mark to the last column of the label, to the left.
     Left(i32, i32),
 }
 
@@ -47,8 +47,8 @@ pub struct Labels<'a> {
 }
 
 impl Labels<'_> {
-    /// Writes `text` at the first free place of `offsets` about the cell `mark`, counted from the picture's upper left.
-    /// Returns whether there was one.
+    /// Writes `text` at the first free position of `offsets` around the cell `mark`, counted from the picture's upper
+    /// left. Returns false if no position is free.
     pub fn place(
         &mut self,
         mark: (i32, i32),
@@ -68,7 +68,7 @@ impl Labels<'_> {
         free.is_some()
     }
 
-    /// Writes `text` at this cell, over what is there. Outside the picture nothing happens.
+    /// Writes `text` at this cell, over its content. Does nothing outside the picture.
     pub fn write(&mut self, (x, y): (i32, i32), text: &str, style: Style) {
         if self.contains((x, y), columns(text) as i32) {
             let (x, y) = (self.picture.x + x as u16, self.picture.y + y as u16);
@@ -84,7 +84,7 @@ impl Labels<'_> {
         x >= 0 && y >= 0 && x + width <= columns && y < rows
     }
 
-    /// Returns true if the cells are blank, and no letter is next to them.
+    /// Returns true if the cells are blank and no letter or digit is next to them.
     fn is_free(&self, (x, y): (i32, i32), width: i32) -> bool {
         let is_blank = (x..x + width).all(|x| self.symbol((x, y)) == Some(" "));
         let is_apart = [x - 1, x + width].into_iter().all(|x| {
@@ -94,7 +94,7 @@ impl Labels<'_> {
         is_blank && is_apart
     }
 
-    /// The content of a cell; `None` outside the picture.
+    /// Returns the content of a cell, or `None` outside the picture.
     fn symbol(&self, (x, y): (i32, i32)) -> Option<&str> {
         let place = self.contains((x, y), 1);
         let cell = place.then(|| {

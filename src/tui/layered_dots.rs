@@ -1,7 +1,7 @@
-//! Dots in layers, for the pictures in which lines cross: from above, and in space.
+//! Dots in layers, for the pictures in which lines cross: the path from above and the 3-D view.
 //!
-//! Places are fine dots, two in a column and four in a row, from the upper left. The marker may draw larger ones. A cell
-//! has the color of its uppermost dot. Lines of one body, and the path and its head, share their cells.
+//! Positions are in fine dots, two across and four down per cell, from the upper left. The marker may draw larger ones.
+//! A cell has the color of its top dot. Lines of one body share their cells, and so do the path and its head.
 
 use crate::lab::view::theme::{Marker, Theme};
 use crate::tui::dots::{self, Dashes, on_sheet};
@@ -12,13 +12,13 @@ use ratatui::layout::Rect;
 /// Fine dots in a cell, across and down.
 pub const FINE_DOTS: (usize, usize) = (2, 4);
 
-/// Width of an arrow's head at its foot, as a share of its length.
+/// Width of an arrow's head at its base, as a fraction of the head's length.
 const HEAD_WIDTH: f64 = 1.0;
-/// A head is at most this share of its arrow, and at least so many dots long.
+/// Maximum length of a head, as a fraction of its arrow; and its minimum length, fine dots.
 const MOST_OF_ARROW: f64 = 0.5;
 const LEAST_HEAD: f64 = 3.0;
 
-/// The layers, the lowest first.
+/// Layers, lowest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Layer {
     Ground,
@@ -37,17 +37,17 @@ pub enum Layer {
     Now,
 }
 
-/// What a dot belongs to.
+/// Role and layer of a dot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DotInk {
     pub role: Role,
     pub layer: Layer,
 }
 
-/// A place on the sheet, fine dots to the right and down.
+/// Position on the sheet, fine dots to the right and down.
 pub type FineDot = (f64, f64);
 
-/// A filled spot, by its width in fine dots.
+/// Filled spot, by its width in fine dots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Spot {
     Two,
@@ -56,10 +56,11 @@ pub enum Spot {
     Five,
 }
 
+/// Layered dots on an area of the screen.
 pub struct LayeredDots {
     area: Rect,
     marker: Marker,
-    /// The uppermost dot at each place, in rows of the marker's dots.
+    /// Top dot at each position, in rows of the marker's dots.
     dots: Vec<Option<DotInk>>,
     width: usize,
     height: usize,
@@ -78,7 +79,7 @@ impl LayeredDots {
         }
     }
 
-    /// Fine dots across and down.
+    /// Returns the fine dots across and down.
     pub fn size(&self) -> (usize, usize) {
         (
             self.area.width as usize * FINE_DOTS.0,
@@ -96,7 +97,7 @@ impl LayeredDots {
         Some(row * self.width + column)
     }
 
-    /// Sets a dot, unless one of a higher layer is there; outside the sheet nothing happens.
+    /// Sets a dot, unless a higher layer already has a dot there. Does nothing outside the sheet.
     pub fn set(&mut self, at: FineDot, ink: DotInk) {
         if let Some(place) = self.place(at)
             && self.dots[place].is_none_or(|there| there.layer <= ink.layer)
@@ -111,8 +112,9 @@ impl LayeredDots {
         }
     }
 
-    /// A line through `places`, dashed if `dashes` are given. Places more than `longest` apart are not joined, because the
-    /// motion between them is unknown.
+    /// Draws a line through `places`, dashed if `dashes` are given.
+    ///
+    /// Places more than `longest` fine dots apart are not joined, because the motion between them is unknown.
     pub fn path(
         &mut self,
         places: impl Iterator<Item = FineDot>,
@@ -154,7 +156,7 @@ impl LayeredDots {
         }
     }
 
-    /// A small ring with nothing in it.
+    /// Draws a small ring and clears lower layers inside it.
     pub fn ring(&mut self, (x, y): FineDot, ink: DotInk) {
         for across in -2..=2_i32 {
             for down in -2..=2_i32 {
@@ -171,7 +173,8 @@ impl LayeredDots {
         }
     }
 
-    /// A line with a filled head at `tip`, `head` fine dots long where the arrow has room for it.
+    /// Draws a line with a filled head at `tip`. The head is `head` fine dots long, or shorter if the arrow is too
+    /// short.
     pub fn arrow(&mut self, from: FineDot, tip: FineDot, head: f64, role: Role) {
         let (dx, dy) = (tip.0 - from.0, tip.1 - from.1);
         let length = libm::hypot(dx, dy);
@@ -201,7 +204,7 @@ impl LayeredDots {
         }
     }
 
-    /// Draws the dots on the screen; cells without dots stay as they are.
+    /// Draws the dots on the screen. Cells without dots do not change.
     pub fn render(&self, theme: &Theme, buf: &mut Buffer) {
         for (index, position) in self.area.positions().enumerate() {
             let column = index % self.area.width as usize;
@@ -215,7 +218,7 @@ impl LayeredDots {
         }
     }
 
-    /// The character and the role of a cell; `None` if it has no dots.
+    /// Returns the character and the role of a cell, or `None` if it has no dots.
     fn cell(&self, column: usize, row: usize) -> Option<(char, Role)> {
         let (across, down) = self.marker.dots();
         let in_cell = (0..down).flat_map(|y| (0..across).map(move |x| (x, y)));
@@ -237,7 +240,7 @@ impl LayeredDots {
     }
 }
 
-/// Returns true if dots of `role` stay in a cell whose uppermost dot is of `top`.
+/// Returns true if dots of `role` are drawn in a cell whose top dot has the role `top`.
 fn share_cells(role: Role, top: Role) -> bool {
     role == top || (is_of_body(role) && is_of_body(top)) || (is_of_path(role) && is_of_path(top))
 }
@@ -266,7 +269,7 @@ fn is_faint(role: Role) -> bool {
     )
 }
 
-/// The character of `role` where a dot is as large as a cell: it tells roles apart without colors.
+/// Returns the character of `role` if a dot is as large as a cell. It distinguishes roles without colors.
 fn large_sign(role: Role, marker: Marker) -> char {
     let is_ascii = marker == Marker::Ascii;
     match role {

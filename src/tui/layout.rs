@@ -1,82 +1,87 @@
 //! Where each part of the screen is, at every size.
 //!
-//! There are three arrangements. Narrow screens (80x24) have three columns: the traces, a view of the path, and the values.
-//! From 27 rows of panes on, the path is shown from above and, below that, in 3-D. Large screens (from 160x44 on) have the
-//! values in a band below both views. The panes are one column apart. The overview of the whole run lies below them.
-//! Smaller screens show fewer parts; the verdict and the keys stay to the last.
+//! There are three arrangements. Narrow screens (80x24) have three columns: the traces, a view of the path, and the
+//! values. If the panes have 27 rows or more, the path is shown from above and, below that, in 3-D. Large screens
+//! (160x44 or more) have the values in a band below both views. A blank column separates the panes, and the overview of
+//! the whole run is below them. Smaller screens show fewer parts. The verdict and the keys are dropped last.
 
 use super::split::{split_columns, split_rows};
 use crate::lab::view::{HideablePart, Pane, View};
 use ratatui::layout::Rect;
 
-/// The size of the whole lab, columns and rows. Below it, parts are left out.
+/// Minimum size of the whole lab, columns and rows. Smaller screens omit parts.
 pub const FULL_LAB: (u16, u16) = (80, 24);
-/// From this size on the values are a band below the views of the path.
+/// Minimum size at which the values are a band below the views of the path.
 const LARGE_LAB: (u16, u16) = (160, 44);
-/// From this width on two panes are side by side.
+/// Minimum width for two panes side by side, columns.
 const TWO_FROM: u16 = 48;
-/// From this height on there is a scrub line.
+/// Minimum height for a scrub line, rows.
 const SCRUB_FROM: u16 = 14;
-/// From this height on the note has rows of its own.
+/// Minimum height for a note with rows of its own.
 const NOTE_FROM: u16 = 12;
-/// Rows of the overview: a rule, the curve, and a ruler; and the height of the screen from which they are.
+/// Rows of the overview (a rule, the curve and a ruler), each with the minimum height of the screen: (height, rows).
 const OVERVIEW_ROWS: [(u16, u16); 3] = [(44, 6), (36, 5), (24, 4)];
-/// The note has up to three rows below the first of these widths, and two below the second.
+/// Widths below which the note has up to three rows (first) and up to two rows (second).
 pub const NOTE_COLUMNS: (u16, u16) = (60, 120);
 
-/// The fewest and the most columns of the traces, and their share of the screen at 80 and at 120 columns, per mille.
+/// Minimum and maximum columns of the traces.
 const TRACES_COLUMNS: (u16, u16) = (28, 96);
+///  Share of the screen for the traces at 80 and at 120 columns, per mille.
 const TRACES_SHARE: (u32, u32) = (350, 420);
-/// Columns of the values, and from [`WIDE_VALUES_FROM`] columns of the screen on.
+/// Columns of the values: on narrow screens, and on screens of at least [`WIDE_VALUES_FROM`] columns.
 const VALUES_COLUMNS: (u16, u16) = (24, 30);
 const WIDE_VALUES_FROM: u16 = 110;
 /// Rows of the values below the views of the path.
 const VALUES_ROWS: u16 = 13;
-/// The fewest columns of a view of the path beside another one, and the fewest rows of two, one above the other.
+/// Minimum columns of a view of the path next to another one.
 const VIEW_COLUMNS: u16 = 26;
+/// Minimum rows of two views, one above the other.
 const STACKED_FROM: u16 = 27;
-/// The fewest columns of a view of the path where two of them were chosen.
+/// Minimum columns of a view of the path if the user chose both.
 const CHOSEN_VIEW_COLUMNS: u16 = 20;
 
-/// The fewest and the most columns of a lesson's page, its share of the screen in percent, and the width of the screen from
-/// which the page is beside the run.
+/// Minimum and maximum columns of a lesson's page.
 const PAGE_COLUMNS: (u16, u16) = (37, 64);
+/// Share of the screen for the page, percent.
 const PAGE_SHARE: u32 = 39;
+/// Minimum width of the screen for a page next to the run, columns.
 const BESIDE_PAGE_FROM: u16 = 72;
-/// The rows of a page above the run that it plays, on narrower screens.
+/// Rows of a page above the run that it plays, on narrower screens.
 const PAGE_ROWS: u16 = 8;
-/// The fewest and the most columns of the step pane, and its share of the screen in percent.
+/// Minimum and maximum columns of the step pane.
 const STEP_COLUMNS: (u16, u16) = (44, 84);
+/// Share of the screen for the step pane, percent.
 const STEP_SHARE: u32 = 62;
-/// The width of the screen from which the run is beside the step pane.
+/// Minimum width of the screen for the run next to the step pane, columns.
 const BESIDE_STEP_FROM: u16 = 100;
-/// The fewest columns of what is beside a page or the step pane, and the fewest columns and rows with which it is two panes,
-/// one above the other.
+/// Minimum columns of the panes next to a page or to the step pane.
 const COMPANION_COLUMNS: u16 = 24;
+/// Minimum columns for two such panes, one above the other; their minimum rows follow.
 const COMPANION_OF_TWO: u16 = 36;
 const COMPANION_ROWS: u16 = 16;
 
-/// The areas of a screen; a part without a place has an empty area.
+/// Areas of a screen. A part that is not shown has an empty area.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ScreenLayout {
     /// Title, time step, time and speed: one row.
     pub header: Rect,
-    /// The panes that have a place, in the order in which Tab goes through them.
+    /// Visible panes, in the order in which Tab visits them.
     pub panes: Vec<(Pane, Rect)>,
-    /// The whole run: a rule, its curve and a ruler; or one row, the scrub line.
+    /// Overview of the whole run: a rule, its curve and a ruler; or one row, the scrub line.
     pub overview: Rect,
     pub measured: Rect,
-    /// Whether the run is reliable: one row.
+    /// Reliability of the run: one row.
     pub verdict: Rect,
-    /// What to look at: one row, or two. On low screens it is the row of the verdict, where only messages are shown.
+    /// Note on what to look at: one to three rows. On low screens it is the row of the verdict, and shows only
+    /// messages.
     pub note: Rect,
     pub keys: Rect,
-    /// Whether the screen is too small for the whole lab.
+    /// True if the screen is too small for the whole lab.
     pub is_cramped: bool,
 }
 
 impl ScreenLayout {
-    /// Returns the layout of `area`, with a note that needs `note_rows`; `keys` says whether there is a row of keys.
+    /// Returns the layout of `area` with a note that needs `note_rows`. There is a row of keys if `keys` is true.
     pub fn new(area: Rect, view: &View, note_rows: u16, keys: bool) -> Self {
         let mut rest = area;
         if view.sheet.as_ref().is_some_and(|sheet| sheet.is_alone) {
@@ -84,7 +89,7 @@ impl ScreenLayout {
         }
         let header = cut_top(&mut rest, u16::from(area.height >= 3));
         if view.look.bare {
-            // A message is in the last row, over the panes.
+            // A message is shown in the last row, over the panes.
             return Self {
                 header,
                 panes: place_panes(rest, area.height, view),
@@ -128,7 +133,7 @@ impl ScreenLayout {
             .find_map(|&(other, place)| (other == pane).then_some(place))
     }
 
-    /// Returns the layout where a sheet has the screen alone: it, the row of messages, and the keys.
+    /// Returns the layout if a sheet fills the screen: the sheet, the row of messages, and the keys.
     fn of_sheet_alone(mut rest: Rect, keys: bool) -> Self {
         let height = rest.height;
         let keys = cut_bottom(&mut rest, u16::from(keys && height >= 6));
@@ -141,7 +146,7 @@ impl ScreenLayout {
         }
     }
 
-    /// Returns the panes that are side by side while none fills the screen.
+    /// Returns the panes that are shown side by side while none fills the screen.
     pub fn side_by_side(area: Rect, view: &View) -> Vec<Pane> {
         let unfilled = View {
             fullscreen: false,
@@ -154,7 +159,7 @@ impl ScreenLayout {
 
 fn overview_rows(height: u16, view: &View) -> u16 {
     let full = OVERVIEW_ROWS.iter().find(|(from, _)| height >= *from);
-    // Beside a page or a step of 24 rows there is room for the scrub line only.
+    // Next to a page or a step on 24 rows there is room for the scrub line only.
     let is_reading = view.sheet.is_some() || view.may_show(Pane::Step);
     let has_room = !view.fullscreen && (!is_reading || height >= OVERVIEW_ROWS[1].0);
     match full {
@@ -163,33 +168,33 @@ fn overview_rows(height: u16, view: &View) -> u16 {
     }
 }
 
-/// Takes the first `rows` off `rest`.
+/// Removes the first `rows` from `rest` and returns them.
 fn cut_top(rest: &mut Rect, rows: u16) -> Rect {
     let [top, below] = split_rows(*rest, rows);
     *rest = below;
     top
 }
 
-/// Takes the last `rows` off `rest`.
+/// Removes the last `rows` from `rest` and returns them.
 fn cut_bottom(rest: &mut Rect, rows: u16) -> Rect {
     let [above, bottom] = split_rows(*rest, rest.height.saturating_sub(rows));
     *rest = above;
     bottom
 }
 
-/// Splits `area` after `width` columns, with a blank column between the parts.
+/// Splits `area` after `width` columns, with a blank column between the halves.
 fn apart(area: Rect, width: u16) -> [Rect; 2] {
     let [left, rest] = split_columns(area, width);
     let [_, right] = split_columns(rest, 1);
     [left, right]
 }
 
-/// Splits `area` into two columns of equal width, a blank one apart.
+/// Splits `area` into two columns of equal width, with a blank column between them.
 fn halves(area: Rect) -> [Rect; 2] {
     apart(area, area.width.saturating_sub(1) / 2)
 }
 
-/// Splits `area` after `height` rows, with a blank row between the parts.
+/// Splits `area` after `height` rows, with a blank row between the halves.
 fn stacked(area: Rect, height: u16) -> [Rect; 2] {
     let [above, rest] = split_rows(area, height);
     let [_, below] = split_rows(rest, 1);
@@ -221,7 +226,7 @@ fn without_page(area: Rect, height: u16, view: &View) -> Vec<(Pane, Rect)> {
     }
 }
 
-/// A lesson's page, and beside it the run.
+/// Places a lesson's page, and next to it the run.
 fn with_page(area: Rect, height: u16, view: &View) -> Vec<(Pane, Rect)> {
     let beside = View {
         focus: beside_page(view),
@@ -250,7 +255,7 @@ fn with_page(area: Rect, height: u16, view: &View) -> Vec<(Pane, Rect)> {
     vec![(Pane::Lesson, page), (beside.focus, rest)]
 }
 
-/// The pane that is shown beside a page where there is room for only one.
+/// Returns the pane to show next to a page if there is room for only one.
 fn beside_page(view: &View) -> Pane {
     if view.focus != Pane::Lesson {
         return view.focus;
@@ -262,7 +267,7 @@ fn beside_page(view: &View) -> Pane {
     beside.or(first).unwrap_or(Pane::Traces)
 }
 
-/// One time step, and beside it the run. Where the tables of the step need all columns, it is alone.
+/// Places the step pane, and next to it the run. If the tables of the step need all columns, it is alone.
 fn with_step(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     let step_columns = percent(area.width, STEP_SHARE, STEP_COLUMNS);
     let is_alone = !usual(view).any(|_| true);
@@ -275,14 +280,14 @@ fn with_step(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
         return vec![(pane, area)];
     }
     let [step, rest] = apart(area, step_columns);
-    // A second blank column sets the tables off.
+    // A second blank column separates the tables from the run.
     let [_, rest] = split_columns(rest, 1);
     let mut panes = beside_step(rest, view);
     panes.insert(0, (Pane::Step, step));
     panes
 }
 
-/// The run beside a step: its view in space above, where the step is to be seen, and the traces below.
+/// Places the run next to a step: the 3-D view, which shows the step, above, and the traces below.
 fn beside_step(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     let has_both = view.may_show(Pane::Traces) && !views(view).is_empty();
     let is_of_values = view.focus == Pane::Parameters;
@@ -295,14 +300,14 @@ fn beside_step(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     panes
 }
 
-/// The panes that are shown without being asked for, of those that may be shown.
+/// Returns the panes that are shown by default, if they may be shown.
 fn usual(view: &View) -> impl Iterator<Item = Pane> {
     [Pane::Traces, Pane::Above, Pane::ThreeD, Pane::Parameters]
         .into_iter()
         .filter(|pane| view.may_show(*pane))
 }
 
-/// The views of the path that may be shown, the one that was looked at last first.
+/// Returns the views of the path that may be shown, the last one looked at first.
 fn views(view: &View) -> Vec<Pane> {
     let mut views: Vec<_> = usual(view)
         .filter(|pane| [Pane::Above, Pane::ThreeD].contains(pane))
@@ -315,8 +320,8 @@ fn views(view: &View) -> Vec<Pane> {
     views
 }
 
-/// The run beside a page or a step: the traces above; below them the values while they have the focus, else the views of
-/// the path.
+/// Places the run next to a page or a step: the traces above, and the views of the path below. The values replace the
+/// views while they have the focus.
 fn companion(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     let shown: Vec<_> = usual(view).collect();
     let (Some(first), Some(last)) = (shown.first(), shown.last()) else {
@@ -339,7 +344,7 @@ fn companion(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
         place_views(above, view)
     };
     if is_about_values && below.width > 2 * VIEW_COLUMNS && !views(view).is_empty() {
-        // The values take the place of one of the two views.
+        // The values replace one of the two views.
         let [left, right] = halves(below);
         panes.push((views(view)[0], left));
         panes.push((Pane::Parameters, right));
@@ -351,7 +356,7 @@ fn companion(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     panes
 }
 
-/// Rows of the traces above a view of the path or the values: 7 of 19, and 14 of 31.
+/// Returns the rows of the traces above a view of the path or the values: 7 of 19, and 14 of 31.
 fn companion_traces_rows(rows: u16) -> u16 {
     match rows.checked_sub(19) {
         Some(more) => 7 + more * 7 / 12,
@@ -359,7 +364,7 @@ fn companion_traces_rows(rows: u16) -> u16 {
     }
 }
 
-/// Two views of the path side by side or one above the other where there is room; else the one that was looked at last.
+/// Places two views of the path side by side or one above the other if there is room; else the last one looked at.
 fn place_views(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     let views = views(view);
     let is_chosen = views.iter().all(|pane| view.look.show.contains(pane));
@@ -379,7 +384,7 @@ fn place_views(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     }
 }
 
-/// The traces, the views of the path and the values, as the size of the screen suggests.
+/// Places the traces, the views of the path and the values as the size of the screen suggests.
 fn arranged(area: Rect, height: u16, view: &View) -> Vec<(Pane, Rect)> {
     let shown: Vec<_> = usual(view).collect();
     if area.width < TWO_FROM || shown.len() < 2 {
@@ -420,7 +425,7 @@ fn arranged(area: Rect, height: u16, view: &View) -> Vec<(Pane, Rect)> {
     panes
 }
 
-/// The first pane of `shown`, and beside it the pane in focus, or else the view that was looked at last.
+/// Places the first pane of `shown`, and next to it the pane in focus or else the last view looked at.
 fn two_columns(area: Rect, shown: &[Pane], view: &View) -> Vec<(Pane, Rect)> {
     let first = shown[0];
     let views = views(view);
@@ -459,7 +464,7 @@ mod tests {
         ScreenLayout::new(Rect::new(0, 0, width, height), &seen, 1, true)
     }
 
-    /// The columns and rows of every pane.
+    /// Returns the columns and rows of every pane.
     fn sizes(layout: &ScreenLayout) -> Vec<(Pane, u16, u16)> {
         let panes = layout.panes.iter();
         panes
@@ -491,7 +496,7 @@ mod tests {
             (Parameters, 115, 13),
         ];
         assert_eq!(sizes(&large), band);
-        // Without an overview the panes have its rows, but for the scrub line.
+        // Without an overview, the panes take its rows except for the scrub line.
         for (width, height, rows) in [(80, 24, 19), (120, 40, 35), (200, 50, 45)] {
             let layout = shown(width, height, false, &view);
             assert_eq!(layout.panes[0].1.height, rows, "{width}x{height}");

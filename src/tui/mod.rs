@@ -1,7 +1,8 @@
 //! The terminal: the main loop, the keys, and the panes.
 //!
-//! It uses the [`lab`](crate::lab), the [`lessons`](crate::lessons) and the [`class`](crate::class), and draws their state.
-//! Keys, panes, and all that a terminal reads or writes belong here. A value that outlives a frame belongs to the lab.
+//! It draws the state of the [`lab`](crate::lab), the [`lessons`](crate::lessons) and the [`class`](crate::class).
+//! Keys, panes, and everything that reads from or writes to a terminal belong here. A value that outlives a frame
+//! belongs to the lab.
 //!
 //! ```text
 //! key ─keymap→ Command ┬→ lab.carry_out ─→ the part of the lab whose command it is ┐
@@ -10,14 +11,18 @@
 //! clock ─────────────────→ lab.advance ────────────────────────────────────────────┴→ screen → panes
 //! ```
 //!
-//! - [`app`] is the loop, [`pacing`] says how often it draws, [`terminal`] is the only file that talks to the terminal.
-//! - [`keyboard`] takes the terminal's bytes, [`decoder`] makes keys of them; [`mouse`] says what is done where it points.
-//! - [`keymap`] is the one table of keys, [`press`](mod@press) carries out what a key means.
-//! - [`screen`] puts the panes in their places, [`panes`] draw what they borrow and change nothing; [`mod@svg`] is the picture for a
-//!   slide; [`layout`] says which places those are, [`theme`] has the styles of all roles, [`dots`] says what dots
-//!   look like, [`points`] what was measured, [`layered_dots`] lines that cross, [`labels`] their names; [`plane`] takes metres to dots and cells,
-//!   [`split`] a part of the screen to two.
-//! - [`board`] shows lines without a lab, [`projector`](mod@projector) a lab that no key changes. [`job_control`] tells whether Ctrl-Z may stop the program.
+//! - [`app`] is the main loop, [`pacing`] limits how often it draws, and [`terminal`] is the only file that talks to
+//!   the terminal.
+//! - [`keyboard`] reads the terminal's bytes, and [`decoder`] turns them into keys. [`mouse`] handles clicks and the
+//!   wheel.
+//! - [`keymap`] is the one table of keys, and [`press`](mod@press) carries out what a key means.
+//! - [`layout`] computes the area of each pane, [`screen`] draws the panes there, and [`panes`] draw what they borrow
+//!   and change nothing. [`mod@svg`] writes the picture for a slide.
+//! - [`theme`] has the style of every role. [`dots`] has the characters of dots, [`layered_dots`] draws lines that
+//!   cross, [`points`] draws measured points, and [`labels`] places labels.
+//! - [`plane`] converts meters to dots and cells, and [`split`] splits an area in two.
+//! - [`board`] shows lines of text without a lab, and [`projector`](mod@projector) shows a lab that no key changes.
+//!   [`job_control`] finds out if Ctrl-Z may stop the program.
 
 pub mod app;
 pub mod board;

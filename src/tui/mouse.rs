@@ -1,4 +1,4 @@
-//! The mouse: what a press, a drag or the wheel does where it points. Nothing needs it; every act has keys too.
+//! The mouse: effects of a click, a drag or the wheel at a position. The mouse is optional; every effect has keys too.
 
 use super::keymap::{Key, KeyEffect, Mode, zoomed_in, zoomed_out};
 use super::layout::ScreenLayout;
@@ -17,23 +17,24 @@ use crate::lab::{Lab, LabRequest};
 use ratatui::layout::{Position, Rect};
 use std::time::Duration;
 
-/// Degrees by which the 3-D view turns where it is dragged by a column, and by a row, which is twice as high.
+/// Rotation of the 3-D view per column of a drag, and per row (which is twice as high), degrees.
 const DEGREES_A_COLUMN: f64 = 3.0;
 const DEGREES_A_ROW: f64 = 6.0;
-/// The longest time between the two presses of a double click.
+/// Longest time between the two clicks of a double click.
 const DOUBLE_CLICK: Duration = Duration::from_millis(500);
-/// Lines that one notch of the wheel moves a list by.
+/// Lines by which one notch of the wheel moves a list.
 const LINES: usize = 3;
 
-/// What the mouse did, and at which cell of the screen.
+/// A mouse event with its cell on the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Mouse {
     pub did: Did,
-    /// The column and the line, from 0.
+    /// Column and line, from 0.
     pub x: u16,
     pub y: u16,
 }
 
+/// Kind of mouse event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Did {
     /// The left button was pressed.
@@ -54,15 +55,16 @@ enum Held {
     Camera(Position),
 }
 
+/// The mouse with the state of a drag or a double click.
 #[derive(Debug, Default)]
 pub struct Pointer {
     held: Option<Held>,
-    /// Where and when a row of a list was selected by the last press.
+    /// Position and time of the last press, if it selected a row of a list.
     selected: Option<(Position, Duration)>,
 }
 
 impl Pointer {
-    /// Does in `lab`, on a screen of this `area`, what `mouse` stands for; outside the screen that is nothing.
+    /// Carries out the mouse event in `lab`, on a screen of this `area`. Does nothing outside the screen.
     pub fn act(&mut self, mouse: Mouse, area: Rect, lab: &mut Lab) -> Option<LabRequest> {
         let at = Position::new(mouse.x, mouse.y);
         if !lab.view().mouse || !area.contains(at) {
@@ -116,15 +118,17 @@ impl Pointer {
         None
     }
 
-    /// Whether a press at `at` and `now` is the second of a double click, of which the first has selected a row.
+    /// Returns true if a press at `at` and `now` is the second of a double click whose first press selected a row.
     fn is_double(&mut self, at: Position, now: Duration) -> bool {
         let first = self.selected.take();
         first
             .is_some_and(|(place, before)| place == at && now.saturating_sub(before) < DOUBLE_CLICK)
     }
 
-    /// Selects the row at `at` of the list or dialog that is open. A double click does what Enter does there, with the row
-    /// that it has selected; the list may have moved under it. Text that is typed into a dialog is not applied by it.
+    /// Selects the row at `at` of the open list or dialog.
+    ///
+    /// A double click does what Enter does there, with the row selected by the first click: the list may have scrolled
+    /// since. It does not apply text typed into a dialog.
     fn press_in_list(
         &mut self,
         layout: &ScreenLayout,
@@ -152,7 +156,7 @@ impl Pointer {
         None
     }
 
-    /// Selects the lesson at `at` in the list that has the area `place`; a double click opens the one that it has selected.
+    /// Selects the lesson at `at` in the list, which has the area `place`. A double click opens the selected lesson.
     fn press_in_lessons(
         &mut self,
         place: Rect,
@@ -185,7 +189,8 @@ impl Pointer {
                 let furthest_s = Clock::at(run.scenario(), furthest).time_s(furthest);
                 if let Some(overview) = Overview::new(lab, layout.overview) {
                     let time_s = overview.nearest_time_s(at.x);
-                    // Time that the run has not reached would take long: a press goes there.
+                    // A drag goes only as far as the run has been computed: further seeking takes long and needs a
+                    // press.
                     lab.carry_out_now(&Command::GoTo(SeekTarget::Time(time_s.min(furthest_s))));
                 }
             }
@@ -206,7 +211,7 @@ fn pane_at(layout: &ScreenLayout, at: Position) -> Option<(Pane, Rect)> {
     panes.find(|(_, place)| place.contains(at))
 }
 
-/// Sets the cursor on the traces to the time at `at`, where there is one.
+/// Moves the cursor on the traces to the time at `at`, if there is one.
 fn read_off(place: Rect, at: Position, lab: &mut Lab) {
     if let Some(time_s) = Traces(PlotInputs::from_lab(lab)).time_s(place, at) {
         let to = CursorTo::Place(SeekTarget::Time(time_s));

@@ -1,28 +1,30 @@
-//! When the next frame is drawn: frames keep to a rate, and to a number of bytes a second that a slow line can carry.
+//! Frame timing: limits frames to a rate, and to a number of bytes per second that a slow line can carry.
 //!
-//! A frame may send a share of bytes that depends on the size of the screen. Where it sends more, as the wheel of the 3-D
-//! view does, the frames after it are drawn later, so that no motion sends more bytes a second than another.
+//! A frame may send a number of bytes that depends on the size of the screen. After a larger frame, as with the wheel
+//! in the 3-D view, the next ones are drawn later. Thus no motion sends more bytes per second than another.
 
 use std::time::Duration;
 
-/// The share of a frame on a screen of 80x24 cells, and what each further cell adds to it, bytes: at ten frames a second 3
-/// kB/s there and 10 kB/s at 200x50.
+/// Bytes allowed per frame on a screen of 80x24 cells.
+///
+/// With [`SHARE_OF_CELL`] for each further cell, ten frames per second send 3 kB/s at 80x24 and 10 kB/s at 200x50.
 const FRAME_BYTES: f64 = 280.0;
 const SMALL_SCREEN: f64 = 80.0 * 24.0;
+/// Further bytes allowed per cell beyond [`SMALL_SCREEN`].
 const SHARE_OF_CELL: f64 = 0.08;
-/// A frame follows the one before within this time however much that one has sent: a motion that stood still for
-/// longer would look like a run that has stopped.
+/// Longest time between frames, however many bytes the last one sent. After a longer pause, a run would look stopped.
 const LONGEST_FRAME_GAP: Duration = Duration::from_millis(750);
 
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Pacing {
-    /// The least time between frames that no key asks for.
+    /// Minimum time between frames, except after a key.
     frame: Duration,
+    /// Time of the next frame.
     due: Duration,
 }
 
 impl Pacing {
-    /// Frames at `rate` a second at most.
+    /// Creates a pacing with at most `rate` frames per second.
     pub fn new(rate: u32) -> Self {
         let mut pacing = Self::default();
         pacing.set_rate(rate);
@@ -41,7 +43,7 @@ impl Pacing {
         self.due.saturating_sub(now)
     }
 
-    /// Takes in that a frame of `bytes` was drawn at `now` on a screen of `cells`.
+    /// Records that a frame of `bytes` was drawn at `now` on a screen of `cells`.
     pub fn drawn(&mut self, now: Duration, bytes: usize, cells: u32) {
         let share = FRAME_BYTES + SHARE_OF_CELL * (f64::from(cells) - SMALL_SCREEN).max(0.0);
         let frames = (bytes as f64 / share).max(1.0);
@@ -56,7 +58,7 @@ mod tests {
 
     const SMALL_SCREEN_CELLS: u32 = 80 * 24;
 
-    /// Bytes a second when each frame sends `bytes`.
+    /// Returns the bytes per second if each frame sends `bytes`.
     fn rate(frames: u32, bytes: usize, cells: u32) -> f64 {
         let mut pacing = Pacing::new(frames);
         let mut sent = 0;

@@ -1,4 +1,4 @@
-//! A plane, m to the right and up, on an area of cells: circles are round at every size.
+//! A plane, meters to the right and up, on an area of cells. Circles are round at every size.
 
 use crate::engine::text::nice_numbers::at_or_below;
 use crate::engine::text::number::shortest;
@@ -6,20 +6,21 @@ use crate::lab::view::theme::Marker;
 use crate::tui::dots::on_sheet;
 use ratatui::layout::Rect;
 
+/// A plane on an area of the screen.
 #[derive(Clone, Copy, Debug)]
 pub struct Plane {
-    /// What is in the middle of the area, m.
+    /// Point in the middle of the area, m.
     pub middle: (f64, f64),
-    /// Dots in a metre, across and down.
+    /// Dots per metre, across and down.
     pub scale: (f64, f64),
     /// Dots of the area, across and down.
     pub size: (usize, usize),
-    /// Dots in a cell, across and down.
+    /// Dots per cell, across and down.
     pub in_cell: (usize, usize),
 }
 
 impl Plane {
-    /// The plane on `area`, as large as there is room for `half` to each side, and up and down (m).
+    /// Creates the plane on `area` at the largest scale that shows `half` (m) to each side of `middle`.
     pub fn new(area: Rect, marker: Marker, middle: (f64, f64), half: (f64, f64)) -> Self {
         let in_cell = marker.dots();
         let size = (
@@ -47,18 +48,18 @@ impl Plane {
         self.place(self.dot(at)).is_some()
     }
 
-    /// The column and row of a dot; `None` outside of the area.
+    /// Returns the column and row of a dot, or `None` outside the area.
     pub fn place(&self, dot: (f64, f64)) -> Option<(usize, usize)> {
         on_sheet(dot, self.size)
     }
 
-    /// The cell of a dot; `None` outside of the area.
+    /// Returns the cell of a dot, or `None` outside the area.
     pub fn cell_of(&self, dot: (f64, f64)) -> Option<(u16, u16)> {
         let (x, y) = self.place(dot)?;
         Some(((x / self.in_cell.0) as u16, (y / self.in_cell.1) as u16))
     }
 
-    /// The cell of a place, or the one at the edge that is nearest to it.
+    /// Returns the cell of a point, or the nearest cell at the edge.
     pub fn cell(&self, at: (f64, f64)) -> (u16, u16) {
         let (x, y) = self.dot(at);
         let (width, height) = (self.size.0 as f64, self.size.1 as f64);
@@ -68,11 +69,11 @@ impl Plane {
         )
     }
 
-    /// The scale: a line of a round length, at most `columns` long.
+    /// Returns the scale bar: a line of a round length, at most `columns` long, with its length in m.
     pub fn bar(&self, columns: f64) -> String {
         let cell_m = self.in_cell.0 as f64 / self.scale.0;
         let length_m = at_or_below(columns * cell_m);
-        // From the middle of its first cell to that of its last.
+        // The bar reaches from the middle of its first cell to the middle of its last.
         let cells = (length_m / cell_m).round() as usize + 1;
         let line = "─".repeat(cells.saturating_sub(2));
         format!("├{line}┤ {} m", shortest(length_m))

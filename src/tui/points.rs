@@ -1,7 +1,7 @@
-//! Measured points on a picture: a mark in the cell of each, and a bar where its uncertainty is larger than the cell.
+//! Measured points on a picture: a mark in the cell of each, and a bar if its uncertainty is larger than the cell.
 //!
-//! Nothing else on a picture has the shape of the mark. Bars do not cover the curve. After a mark that covers the curve, the
-//! next few cells show the curve: marks close together would hide it.
+//! No other sign on a picture has the shape of the mark. Bars do not cover the curve. After a mark that covers the
+//! curve, the next few cells show the curve, because a row of marks would hide it.
 
 use crate::lab::view::theme::Marker;
 use crate::lab::view::theme::Theme;
@@ -13,13 +13,13 @@ use ratatui::layout::Rect;
 impl Marker {
     pub fn point(self) -> char {
         match self {
-            Self::Ascii => 'X', // the name of an axis is a small one
+            Self::Ascii => 'X', // an axis may be named x
             _ => '×',
         }
     }
 
-    /// An upright bar: its upper end, what is between, its lower end; and a level one: its left end, what is between, its
-    /// right end.
+    /// Returns the characters of a bar: upper end, middle and lower end of a vertical one, then left end, middle and
+    /// right end of a horizontal one.
     fn bars(self) -> [[char; 3]; 2] {
         match self {
             Self::Ascii => [['-', '|', '-'], ['|', '-', '|']],
@@ -31,7 +31,7 @@ impl Marker {
 /// Cells of the curve that are shown after a mark that covers the curve.
 const CURVE_CELLS_SHOWN: u8 = 3;
 
-/// What stands in a cell, the least first: what comes later in this list covers what comes earlier.
+/// Sign in a cell. A later variant covers an earlier one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum CellSign {
     Nothing,
@@ -40,13 +40,14 @@ enum CellSign {
     Mark,
 }
 
+/// Measured points on an area of the screen.
 pub struct Points {
     area: Rect,
     marker: Marker,
     cells: Vec<(CellSign, Role)>,
 }
 
-/// The ends of a bar, in cells from the upper left, which may lie outside of the picture.
+/// Ends of a bar, cells from the upper left. They may be outside the picture.
 pub type Ends = (f64, f64);
 
 impl Points {
@@ -59,8 +60,9 @@ impl Points {
         }
     }
 
-    /// A point at `x` and `y`, in cells from the upper left, with the ends of its bars across and upright. Its mark is left
-    /// out where it lies outside of the picture.
+    /// Adds a point at `x` and `y` (cells from the upper left) with the ends of its horizontal and vertical bars.
+    ///
+    /// The mark is omitted if it is outside the picture.
     pub fn add(
         &mut self,
         (x, y): (f64, f64),
@@ -78,8 +80,9 @@ impl Points {
         self.set((x, y), CellSign::Mark, role);
     }
 
-    /// The cells of a bar about `middle` on a side of `cells` cells; `place` gives the place of each. A bar that ends in
-    /// the cell of its mark is not drawn.
+    /// Draws a bar through `middle` along a side of `cells` cells. `place` returns the position of each cell.
+    ///
+    /// A bar that ends in the cell of its mark is not drawn.
     fn bar(
         &mut self,
         middle: f64,

@@ -1,4 +1,4 @@
-//! What a key that is pressed does in the lab.
+//! Carries out a key press in the lab.
 
 use super::keymap::{self, BINDINGS, Key, KeyEffect};
 use super::panes::{self, help};
@@ -9,6 +9,7 @@ use crate::lab::{Lab, LabRequest, Mode};
 
 const NUMBER_FIRST: &str = "a number is asked for: type it, then Enter. Tab leads to the lab";
 
+/// Carries out `key` in `lab`. Returns a request if only the main loop can fulfill it.
 pub fn press(key: Key, lab: &mut Lab) -> Option<LabRequest> {
     let mode = lab.mode();
     let mut own = panes::row(lab.view().focus).keys.iter();
@@ -44,12 +45,12 @@ fn carry_out(does: KeyEffect, lab: &mut Lab) -> Option<LabRequest> {
     request
 }
 
-/// Whether the page has the focus and asks for a number: letters are then no keys of the lab.
+/// Returns true if the page has the focus and asks for a number. Letters are then not keys of the lab.
 fn asks_number(lab: &Lab) -> bool {
     lab.view().asked() == Some(AskedAnswer::Number) && is_of_sheet(lab)
 }
 
-/// Whether a key turns pages, closes, quits or helps.
+/// Returns true if the key turns pages, closes, quits or helps.
 fn is_of_page(does: KeyEffect) -> bool {
     matches!(
         does,
@@ -59,12 +60,12 @@ fn is_of_page(does: KeyEffect) -> bool {
     )
 }
 
-/// Whether a digit is for the sheet; behind the first digit of a count it goes on with the count.
+/// Returns true if the sheet receives a digit. After the first digit of a count, further digits extend the count.
 fn is_of_sheet(lab: &Lab) -> bool {
     lab.view().sheet_takes_digits() && lab.popups().count.is_none()
 }
 
-/// Returns the message about `key`, which means nothing in `mode`: where it means something, or what there is to press.
+/// Returns the message for a `key` without effect in `mode`: where the key works, or which keys to press here.
 fn refusal(mode: Mode, key: Key) -> String {
     let here = match mode {
         Mode::Lab => "? lists the keys",
@@ -80,7 +81,7 @@ fn refusal(mode: Mode, key: Key) -> String {
     }
 }
 
-/// Returns where `key` means something, and how to get there; `None` if it means nothing anywhere else.
+/// Returns where `key` works and how to get there, or `None` if it works nowhere else.
 fn elsewhere(mode: Mode, key: Key) -> Option<String> {
     let of_pane = panes::rows().find(|pane| pane.keys.iter().any(|row| row.keys.contains(&key)));
     if let Some(pane) = of_pane.filter(|_| mode == Mode::Lab) {

@@ -1,4 +1,4 @@
-//! A lab on the terminal that no key changes: the projector of a class.
+//! The projector of a class: a lab on the terminal that no key changes.
 
 use super::app::{advance_all, idle_time};
 use super::board::direction;
@@ -15,6 +15,10 @@ use std::io;
 use std::time::Instant;
 
 /// Shows `lab`, which `role` changes, until q or Ctrl-C. Arrows and page keys scroll the page.
+///
+/// # Errors
+///
+/// Returns an error if the terminal cannot be opened, read or written.
 pub fn run(lab: &mut Lab, lessons: &mut Lessons, role: &mut dyn ClassRole) -> io::Result<()> {
     let mut screen = Screen::enter()?;
     let mut pacing = Pacing::new(lab.view().fps);

@@ -1,5 +1,5 @@
-//! The whole picture: every pane in its place, and on top what has been opened; drawn on a terminal, as text, or as the
-//! bytes that a terminal would be sent.
+//! The whole screen: every pane in its place, with the open popup on top. It is drawn on a terminal, as text, or as the
+//! bytes that a terminal would receive.
 
 use super::panes::{
     self, browser, chrome, form::FormPane, help, hint, lesson, measured, overview, traces,
@@ -21,7 +21,7 @@ use ratatui::layout::Rect;
 use ratatui::widgets::Widget;
 use std::{io, mem};
 
-/// Fits `lab` to a screen of this size; all of it is to be drawn again.
+/// Fits `lab` to a screen of this size and requests a full redraw.
 pub fn fit(lab: &mut Lab, size: Rect) {
     let panes = ScreenLayout::side_by_side(size, lab.view());
     lab.view_mut().set_side_by_side(panes);
@@ -29,7 +29,7 @@ pub fn fit(lab: &mut Lab, size: Rect) {
     lab.show_swings(swings);
 }
 
-/// Fits `lab` to a screen of this size again where other panes are shown than before.
+/// Fits `lab` to a screen of this size again, if other panes are shown than before.
 pub fn refit(lab: &mut Lab, size: Rect) {
     let panes = ScreenLayout::side_by_side(size, lab.view());
     if panes != lab.view().side_by_side || swings(lab, size) != lab.view().swings {
@@ -37,7 +37,7 @@ pub fn refit(lab: &mut Lab, size: Rect) {
     }
 }
 
-/// Returns how many swings the traces have room for on a screen of this size.
+/// Returns the number of swings for which the traces have room on a screen of this size.
 fn swings(lab: &Lab, size: Rect) -> usize {
     let place = layout(lab, true, size).place_of(Pane::Traces);
     place.map_or(lab.view().swings, |place| {
@@ -45,25 +45,25 @@ fn swings(lab: &Lab, size: Rect) -> usize {
     })
 }
 
-/// Scrolls the page of the lesson, on a screen of this size.
+/// Scrolls the lesson's page on a screen of this size.
 pub fn scroll_page(lab: &mut Lab, direction: Direction, size: Rect) {
     if let Some(place) = layout(lab, true, size).place_of(Pane::Lesson) {
         lesson::scroll(lab, direction, place);
     }
 }
 
-/// Whether the page of the lesson goes on below what a screen of this size shows of it.
+/// Returns true if the lesson's page continues below the visible rows of a screen of this size.
 pub fn page_goes_on(lab: &Lab, size: Rect) -> bool {
     chrome::page_goes_on(lab, &layout(lab, true, size))
 }
 
-/// Where everything of `lab` stands on `area`; `keys` says whether there is a line of keys.
+/// Returns the layout of `lab` on `area`, with a row of keys if `keys` is true.
 pub fn layout(lab: &Lab, keys: bool, area: Rect) -> ScreenLayout {
     let note_rows = hint::lines_of_note(lab, area.width);
     ScreenLayout::new(area, lab.view(), note_rows, keys)
 }
 
-/// Draws `lab` on `area`; `keys` says whether with the line of keys.
+/// Draws `lab` on `area`, with a row of keys if `keys` is true.
 pub fn draw(lab: &Lab, keys: bool, area: Rect, buf: &mut Buffer) {
     let places = layout(lab, keys, area);
     for &(pane, place) in &places.panes {
@@ -98,8 +98,9 @@ pub fn draw(lab: &Lab, keys: bool, area: Rect, buf: &mut Buffer) {
     }
 }
 
-/// Gives blank cells the color of the run, which nobody sees: without it a slow line carries two changes of color for each
-/// cell of a curve that moves.
+/// Gives blank cells the invisible color of the run.
+///
+/// Without it, a slow line carries two changes of color for each cell of a moving curve.
 fn color_blanks(area: Rect, theme: &Theme, buf: &mut Buffer) {
     let color = theme.style(Role::Run).fg.unwrap_or_default();
     for position in area.positions() {
@@ -131,7 +132,7 @@ fn draw_popup(lab: &Lab, places: &ScreenLayout, buf: &mut Buffer) {
         Mode::Lab | Mode::Lessons | Mode::Find => {}
         Mode::Dialog => {
             let on_screen = places.place_of(Pane::Parameters).is_some();
-            // A value is typed in its row of the values pane.
+            // A value is edited in its row of the values pane.
             let dialog = lab.popups().dialog();
             if let Some(dialog) = dialog.filter(|dialog| !(dialog.is_of_value() && on_screen)) {
                 let form = &dialog.form;
@@ -143,8 +144,8 @@ fn draw_popup(lab: &Lab, places: &ScreenLayout, buf: &mut Buffer) {
     }
 }
 
-/// The area of a popup: the panes and the overview, without the rows that a message takes. A dialog leaves the page of a
-/// lesson in view, and the overview.
+/// Returns the area of a popup: the panes and the overview, without the rows of a message. A dialog keeps a lesson's
+/// page and the overview visible.
 pub(super) fn popup_place(lab: &Lab, layout: &ScreenLayout) -> Rect {
     let is_dialog = lab.popups().mode == Mode::Dialog;
     let is_alone = layout.panes.len() == 1;
@@ -167,7 +168,7 @@ pub(super) fn popup_place(lab: &Lab, layout: &ScreenLayout) -> Rect {
     }
 }
 
-/// Nothing that the fonts of the Linux console lack.
+/// Replaces characters that the fonts of the Linux console lack.
 fn to_console(area: Rect, buf: &mut Buffer) {
     for position in area.positions() {
         if let Some(cell) = buf.cell_mut(position)
@@ -178,7 +179,7 @@ fn to_console(area: Rect, buf: &mut Buffer) {
     }
 }
 
-/// Nothing but ASCII, whatever a scenario's title holds.
+/// Replaces every character that is not ASCII, including those of a scenario's title.
 pub(super) fn to_ascii(area: Rect, buf: &mut Buffer) {
     for position in area.positions() {
         let cell = buf.cell_mut(position);
@@ -189,7 +190,8 @@ pub(super) fn to_ascii(area: Rect, buf: &mut Buffer) {
     }
 }
 
-/// The picture of `lab` on a screen of this width and height as plain text, a line each, without blanks at their ends.
+/// Returns the picture of `lab` on a screen of this width and height as plain text, without blanks at the ends of
+/// lines.
 pub fn text(lab: &Lab, keys: bool, (width, height): (u16, u16)) -> String {
     let area = Rect::new(0, 0, width, height);
     let mut buf = Buffer::empty(area);
@@ -199,27 +201,32 @@ pub fn text(lab: &Lab, keys: bool, (width, height): (u16, u16)) -> String {
         .collect()
 }
 
-/// The text in the line `y` of `buf`, without blanks at its end.
+/// Returns the text of line `y` of `buf`, without blanks at its end.
 fn line_of(buf: &Buffer, y: u16) -> String {
     let (mut line, mut x) = (String::new(), buf.area.left());
     while let Some(cell) = buf.cell((x, y)).filter(|_| x < buf.area.right()) {
         line += cell.symbol();
-        // The cell behind a wide character is a part of it.
+        // The cell after a wide character belongs to that character.
         x += columns(cell.symbol()).max(1) as u16;
     }
     line.trim_end().to_owned() + "\n"
 }
 
-/// The lab drawn without a terminal, as the bytes that a terminal would be sent.
+/// Draws the lab without a terminal, as the bytes that a terminal would receive.
 pub struct ScreenRecorder {
     sent: Vec<u8>,
     shown: Buffer,
 }
 
 impl ScreenRecorder {
-    /// A terminal of so many columns and lines, and what clears it and hides its cursor. `lab` is fitted to it.
+    /// Creates a recorder for a terminal of this size and fits `lab` to it. Its first bytes clear the terminal and hide
+    /// the cursor.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the bytes cannot be written.
     pub fn new(lab: &mut Lab, (columns, lines): (u16, u16)) -> io::Result<Self> {
-        // The recording is the same whatever NO_COLOR says.
+        // NO_COLOR does not change the recording.
         style::force_color_output(true);
         let area = Rect::new(0, 0, columns, lines);
         let mut sent = Vec::new();
@@ -231,7 +238,7 @@ impl ScreenRecorder {
         Ok(Self { sent, shown })
     }
 
-    /// Draws `lab` if its picture has changed, and gives what the terminal is sent for that: only what differs.
+    /// Draws `lab` if its picture has changed. Returns the bytes for the terminal: only the cells that differ.
     pub fn draw(&mut self, lab: &mut Lab) -> io::Result<String> {
         let area = self.shown.area;
         if lab.has_changed() {

@@ -1,8 +1,8 @@
-//! A part of the screen, split in two.
+//! Splits an area of the screen in two.
 
 use ratatui::layout::Rect;
 
-/// The first `height` rows of `area`, and the others.
+/// Returns the first `height` rows of `area`, and the rest.
 pub fn split_rows(area: Rect, height: u16) -> [Rect; 2] {
     let above = Rect {
         height: height.min(area.height),
@@ -16,7 +16,7 @@ pub fn split_rows(area: Rect, height: u16) -> [Rect; 2] {
     [above, below]
 }
 
-/// The first `width` columns of `area`, and the others.
+/// Returns the first `width` columns of `area`, and the rest.
 pub fn split_columns(area: Rect, width: u16) -> [Rect; 2] {
     let width = width.min(area.width);
     let right = Rect {

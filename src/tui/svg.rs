@@ -1,4 +1,4 @@
-//! The picture of the lab as SVG, in color, for a slide: dots and lines are drawn, everything else is text.
+//! The picture of the lab as SVG, in color, for a slide. Dots and lines become paths, everything else text.
 
 use super::screen;
 use crate::engine::text::printable::xml;
@@ -9,18 +9,19 @@ use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Modifier};
 use ratatui::symbols::pixel::OCTANTS;
-use std::fmt::Write; // which cannot fail on a `String`
+use std::fmt::Write; // writing to a `String` cannot fail
 
-/// A cell, px.
+/// Size of a cell, px.
 const CELL_WIDTH: u32 = 8;
 const CELL_HEIGHT: u32 = 16;
-/// From a cell's upper edge to the baseline of its letter, px.
+/// Distance from a cell's upper edge to the baseline of its letter, px.
 const BASELINE: u32 = 12;
-/// Fonts whose letters are about as wide as a cell at this size, px. The width of each text is set as well.
+/// Fonts whose letters are about as wide as a cell at [`FONT_SIZE`]. The width of each text is set as well.
 const CELL_FONTS: &str = "DejaVu Sans Mono,Menlo,Consolas,Liberation Mono,monospace";
+/// Size of the letters, px.
 const FONT_SIZE: f64 = 13.3;
 
-/// The picture of `lab` on a screen of this width and height.
+/// Returns the picture of `lab` on a screen of this width and height.
 pub fn svg(lab: &Lab, (columns, rows): (u16, u16), background: Background) -> String {
     let area = Rect::new(0, 0, columns, rows);
     let mut buf = Buffer::empty(area);
@@ -29,8 +30,8 @@ pub fn svg(lab: &Lab, (columns, rows): (u16, u16), background: Background) -> St
     of_cells(&buf, title, background)
 }
 
-/// The picture of what is in one `pane` of `lab`, without its title and without blank lines above and below it, on white
-/// paper.
+/// Returns the picture of one `pane` of `lab` on white paper, without its title and without blank lines above and
+/// below.
 pub fn pane(lab: &Lab, pane: Pane, (columns, rows): (u16, u16)) -> String {
     let mut whole = Buffer::empty(Rect::new(0, 0, columns, rows));
     screen::draw_pane(lab, pane, whole.area, &mut whole);
@@ -81,7 +82,7 @@ fn of_cells(buf: &Buffer, title: &str, background: Background) -> String {
     out + "</svg>\n"
 }
 
-/// The colors of text and background where the terminal's own are meant, #rrggbb.
+/// Colors that stand for the terminal's own text and background colors, #rrggbb.
 #[derive(Clone, Copy)]
 struct PageColors {
     ink: &'static str,
@@ -108,7 +109,7 @@ fn kind(cell: &Cell) -> CellKind {
     }
 }
 
-/// Draws cells that look alike, each with its left edge, in the row whose upper edge is at `top`.
+/// Draws cells of equal style, each with its left edge, in the row whose upper edge is at `top`.
 fn put(out: &mut String, cells: &[(u32, &Cell)], top: u32, page: PageColors) {
     let Some((left, first)) = cells.first() else {
         return;
@@ -165,7 +166,7 @@ fn put(out: &mut String, cells: &[(u32, &Cell)], top: u32, page: PageColors) {
     }
 }
 
-/// The rectangles that draw `symbol`, each with its left and upper edge, width and height in px; none for a letter.
+/// Returns the rectangles that draw `symbol`: left and upper edge, width and height, px. Returns none for a letter.
 fn shape(symbol: char) -> Vec<[u32; 4]> {
     match symbol {
         '\u{2800}'..='\u{28ff}' => braille(u32::from(symbol) - 0x2800),
@@ -193,7 +194,7 @@ fn shape(symbol: char) -> Vec<[u32; 4]> {
     }
 }
 
-/// The dots of the Braille pattern with these `bits`.
+/// Returns the dots of the Braille pattern with these `bits`.
 fn braille(bits: u32) -> Vec<[u32; 4]> {
     (0..8)
         .filter(|dot| bits >> dot & 1 == 1)
@@ -208,7 +209,7 @@ fn braille(bits: u32) -> Vec<[u32; 4]> {
         .collect()
 }
 
-/// The color of a cell, #rrggbb; `otherwise` if it is the terminal's own.
+/// Returns the color of a cell, #rrggbb; `otherwise` if the cell has the terminal's own color.
 fn hex(color: Color, otherwise: &str) -> String {
     match color {
         Color::Rgb(r, g, b) => format!("#{r:02x}{g:02x}{b:02x}"),

@@ -1,8 +1,8 @@
-//! Takes the terminal over, draws on it, receives its events, and gives it back exactly once, whatever happens.
+//! Takes over the terminal, draws on it, receives its events, and restores it exactly once, whatever happens.
 //!
-//! Before it gives the terminal back it runs the hooks of [`at_exit`].
+//! Before it restores the terminal, it runs the hooks of [`at_exit`].
 //!
-//! Only this module and the recorder use crossterm, which draws; [`keyboard`] reads what is typed. Nothing here waits for
+//! Only this module and the recorder use crossterm, for drawing. [`keyboard`] reads the input. Nothing here waits for
 //! an answer from the terminal: on a slow line or in a bare pty there may be none.
 
 use crate::lab::storage::at_exit::{self, Release};
@@ -32,82 +32,91 @@ use std::sync::{Arc, LazyLock, Mutex, MutexGuard, Once, OnceLock, PoisonError, T
 use std::thread::{self, ThreadId};
 use std::time::{Duration, Instant};
 
-/// Whether this process has taken the terminal over.
+/// True while this process has taken over the terminal.
 static ENTERED: AtomicBool = AtomicBool::new(false);
-/// Whether the mouse is asked for while the terminal is taken over.
+/// True if the terminal should report the mouse.
 static MOUSE: AtomicBool = AtomicBool::new(false);
-/// Asks for presses, the wheel and moves with a button held, with numbers of any size; moves without a button, which a slow
-/// line would have to carry for nothing, are not asked for.
+/// Asks for presses, the wheel, and moves with a button held, with coordinates of any size.
+///
+/// Moves without a button are not requested: a slow line would carry them for nothing.
 const MOUSE_ON: &[u8] = b"\x1b[?1000h\x1b[?1002h\x1b[?1006h";
-/// The same in the other order, and off.
+/// Turns the reports of [`MOUSE_ON`] off, in reverse order.
 const MOUSE_OFF: &[u8] = b"\x1b[?1006l\x1b[?1002l\x1b[?1000l";
-/// Locked by the thread that writes to the terminal.
+/// Lock of the thread that writes to the terminal.
 static WRITING: Mutex<()> = Mutex::new(());
-/// A signal is ending the process.
+/// True while a signal is ending the process.
 static ENDING: AtomicBool = AtomicBool::new(false);
-/// Which of SIGTSTP and SIGCONT came last and has not been handled: [`NEITHER`], [`SUSPEND`] or [`RESUMED`]. The signal
-/// handlers store it, so that a SIGCONT that follows a SIGTSTP at once cancels it, as it does for a program without handlers.
+/// The last of SIGTSTP and SIGCONT that has not been handled: [`NEITHER`], [`SUSPEND`] or [`RESUMED`].
+///
+/// The signal handlers store it. A SIGCONT directly after a SIGTSTP therefore cancels it, as for a program without
+/// handlers.
 static LAST_JOB_SIGNAL: LazyLock<Arc<AtomicUsize>> = LazyLock::new(Arc::default);
 const NEITHER: usize = 0;
 /// SIGTSTP has asked to suspend the process.
 const SUSPEND: usize = 1;
 /// The shell has resumed the process.
 const RESUMED: usize = 2;
-/// The size of the screen has changed.
+/// True if the size of the screen has changed since the last look.
 static RESIZED: AtomicBool = AtomicBool::new(false);
 
-/// The signals that the process has handlers for, until a thread takes them.
+/// Signals that have handlers, until a thread receives them.
 static SIGNALS: Mutex<Option<Signals>> = Mutex::new(None);
 
-/// The thread that draws: when it panics, the lab ends.
+/// The thread that draws. If it panics, the lab ends.
 static DRAWING: OnceLock<ThreadId> = OnceLock::new();
-/// Panic messages of other threads. They are printed at the end: on the screen the next frame would overwrite them.
+/// Panic messages of other threads. They are printed at the end, because the next frame would overwrite them.
 static PANICS: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
-/// How long a terminal that accepts no bytes may delay the end of the process.
+/// Longest time by which a terminal that accepts no bytes may delay the end of the process.
 const TERMINAL_EXIT_LIMIT: Duration = Duration::from_millis(500);
-/// A SIGCONT that follows the request to suspend so soon cancels it. Once the process has stopped, the shell takes the
-/// terminal away from it, and SIGCONT alone does not bring that back.
+/// Time within which a SIGCONT cancels a request to suspend.
+///
+/// Once the process has stopped, the shell takes the terminal away from it, and SIGCONT alone does not return it.
 const CANCELED_WITHIN: Duration = Duration::from_millis(50);
-/// How long the handler of SIGCONT may take to run after the process is resumed.
+/// Longest time for the handler of SIGCONT to run after the process is resumed.
 const HEARD_WITHIN: Duration = Duration::from_millis(200);
-/// The most events taken at once; a held key on a slow line may send many.
+/// Maximum number of events returned at once. A held key on a slow line may send many.
 const MOST_EVENTS: usize = 256;
 
-/// The most columns and lines that are drawn on: a client may say any size, and each cell takes memory. The rest stays empty.
+/// Maximum columns and lines that are drawn. A client may report any size, and each cell takes memory. The rest stays
+/// empty.
 pub const MOST_SCREEN_CELLS: (u16, u16) = (1000, 500);
 
-/// The part that is drawn on of a screen of that `size`.
+/// Returns the drawn part of a screen of this `size`.
 fn drawn_of(size: Size) -> Rect {
     let (columns, lines) = MOST_SCREEN_CELLS;
     Rect::new(0, 0, size.width.min(columns), size.height.min(lines))
 }
 
+/// An event from the terminal or the shell.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Event {
     Typed(Typed),
     Resized,
     Suspend,
-    /// The program has been resumed, and the screen may hold anything.
+    /// The shell has resumed the program, and the screen may show anything.
     Resumed,
 }
 
+/// The terminal, taken over by this program.
 pub struct Screen {
     /// Never dropped, because ratatui's drop prints to a stderr that may be closed.
     terminal: ManuallyDrop<Terminal<CrosstermBackend<Counted>>>,
     keyboard: Keyboard,
-    /// The bytes of all frames.
+    /// Bytes of all frames.
     sent: Rc<Cell<usize>>,
 }
 
 impl Screen {
-    /// Takes the terminal over.
+    /// Takes over the terminal.
     ///
     /// # Errors
-    /// When there is none, or it cannot be written to; it is then as it was.
+    ///
+    /// Returns an error if there is no terminal, or if it cannot be written to. It is then restored.
     pub fn enter() -> io::Result<Self> {
         guard()?;
-        // crossterm's own reading of NO_COLOR would take the reversed selection away too; the theme honours it.
+        // crossterm's own handling of NO_COLOR would also remove the reversed selection; the theme honors NO_COLOR
+        // instead.
         style::force_color_output(true);
         let screen = take_over().and_then(|()| {
             let sent = Rc::default();
@@ -126,7 +135,7 @@ impl Screen {
         screen.inspect_err(|_| give_back())
     }
 
-    /// Draws a frame; only what differs from the previous one is sent. Returns how many bytes that were.
+    /// Draws a frame and sends only the cells that differ from the previous frame. Returns the number of bytes sent.
     pub fn draw(&mut self, picture: impl FnOnce(Rect, &mut Buffer)) -> io::Result<usize> {
         let _pen = pen();
         let before = self.sent.get();
@@ -138,7 +147,7 @@ impl Screen {
         Ok(self.sent.get() - before)
     }
 
-    /// Asks the terminal for the mouse, or leaves the mouse to it.
+    /// Turns mouse reports on or off. While they are off, the terminal itself handles the mouse.
     pub fn set_mouse(&mut self, listens: bool) -> io::Result<()> {
         if MOUSE.load(Ordering::SeqCst) == listens {
             return Ok(());
@@ -148,29 +157,31 @@ impl Screen {
         stdout()?.write_all(if listens { MOUSE_ON } else { MOUSE_OFF })
     }
 
-    /// Asks the terminal for the color of its background. The answer, if any, comes as [`Typed::Background`].
+    /// Asks the terminal for its background color. The answer, if any, arrives as [`Typed::Background`].
     pub fn ask_background(&mut self) -> io::Result<()> {
         let _pen = pen();
         stdout()?.write_all(b"\x1b]11;?\x1b\\")
     }
 
-    /// The part of the screen that is drawn on, cells.
+    /// Returns the drawn part of the screen, cells.
     pub fn size(&self) -> io::Result<Rect> {
         self.terminal.size().map(drawn_of)
     }
 
-    /// Makes the next frame be sent completely.
+    /// Makes the next frame a complete one.
     pub fn forget(&mut self) -> io::Result<()> {
         let size = self.size()?;
         self.terminal
             .backend_mut()
             .clear_region(backend::ClearType::All)?;
-        self.terminal.resize(size) // not clear(), which asks where the cursor is
+        self.terminal.resize(size) // not clear(), which asks for the cursor position
     }
 
-    /// Gives the terminal back to the shell until it resumes the program. `whole_job`: a script that runs the program stops
-    /// with it, as if Ctrl-Z was typed outside raw mode. If the program has been resumed already, it does not stop. A program
-    /// that no shell started would stop for good: see [`can_be_resumed`](super::job_control::can_be_resumed).
+    /// Restores the terminal for the shell until it resumes the program.
+    ///
+    /// With `whole_job`, a script that runs the program stops with it, like after Ctrl-Z outside raw mode. If the
+    /// program has already been resumed, it does not stop. A program that no shell started would never resume: see
+    /// [`can_be_resumed`](super::job_control::can_be_resumed).
     pub fn suspend(&mut self, whole_job: bool) -> io::Result<()> {
         let begin = Instant::now();
         at_exit::run_hooks(Release::Suspend);
@@ -180,7 +191,7 @@ impl Screen {
         give_back();
         if !is_resumed() {
             if whole_job {
-                kill_current_process_group(Signal::TSTP)?; // for this process it is one more request
+                kill_current_process_group(Signal::TSTP)?; // this process only records another request
             }
             signal_hook::low_level::emulate_default_handler(SIGTSTP)?;
         }
@@ -199,7 +210,7 @@ impl Screen {
         self.forget()
     }
 
-    /// The events that have arrived; waits for the first at most `wait`.
+    /// Waits at most `wait` for the first event, and returns all that have arrived.
     pub fn events(&mut self, wait: Duration) -> io::Result<Vec<Event>> {
         self.keyboard.wait(wait)?;
         listen_without_thread();
@@ -246,7 +257,9 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Waits for the pen; for ever where a signal is ending the process: nothing may be drawn after the terminal is given back.
+/// Waits for the lock on the terminal.
+///
+/// Waits for ever if a signal is ending the process, because nothing may be drawn after the terminal is restored.
 fn pen() -> MutexGuard<'static, ()> {
     let pen = locked(&WRITING);
     while ENDING.load(Ordering::SeqCst) {
@@ -255,8 +268,9 @@ fn pen() -> MutexGuard<'static, ()> {
     pen
 }
 
-/// A second handle of standard output, without Rust's lock: a frame that hangs in a stopped terminal would hold that lock,
-/// and giving the terminal back would hang too.
+/// Returns a second handle of standard output, without Rust's lock.
+///
+/// A frame that hangs in a stopped terminal would hold that lock, and restoring the terminal would hang too.
 fn stdout() -> io::Result<File> {
     io::stdout().as_fd().try_clone_to_owned().map(File::from)
 }
@@ -264,7 +278,7 @@ fn stdout() -> io::Result<File> {
 fn take_over() -> io::Result<()> {
     ENTERED.store(true, Ordering::SeqCst);
     terminal::enable_raw_mode()?;
-    // A lab that was killed has left its picture on the alternate screen.
+    // A lab that was killed may have left its picture on the alternate screen.
     execute!(
         stdout()?,
         EnterAlternateScreen,
@@ -279,7 +293,7 @@ fn take_over() -> io::Result<()> {
     }
 }
 
-/// Ends the use of the terminal, whatever the reason: it runs the exit hooks, gives the terminal back, and prints the panic
+/// Releases the terminal, whatever the reason: runs the exit hooks, restores the terminal, and prints the panic
 /// messages of other threads.
 pub fn leave() {
     at_exit::run_hooks(Release::Exit);
@@ -294,12 +308,12 @@ fn print_panics() {
     }
 }
 
-/// Gives the terminal back, once. Errors are ignored, because there is no place left to report them.
-/// Whether the last signal about the job was SIGCONT.
+/// Returns true if the last job signal was SIGCONT.
 fn is_resumed() -> bool {
     LAST_JOB_SIGNAL.load(Ordering::SeqCst) == RESUMED
 }
 
+/// Restores the terminal once. Errors are ignored, because there is nowhere left to report them.
 fn give_back() {
     if !ENTERED.swap(false, Ordering::SeqCst) {
         return;
@@ -313,11 +327,11 @@ fn give_back() {
     let _ = terminal::disable_raw_mode();
 }
 
-/// Installs, once per process, the panic hook and the signal handlers that give the terminal back.
+/// Installs, once per process, the panic hook and the signal handlers that restore the terminal.
 fn guard() -> io::Result<()> {
     static GUARD: Once = Once::new();
     let mut result = Ok(());
-    let _ = DRAWING.set(thread::current().id()); // the first one stays
+    let _ = DRAWING.set(thread::current().id()); // keeps the first one
     GUARD.call_once(|| {
         let before = std::panic::take_hook();
         std::panic::set_hook(Box::new(move |panic| {
@@ -336,7 +350,7 @@ fn guard() -> io::Result<()> {
 }
 
 fn install_handlers() -> io::Result<()> {
-    // Before the thread is woken, so that the loop finds what was stored.
+    // Register these before the thread that wakes the loop, so that the loop finds the stored value.
     for (signal, is_last) in [(SIGTSTP, SUSPEND), (SIGCONT, RESUMED)] {
         flag::register_usize(signal, Arc::clone(&LAST_JOB_SIGNAL), is_last)?;
     }
@@ -344,15 +358,15 @@ fn install_handlers() -> io::Result<()> {
         SIGHUP, SIGTERM, SIGINT, SIGQUIT, SIGTSTP, SIGCONT, SIGWINCH, SIGXFSZ,
     ];
     *locked(&SIGNALS) = Some(Signals::new(handled)?);
-    // If the system gives no thread, the loop handles signals: see listen_without_thread().
+    // If the system provides no thread, the loop handles signals: see listen_without_thread().
     let _ = thread::Builder::new()
         .name("signals".to_owned())
         .spawn(listen);
     Ok(())
 }
 
-/// Handles signals on a thread of its own. It ends the process without the loop, which may hang or fail on a terminal that
-/// has hung up.
+/// Handles signals on a separate thread. It ends the process without the main loop, which may hang or fail on a
+/// terminal that has hung up.
 fn listen() {
     let mut signals = locked(&SIGNALS).take();
     for signal in signals.iter_mut().flat_map(Signals::forever) {
@@ -361,7 +375,7 @@ fn listen() {
     }
 }
 
-/// Handles pending signals, if there is no thread for [`listen`].
+/// Handles pending signals if no thread runs [`listen`].
 fn listen_without_thread() {
     let mut signals = locked(&SIGNALS);
     let pending: Vec<_> = signals.iter_mut().flat_map(Signals::pending).collect();
@@ -371,9 +385,9 @@ fn listen_without_thread() {
 
 fn handle(signal: i32) {
     match signal {
-        SIGTSTP | SIGCONT => {} // it is in LAST_JOB_SIGNAL, and the loop is woken
+        SIGTSTP | SIGCONT => {} // stored in LAST_JOB_SIGNAL; the loop is woken
         SIGWINCH => RESIZED.store(true, Ordering::Relaxed),
-        SIGXFSZ => {} // a file past `ulimit -f`: the write fails then, like one to a full disk
+        SIGXFSZ => {} // a file exceeds `ulimit -f`: the write fails, as on a full disk
         end => {
             at_exit::run_hooks(Release::Exit);
             ENDING.store(true, Ordering::SeqCst);
@@ -384,7 +398,7 @@ fn handle(signal: i32) {
     }
 }
 
-/// Waits until no frame is being drawn; `None` if a frame hangs in a terminal that accepts no bytes.
+/// Waits until no frame is being drawn. Returns `None` if a frame hangs in a terminal that accepts no bytes.
 fn take_pen() -> Option<MutexGuard<'static, ()>> {
     let begin = Instant::now();
     while begin.elapsed() < TERMINAL_EXIT_LIMIT {
@@ -397,6 +411,7 @@ fn take_pen() -> Option<MutexGuard<'static, ()>> {
     None
 }
 
+/// Restores the terminal on another thread, and waits at most [`TERMINAL_EXIT_LIMIT`] for it.
 fn leave_in_time() {
     let (done, left) = mpsc::channel();
     let spawned = thread::Builder::new().spawn(move || {

@@ -1,14 +1,14 @@
 //! The style of each role on the screen, in four palettes and for two backgrounds.
 //!
-//! The run is blue and the exact motion is orange in every pane. Text and axes have no hue, so that curves stand out.
-//! No meaning depends on the hue alone: the exact motion is dashed, arrows have letters, a value that is off is bold, and
-//! the verdict has words. What the environment variables say about colors and markers is read here.
+//! The run is blue and the exact motion is orange in every pane. Text and axes have no hue, so that curves are
+//! prominent. No meaning depends on hue alone: the exact motion is dashed, arrows have letters, a value that disagrees
+//! is bold, and the verdict has words. The environment variables for colors and markers are read here.
 
 use crate::lab::view::theme::Marker;
 use crate::lab::view::theme::{Background, Palette, Theme};
 use ratatui::style::{Color, Modifier, Style};
 
-/// The role of a part of the screen, which decides its style.
+/// Role of an element on the screen, which decides its style.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Role {
     #[default]
@@ -23,15 +23,15 @@ pub enum Role {
     Run,
     /// The run before that window.
     RunEarlier,
-    /// Between the least and the greatest of swings that are too fast to be drawn one by one.
+    /// Envelope between minimum and maximum of swings that are too fast to draw one by one.
     Fill,
     /// The background of the window in the overview.
     WindowTint,
     Exact,
-    /// The previous run, and the pinned one.
+    /// The previous run and the pinned run.
     Previous,
     Measured,
-    /// The first word of the verdict, where the run needs attention.
+    /// First word of the verdict if the run needs attention.
     Badge,
     /// A value that disagrees with the exact motion, and warnings.
     Off,
@@ -41,12 +41,12 @@ pub enum Role {
     RimNear,
     RimFar,
     Floor,
-    /// The cursor, and the shown moment.
+    /// The cursor and the displayed time.
     Cursor,
     Push,
     /// A value that can be edited.
     Editable,
-    /// The chosen row, and the title of the pane in focus.
+    /// The selected row, and the title of the pane in focus.
     Selected,
 }
 
@@ -81,7 +81,7 @@ impl Theme {
         let ink = ink(role, self.background).map(|shades| shades.color(self.palette));
         let ground = ground(role, self.background).map(|shades| shades.color(self.palette));
         Style {
-            // Text has the terminal's own color: it is legible even if the background is not the one that was expected.
+            // Text has the terminal's own color, so that it is legible even on an unexpected background.
             fg: (role != Role::WindowTint).then_some(ink.unwrap_or_default()),
             bg: ground,
             ..style
@@ -97,7 +97,7 @@ impl Theme {
             Role::Cursor | Role::Measured if is_plain => Modifier::BOLD,
             Role::Selected => Modifier::BOLD | Modifier::REVERSED,
             Role::Editable => Modifier::UNDERLINED,
-            // The 16 colors have one gray, for rules.
+            // The 16 colors have one gray, which is used for rules.
             Role::Label if is_plain || self.palette == Palette::Ansi16 => Modifier::DIM,
             Role::Rule
             | Role::RunEarlier
@@ -114,7 +114,7 @@ impl Theme {
     }
 }
 
-/// The color of letters, lines and dots of `role`; `None`: the terminal's own.
+/// Returns the color of letters, lines and dots of `role`; `None` is the terminal's own.
 fn ink(role: Role, background: Background) -> Option<Shades> {
     let (on_dark, on_light) = match role {
         Role::Text
@@ -194,21 +194,22 @@ fn ink(role: Role, background: Background) -> Option<Shades> {
     })
 }
 
-/// The background of `role`, where it has its own.
+/// Returns the background of `role`, if it has its own.
 fn ground(role: Role, background: Background) -> Option<Shades> {
     match (role, background) {
         (Role::Badge, _) => Some(shades(Color::Yellow, 221, 0xf2c94c)),
         (Role::Off, Background::Light) => Some(shades(Color::Yellow, 223, 0xfbe6a0)),
-        // The 16 colors have no tint: there the edges mark the window.
+        // The 16 colors have no tint: there, the edges mark the window.
         (Role::WindowTint, Background::Dark) => Some(shades(Color::Reset, 236, 0x262b33)),
         (Role::WindowTint, Background::Light) => Some(shades(Color::Reset, 255, 0xeaf1fa)),
         _ => None,
     }
 }
 
+/// Colors requested by the user.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ColorChoice {
-    /// Unless NO_COLOR is set or the terminal has none.
+    /// Colors, unless NO_COLOR is set or the terminal has none.
     #[default]
     Auto,
     Always,
@@ -236,8 +237,8 @@ impl ColorChoice {
     }
 }
 
-/// The dots for these environment variables: ASCII where the locale is not UTF-8, half blocks on the Linux console,
-/// whose fonts have no Braille, else Braille.
+/// Returns the marker for these environment variables: ASCII if the locale is not UTF-8, half blocks on the Linux
+/// console (its fonts have no Braille), else Braille.
 pub fn marker(variable: impl Fn(&str) -> Option<String>) -> Marker {
     let locale = ["LC_ALL", "LC_CTYPE", "LANG"]
         .into_iter()
@@ -254,15 +255,15 @@ pub fn marker(variable: impl Fn(&str) -> Option<String>) -> Marker {
     }
 }
 
-/// Whether these environment variables refuse colors (<https://no-color.org>).
+/// Returns true if these environment variables disable colors (<https://no-color.org>).
 pub fn refuses_color(variable: impl Fn(&str) -> Option<String>) -> bool {
     variable("NO_COLOR").is_some_and(|value| !value.is_empty())
 }
 
-/// The palette of the terminal that these environment variables describe, whether or not colors are wanted.
+/// Returns the palette of the terminal that these environment variables describe, wanted or not.
 pub fn terminal_palette(variable: impl Fn(&str) -> Option<String>) -> Palette {
     let term = variable("TERM").unwrap_or_default();
-    // GNU screen passes COLORTERM on, but not the 24 bits.
+    // GNU screen passes COLORTERM through but does not support 24-bit color.
     let is_gnu_screen = term.starts_with("screen") && variable("TMUX").is_none();
     let has_24_bits =
         variable("COLORTERM").is_some_and(|value| ["truecolor", "24bit"].contains(&value.as_str()));
@@ -275,7 +276,7 @@ pub fn terminal_palette(variable: impl Fn(&str) -> Option<String>) -> Palette {
     }
 }
 
-/// The theme for `choice` and these environment variables (<https://no-color.org>; COLORFGBG as rxvt sets it).
+/// Returns the theme for `choice` and these environment variables (<https://no-color.org>; COLORFGBG as set by rxvt).
 pub fn theme(choice: ColorChoice, variable: impl Fn(&str) -> Option<String>) -> Theme {
     let refused = refuses_color(&variable);
     let has_none = variable("TERM").is_none_or(|term| term == "dumb" || term.starts_with("vt"));
@@ -345,7 +346,7 @@ mod tests {
         }
     }
 
-    /// With 16 colors, gray furniture and the earlier run with its fill may share one.
+    /// With 16 colors, the gray parts may share a color, and so may the earlier run and its envelope.
     #[test]
     fn sixteen_colors_tell_the_curves_and_the_arrows_apart() {
         let roles = [
@@ -386,7 +387,7 @@ mod tests {
         }
     }
 
-    /// Contrast of two colors, 0xrrggbb, as WCAG 2 defines it, from the luminance of sRGB.
+    /// Returns the contrast of two colors, 0xrrggbb, as defined by WCAG 2 from the luminance of sRGB.
     fn contrast(one: u32, other: u32) -> f64 {
         let [a, b] = [one, other].map(|rgb| {
             let [_, red, green, blue] = rgb.to_be_bytes().map(|byte| {

@@ -1,7 +1,7 @@
 use super::*;
 use proptest::prelude::*;
 
-/// What `pieces` say, each as it comes with a moment between.
+/// Decodes `pieces`, which arrive 1 ms apart.
 fn typed(pieces: &[&[u8]]) -> Vec<Typed> {
     let (mut decoder, begin) = (Decoder::default(), Instant::now());
     for (piece, number) in pieces.iter().zip(0..) {
@@ -14,14 +14,14 @@ fn all(decoder: &mut Decoder) -> Vec<Typed> {
     std::iter::from_fn(|| decoder.take_typed()).collect()
 }
 
-/// A decoder to which `bytes` came, and when.
+/// Returns a decoder that was fed `bytes`, and the time.
 fn fed(bytes: &[u8]) -> (Decoder, Instant) {
     let (mut decoder, begin) = (Decoder::default(), Instant::now());
     decoder.feed(bytes, begin);
     (decoder, begin)
 }
 
-/// `text` is known as `wanted` as a whole, cut anywhere, byte by byte, and twice before another key.
+/// Asserts that `text` decodes to `wanted` as a whole, cut anywhere, byte by byte, and twice before another key.
 fn is_known(text: &str, wanted: &Typed) {
     let (bytes, once) = (text.as_bytes(), [wanted.clone()]);
     for cut in 0..bytes.len() {
@@ -133,7 +133,7 @@ fn escape_is_a_key_after_a_moment_and_loses_none_that_follows() {
     decoder.expire(begin + BYTE_GAP);
     assert_eq!(all(&mut decoder), keys(&[Key::Esc]));
     assert_eq!(decoder.deadline(), None);
-    // A sequence that comes too late is no sequence.
+    // A sequence that arrives too late is read as separate keys.
     decoder.feed(b"\x1b", begin);
     decoder.feed(b"[A", begin + 2 * BYTE_GAP);
     let late = [Key::Esc, Key::Char('['), Key::Char('A')];
@@ -173,7 +173,7 @@ fn a_sequence_without_an_end_is_given_up() {
         decoder.feed(b"x", begin + BYTE_GAP);
         assert_eq!(all(&mut decoder), keys(&[Key::Char('x')]), "{begun:?}");
     }
-    // Nor do keys that are held down keep it alive for ever.
+    // Keys that are held down do not keep it alive for ever either.
     let (mut decoder, begin) = fed(b"\x1b]");
     for number in 1..100 {
         decoder.feed(b"j", begin + BYTE_GAP / 2 * number);
@@ -183,7 +183,7 @@ fn a_sequence_without_an_end_is_given_up() {
 
 #[test]
 fn the_time_of_a_sequence_is_its_own() {
-    // Every piece ends within a sequence: none of them waits longer than a moment.
+    // Every piece ends within a sequence, but no sequence waits longer than a moment.
     let (mut decoder, begin) = fed(b"\x1b[");
     for number in 1..=100 {
         decoder.feed(b"A\x1b[", begin + BYTE_GAP / 2 * number);
