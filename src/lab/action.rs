@@ -1,58 +1,62 @@
-//! What a key does that stands for no command: it moves the focus or a selection, opens or closes, types, or leaves. The
-//! table of keys in `tui` says which key stands for which action, and which for commands.
+//! Actions: the effects of keys that are not commands. An action moves the focus or a selection, opens or closes a
+//! window, types, or quits.
+//!
+//! The table of keys in `tui` maps keys to actions and commands.
 
 use super::view::Pane;
 
-/// The factor of the arrows with Shift.
+/// Factor by which Shift multiplies an arrow key.
 pub const SHIFT_FACTOR: i32 = 10;
-/// Rows that a page key moves by.
+/// Rows that a page key moves.
 pub(super) const PAGE_KEY_ROWS: isize = 10;
-/// The most times that a key is repeated; more repetitions would make no difference on the screen.
+/// Maximum count of a key. More repetitions would make no difference on the screen.
 const MOST_REPEATED: u64 = 1000;
 
-/// An action of the user; [`Lab::update`](crate::lab::Lab::update) carries it out.
+/// An action of the user. [`Lab::update`](crate::lab::Lab::update) carries it out.
 #[derive(Clone, Copy, Debug)]
 pub enum Action {
-    /// Pauses the run, or lets it go on; pauses a script.
+    /// Pauses or resumes the run or a script.
     TogglePause,
-    /// Goes to the step of the count; without one, asks for a step or a time to go to.
+    /// Goes to the step of the count. Without a count, asks for a step or a time.
     GoTo,
-    /// Moves the focus to the values of the push to come.
+    /// Moves the focus to the values of the next push.
     ChoosePush,
     /// Moves the focus to the values of the scenario.
     Parameters,
-    /// Asks for a new value of the selected line.
+    /// Asks for a new value of the selected row.
     Edit,
     Ask(Ask),
     Digit(u8),
     NextPane,
     PreviousPane,
-    /// Shows this pane, one that is shown on request, beside another one and moves the focus there, or takes it away.
+    /// Shows this pane, which is shown on request only, and moves the focus there; or hides it.
     Toggle(Pane),
     /// Moves the focus to the 3-D view, or from there to the path from above.
     ThreeD,
-    /// Goes to the first step at which rows of the user's own program differ from the run, with the step pane.
+    /// Goes to the first step at which the rows of the user's own program differ from the run, and opens the step pane.
     ToDifference,
-    /// Moves a selection, or nudges the selected value. Where arrows mean a command in a pane, its row in `tui` says which. So many times as far as one press.
+    /// Moves a selection, or nudges the selected value. The number multiplies the distance of one press.
+    ///
+    /// In panes where arrows are commands, the pane's row in `tui` says which.
     Move(Direction, i32),
-    /// Goes to the step at the cursor; without one, moves the focus to the values.
+    /// Goes to the step at the cursor. Without a cursor, moves the focus to the values.
     GoToCursor,
     Browse,
-    /// Turns to the values and begins to type a part of a name: only values with it in their names are listed.
+    /// Moves the focus to the values and starts a filter: only values whose name contains the typed text are listed.
     FindValue,
-    /// Does the entry that is selected in the help; `tui`, which has the entries, carries it out.
+    /// Carries out the entry that is selected in the help. The entries belong to `tui`, which does this.
     DoEntry,
     Choose,
-    /// Changes what is typed: the field of a dialog, a filter, or the search of the help.
+    /// Edits the typed text: the field of a dialog, a filter, or the search of the help.
     InField(FieldEdit),
-    /// Accepts what is typed into the dialog.
+    /// Applies the dialog.
     Accept,
-    /// Opens or closes the help: the list of keys and words.
+    /// Opens or closes the help, which lists keys and words.
     Help,
-    /// Closes a popup, or stops what is in progress.
+    /// Closes a popup, or stops what is running.
     Close,
     Lesson(LessonKey),
-    /// The class: the teacher's acts, or stepping aside and coming back.
+    /// In a class: opens the teacher's menu, or leaves or rejoins the presentation.
     Class,
     Redraw,
     /// Suspends the program until the shell resumes it.
@@ -61,20 +65,20 @@ pub enum Action {
 }
 
 impl Action {
-    /// Returns whether the nudges of a value before and after it are one act: one undo takes back both.
+    /// Returns true if nudges of a value before and after this action are one edit, which a single undo restores.
     pub(super) fn keeps_nudge(self) -> bool {
         matches!(self, Self::Move(..) | Self::Digit(_))
     }
 }
 
-/// What the lab leaves to the rooms above it.
+/// A request that the lab passes to the modules above it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LabRequest {
-    /// Do in the lesson what a key stands for.
+    /// Carry out a lesson key.
     Lesson(LessonKey),
-    /// Take this number as the answer to the question of the lesson that was asked last.
+    /// Use this number as the answer to the latest question of the lesson.
     Answer(f64),
-    /// Do in the class what its key stands for.
+    /// Carry out the key of the class.
     Class,
     Redraw,
     /// Suspend the program until the shell resumes it.
@@ -82,50 +86,51 @@ pub enum LabRequest {
     Quit,
 }
 
-/// What a dialog asks for.
+/// The purpose of a dialog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ask {
     /// A step or a time to go to.
     Place,
-    /// A new value of the selected line.
+    /// A new value of the selected row.
     Value,
     Export,
     Figure,
     RunFile,
-    /// Where to save the present state as a scenario.
+    /// A file in which to save the present state as a scenario.
     Present,
     Settings,
 }
 
-/// What a key does in the lesson. The room above the lab does it.
+/// An action on the lesson. The module above the lab carries it out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LessonKey {
     /// Opens the list of lessons, or closes it.
     List,
-    /// Closes the list of lessons; on a page it says how to leave.
+    /// Closes the list of lessons. On a page, says how to leave the lesson.
     Leave,
     Next,
     Before,
-    /// Begins the page again: the run as the page wants it.
+    /// Restarts the page, with its run.
     Again,
     ShowTask,
-    /// Shows or hides the notes for the teacher, the next page and a clock.
+    /// Shows or hides the teacher's notes, the next page and a clock.
     Notes,
     /// Selects the answer above or below, or scrolls.
     Move(Direction),
-    /// Selects the lesson of this number among those that are listed.
+    /// Selects the listed lesson with this index.
     Select(usize),
     /// Changes the text that filters the list of lessons.
     Filter(FieldEdit),
-    /// Gives the selected answer, asks for a number, or opens the selected lesson.
+    /// Submits the selected answer, asks for a number, or opens the selected lesson.
     Take,
-    /// Marks the answer of this number, or asks for a number that begins with this digit.
+    /// Selects the answer with this number, or asks for a number that begins with this digit.
     Digit(u8),
     /// Asks for a number that begins with this sign or decimal point.
     Sign(char),
 }
 
-/// A change in the field of a dialog, or in a line without a cursor: there something can be typed, erased and cleared.
+/// An edit in a field of a dialog or in a line without a cursor. A line without a cursor supports typing, erasing and
+/// clearing only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FieldEdit {
     Type(char),
@@ -158,9 +163,9 @@ impl Direction {
         matches!(self, Self::Left | Self::Right)
     }
 
-    /// Rows by which a key moves in a list; a page key moves by `page`.
+    /// Returns the number of rows that the key moves in a list, negative for up. A page key moves by `page`.
     pub fn rows(self, page: isize) -> isize {
-        /// More rows than any list has.
+        /// A number larger than the length of any list.
         const ALL_ROWS: isize = 1_000_000_000;
         match self {
             Self::First => -ALL_ROWS,
@@ -173,7 +178,7 @@ impl Direction {
     }
 }
 
-/// `times` to the right, or as many to the left.
+/// Returns `times`, negative for the left.
 pub fn signed(direction: Direction, times: i32) -> i32 {
     match direction {
         Direction::Left => -times,
@@ -181,7 +186,7 @@ pub fn signed(direction: Direction, times: i32) -> i32 {
     }
 }
 
-/// Returns how often a key acts that was pressed after this count.
+/// Returns how many times to apply a key that was pressed after `count`.
 pub fn repeated(count: Option<u64>) -> i32 {
     count.unwrap_or(1).min(MOST_REPEATED) as i32
 }

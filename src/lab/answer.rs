@@ -1,34 +1,34 @@
-//! The result of a command: what it has done, or why it was refused.
+//! The result of a command: its effect, or the reason why it was refused.
 
 use crate::engine::scenario::Problems;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// The result of a command that was carried out.
+/// The effect of a command that was carried out.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Done {
-    /// The message about it; `None` where the screen shows the result.
+    /// The message; `None` if the screen shows the effect by itself.
     pub said: Option<String>,
-    /// Whether the message stays until the next key, instead of a few seconds.
+    /// True if the message stays until the next key instead of a few seconds.
     pub stays: bool,
-    /// The action that the command has started and that takes time; `None` if the command is complete.
+    /// The action that the command started and that takes time; `None` if the command is complete.
     pub under_way: Option<PendingAction>,
 }
 
-/// An action that takes time; [`Lab::advance`](super::Lab::advance) continues it.
+/// An action that takes time. [`Lab::advance`](super::Lab::advance) continues it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PendingAction {
     Going,
     /// The run plays until a condition holds.
     Playing,
-    /// The script waits until the clock shows this time.
+    /// The script waits until this time on the lab's clock.
     Waiting(Duration),
     Exporting,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Refusal {
-    /// The file exists and may not be replaced.
+    /// The file exists, and the command does not allow replacing it.
     #[error("{0} exists: force = true replaces it, as in {{ path = \"FILE\", force = true }}")]
     Exists(PathBuf),
     #[error("{0}")]
@@ -54,14 +54,14 @@ impl From<Problems> for Refusal {
 }
 
 impl Done {
-    /// The command is complete and there is no message.
+    /// A complete command without a message.
     pub(super) const SILENT: Self = Self {
         said: None,
         stays: false,
         under_way: None,
     };
 
-    /// Reports a complete command; the message `text` stays for a few seconds.
+    /// Creates the result of a complete command, with the message `text` for a few seconds.
     pub(super) fn saying(text: impl Into<String>) -> Self {
         Self::saying_any(Some(text.into()))
     }

@@ -1,8 +1,8 @@
-//! A command: one thing that a user can do to the lab, as a value. Keys and dialogs lead to commands, and files of
-//! commands (`--do`) contain them.
+//! A command: one action of the user on the lab, as a value. Keys and dialogs create commands, and files of commands
+//! (`--do`) contain them.
 //!
-//! The [table](COMMANDS) lists every command with its name, its value and its effect; the reading of files and the manual
-//! use it. Each part of the lab carries its own commands out.
+//! The [table](COMMANDS) lists every command with its name, its value and its effect. The file reader and the manual
+//! use it. `form` checks the values, and `file` reads the files. Each part of the lab carries out its own commands.
 
 mod file;
 mod form;
@@ -26,86 +26,86 @@ use std::borrow::Cow;
 use std::sync::LazyLock;
 use toml::{Table, Value};
 
-/// A command; serde reads and writes it under its name in a `[[do]]` table.
+/// A command. Serde reads and writes it under its name in a `[[do]]` table.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Command {
     /// Opens a preset or a file: SCENARIO as on the command line.
     Open(String),
-    /// Sets dotted keys of the scenario, as one act: one undo takes all of them back.
+    /// Sets dotted keys of the scenario as one edit: a single undo restores all of them.
     Set(Table),
-    /// Sets dotted keys of the scenario in a new run, which is played to the same time.
+    /// Sets dotted keys of the scenario in a new run, which is replayed to the same time.
     #[serde(skip)]
     Rerun(Table),
-    /// Nudges the value of a dotted key: up, or down where `times` is negative.
+    /// Nudges the value of a dotted key: up, or down if `times` is negative.
     Nudge {
-        /// The key, of a single value.
+        /// The dotted key of a single value.
         key: String,
-        /// How often; negative: downwards. Not 0.
+        /// Number of nudges, not 0. Negative numbers nudge down.
         #[serde(default = "once")]
         times: i32,
-        /// Whether a new run begins with the value, instead of a change from the next step on.
+        /// True to start a new run with the value instead of changing it from the next step on.
         #[serde(default)]
         rerun: bool,
     },
     /// Pushes from the next step on.
     Push(PushChoice),
-    /// Chooses the push to come.
+    /// Chooses the next push.
     NextPush(PushChoice),
-    /// Takes this many time steps, or goes back by as many where that is negative. Not 0.
+    /// Takes this many time steps, or goes back if negative. Not 0.
     Step(i64),
     /// Goes to a step or a time, and stops there.
     GoTo(SeekTarget),
-    /// Plays at the present speed until this condition holds, and stops there.
+    /// Plays at the present speed until this condition holds, and stops.
     RunUntil(Expression),
     #[serde(with = "only_true")]
     Run,
     #[serde(with = "only_true")]
     Pause,
-    /// Lets the next command of the script wait for this many seconds.
+    /// Delays the next command of the script by this many seconds.
     WaitS(f64),
-    /// Begins a part of the script that has this title.
+    /// Begins a part of the script with this title.
     Chapter(String),
     Undo(u32),
-    /// Does this many undone acts again.
+    /// Redoes this many edits.
     Redo(u32),
     Export(Export),
     Figure(Box<FigureCommand>),
     Save(Save),
     Speed(Speed),
-    /// Time at the left edge of the traces, s; `None`: they follow the run.
+    /// Time at the left edge of the traces, s. With `None` they follow the run.
     #[serde(with = "or_none")]
     SinceS(Option<f64>),
-    /// How many times the values of the traces are magnified.
+    /// Magnification of the traces' values.
     Magnify(f64),
-    /// The step at which the traces are read off.
+    /// The step at which the traces are read.
     Cursor(CursorTo),
-    /// Whether the exact motion is drawn beside the run.
+    /// Shows or hides the exact motion.
     Exact(bool),
-    /// Puts these measured data beside the run, or none.
+    /// Shows these measured data with the run, or removes them.
     #[serde(with = "or_none")]
     Measured(Option<String>),
-    /// Begins the run anew with the time step or scheme that mends doubtful numbers.
+    /// Starts a new run with the time step or scheme that fixes unreliable numbers.
     #[serde(with = "only_true")]
     TakeAdvice,
-    /// Whether the present run is pinned as the reference; false: no run is.
+    /// Pins the present run as the reference. With false, unpins it.
     Pin(bool),
     #[serde(with = "or_none")]
     Fill(Option<Pane>),
     #[serde(with = "or_none")]
     PointAt(Option<Pane>),
-    /// Shows the run as these keys of `[view]` say: those of [`ViewSettings`].
+    /// Sets these keys of `[view]`, the fields of [`ViewSettings`].
     #[serde(skip)]
     Look(Table),
 }
 
-/// The command of a file beside which [`RERUN`] may be.
+/// The name of the command that may be combined with [`RERUN`] in a table.
 pub const SET: &str = "set";
-/// `rerun = true` beside `set` begins a new run.
+/// The key that makes a `set` command in the same table start a new run.
 pub const RERUN: &str = "rerun";
 
 pub struct CommandRow {
-    /// Its name in a `[[do]]` table.
+    /// Name of the command in a `[[do]]` table.
     pub name: &'static str,
     /// Examples of its value, as TOML.
     pub value: Cow<'static, str>,
@@ -127,7 +127,7 @@ fn row(
     }
 }
 
-/// Every command: those of `own`, and a row for each other key of `[view]`.
+/// All commands: the rows of `own`, and a row for each other key of `[view]`.
 pub static COMMANDS: LazyLock<Vec<CommandRow>> = LazyLock::new(|| {
     let mut rows = own();
     for key in KEYS {
@@ -144,7 +144,7 @@ pub static COMMANDS: LazyLock<Vec<CommandRow>> = LazyLock::new(|| {
     rows
 });
 
-/// Examples of a value of this kind, as TOML.
+/// Returns examples of a value of this kind, as TOML.
 fn examples(kind: ValueKind) -> String {
     let words = kind.words().join("\", \"");
     match kind {
@@ -157,7 +157,7 @@ fn examples(kind: ValueKind) -> String {
     }
 }
 
-/// The commands that are no key of `[view]`, or are said in words of their own.
+/// Returns the rows of the commands that are not keys of `[view]`, or that need their own description.
 #[rustfmt::skip]
 fn own() -> Vec<CommandRow> {
     vec![
@@ -205,9 +205,9 @@ pub struct Export {
     pub path: String,
     #[serde(flatten)]
     pub layout: LayoutFile,
-    /// Up to this step instead of the present one.
+    /// Last step of the run in the file; the present step if `None`.
     pub to_step: Option<u64>,
-    /// Whether an existing file is replaced.
+    /// True to replace an existing file.
     #[serde(default)]
     pub force: bool,
 }
@@ -215,17 +215,17 @@ pub struct Export {
 /// Draws the run up to a step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FigureCommand {
-    /// The file; its name's end says in which form.
+    /// The file. Its extension selects the format.
     pub path: String,
     /// The name of a [`FigureKind`](crate::report::figure::kind::FigureKind).
     #[serde(default = "traces")]
     pub kind: String,
-    /// Whether the exact motion is drawn beside the run.
+    /// True to draw the exact motion too.
     #[serde(default)]
     pub exact: bool,
-    /// Up to this step instead of the present one.
+    /// Last step of the run in the figure; the present step if `None`.
     pub to_step: Option<u64>,
-    /// Whether an existing file is replaced.
+    /// True to replace an existing file.
     #[serde(default)]
     pub force: bool,
 }
@@ -234,25 +234,25 @@ pub struct FigureCommand {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Save {
     pub path: String,
-    /// Whether the file is a scenario that starts from the present state.
+    /// True to write a scenario that starts from the present state.
     #[serde(default)]
     pub from_here: bool,
-    /// Of a run file: up to this step instead of the present one.
+    /// Last step of the run in a run file; the present step if `None`.
     pub to_step: Option<u64>,
-    /// Whether an existing file is replaced.
+    /// True to replace an existing file.
     #[serde(default)]
     pub force: bool,
 }
 
-/// The values of a push that a command gives. The push to come has the others.
+/// The values of a push that a command sets. The next push supplies the others.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[allow(non_snake_case, reason = "keys carry their unit as it is written")]
 pub struct PushChoice {
     pub point: Option<String>,
     pub force_N: Option<Force>,
-    /// Direction of the force, if `force_N` is only a size.
+    /// Direction of the force, if `force_N` is a magnitude.
     pub toward: Option<Toward>,
-    /// When it begins, s; 0 for now.
+    /// Start time, s; 0 means now.
     pub from_s: Option<f64>,
     pub for_s: Option<f64>,
 }
@@ -262,7 +262,7 @@ pub struct PushChoice {
 #[serde(untagged)]
 pub enum Force {
     Size(f64),
-    /// The force itself, world frame.
+    /// Components in the world frame.
     Vector([f64; 3]),
 }
 
@@ -270,7 +270,7 @@ pub enum Force {
 #[serde(try_from = "Choice", into = "Choice")]
 pub enum SeekTarget {
     Step(u64),
-    /// The one at this time, s.
+    /// The step at this time, s.
     Time(f64),
     Start,
     End,
@@ -278,23 +278,23 @@ pub enum SeekTarget {
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum CursorTo {
-    /// To the next step at which the tilt turns up or down.
+    /// The next turning point of the tilt.
     #[serde(rename = "next turn")]
     NextTurn,
     #[serde(rename = "turn before")]
     TurnBefore,
-    /// Stays, and marks its turn; from a mark at another turn, the swings between are counted.
+    /// Marks the turning point at the cursor. If another one is marked already, counts the swings between the two.
     #[serde(rename = "mark")]
     Mark,
-    /// Off the traces.
+    /// No cursor.
     #[serde(rename = "none")]
     Nowhere,
-    /// To a step or a time that the run has reached.
+    /// A step or a time that the run has reached.
     #[serde(untagged)]
     Place(SeekTarget),
 }
 
-/// The value of a command that takes none.
+/// Serde functions for a command without a value, which is written as `true`.
 mod only_true {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -307,7 +307,7 @@ mod only_true {
     }
 }
 
-/// A value, or the word `none`.
+/// Serde functions for an optional value, which is written as the word `none` if absent.
 mod or_none {
     use serde::de::{DeserializeOwned, Error};
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -335,10 +335,10 @@ mod or_none {
 }
 
 impl Command {
-    /// The command called `name` with `value`.
+    /// Parses the command `name` with `value`.
     ///
     /// # Errors
-    /// Every rule that the value breaks; the keys of the problems begin with the name.
+    /// Returns every rule that the value breaks. The keys of the problems begin with the name.
     pub fn new(name: &str, value: &Value) -> Result<Self, Problems> {
         let Some(row) = COMMANDS.iter().find(|row| row.name == name) else {
             return Err(file::unknown(name, None).into());
@@ -358,10 +358,10 @@ impl Command {
         Ok(command)
     }
 
-    /// Returns the command `set` as one that begins a new run, if `rerun`, the value of [`RERUN`] beside it, says so.
+    /// Turns a `set` command into one that starts a new run if `rerun`, the value of [`RERUN`] in its table, is true.
     ///
     /// # Errors
-    /// If `rerun` is no truth value.
+    /// Returns an error if `rerun` is not a boolean.
     pub fn with_rerun(self, rerun: Option<&Value>) -> Result<Self, Problems> {
         match (self, rerun.map(|value| (value, value.as_bool()))) {
             (Self::Set(keys), Some((_, Some(true)))) => Ok(Self::Rerun(keys)),
@@ -372,14 +372,14 @@ impl Command {
         }
     }
 
-    /// The command that shows the run as the key `name` of `[view]` says with `value`.
+    /// Returns the command that sets the key `name` of `[view]` to `value`.
     pub fn look(name: &str, value: impl Serialize) -> Self {
         let value = Value::try_from(value).ok();
         let entry = value.map(|value| (name.to_owned(), value));
         Self::Look(entry.into_iter().collect())
     }
 
-    /// The value of the key `name` of `[view]`, where the command sets it.
+    /// Returns the value of the key `name` of `[view]` if the command sets it.
     pub fn looked(&self, name: &str) -> Option<&Value> {
         match self {
             Self::Look(table) => table.get(name),
@@ -387,14 +387,14 @@ impl Command {
         }
     }
 
-    /// Its name in a `[[do]]` table.
+    /// Returns the name of the command in a `[[do]]` table.
     pub fn name(&self) -> String {
         let table = self.to_table();
         let mut names = table.keys().filter(|name| *name != RERUN);
         names.next().cloned().unwrap_or_default()
     }
 
-    /// Its name and the value behind it, as TOML.
+    /// Returns the table with the command's name and value, as in a `[[do]]` table.
     pub fn to_table(&self) -> Table {
         match (self, Value::try_from(self)) {
             (Self::Look(table), _) => table.clone(),
@@ -403,7 +403,7 @@ impl Command {
                 (RERUN.to_owned(), true.into()),
             ]),
             (_, Ok(Value::Table(table))) => table,
-            _ => Table::new(), // a command holds nothing that TOML cannot write
+            _ => Table::new(), // unreachable: TOML can write every command
         }
     }
 }
@@ -422,7 +422,7 @@ impl TryFrom<Choice> for SeekTarget {
 impl From<SeekTarget> for Choice {
     fn from(place: SeekTarget) -> Self {
         match place {
-            SeekTarget::Step(step) => Self::Number(step.min(i64::MAX as u64)), // TOML has no larger one
+            SeekTarget::Step(step) => Self::Number(step.min(i64::MAX as u64)), // the largest integer of TOML
             SeekTarget::Time(time_s) => Self::Word(format!("{time_s} s")),
             SeekTarget::Start => Self::Word("start".to_owned()),
             SeekTarget::End => Self::Word("end".to_owned()),
@@ -431,7 +431,7 @@ impl From<SeekTarget> for Choice {
 }
 
 impl SeekTarget {
-    /// A step (421, 1e7), a time (12.5 s), start or end.
+    /// Parses a step (421, 1e7), a time (12.5 s), `start` or `end`.
     pub fn parse(text: &str) -> Option<Self> {
         match text.trim() {
             "start" => Some(Self::Start),
@@ -447,9 +447,9 @@ impl SeekTarget {
     }
 }
 
-/// A whole number, also as 1e7.
+/// Parses a whole number, also in the form 1e7.
 fn whole(text: &str) -> Option<u64> {
-    /// Floats are exact whole numbers up to here.
+    /// Largest argument for which every whole number is an exact float.
     const LARGEST_WHOLE_ARGUMENT: f64 = 9e15;
     if let Ok(whole) = text.parse() {
         return Some(whole);

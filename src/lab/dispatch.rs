@@ -1,4 +1,6 @@
-//! Carries out commands: each is led to the part of the lab that it concerns.
+//! Passes each command to the part of the lab that carries it out.
+//!
+//! A new command gets its arm in `Lab::dispatch`.
 
 use super::command::{Command, PushChoice};
 use super::edits::{Edited, Edits, ScenarioEdit};
@@ -7,15 +9,15 @@ use super::{ActionResult, Cleared, CommandScript, Done, Lab, Player, comparison}
 use crate::engine::text::printable::printable;
 use std::sync::Arc;
 
-/// The commands that a key means now, or why it means none.
+/// The commands that a key triggers now, or an error that says why it does nothing.
 pub type KeyCommands = Result<Vec<Command>, String>;
 
 impl Lab {
-    /// Carries `command` out. An action that takes time is only started: [`advance`](Self::advance) continues it.
+    /// Carries out `command`. An action that takes time is only started: [`advance`](Self::advance) continues it.
     ///
     /// # Errors
-    /// Why the command was refused. It has then changed nothing; but `undo` and `redo` of more acts than there are have
-    /// undone or redone all.
+    /// Returns an error if the command is refused. Nothing has changed then, with one exception: `undo` and `redo` by
+    /// more edits than there are have undone or redone all of them.
     pub fn carry_out(&mut self, command: &Command) -> ActionResult {
         if !matches!(command, Command::Nudge { .. }) {
             self.edits.values.forget_nudge();
@@ -26,7 +28,7 @@ impl Lab {
         answer
     }
 
-    /// Calls the part of the lab that carries out `command`.
+    /// Passes `command` to the part of the lab that carries it out.
     fn dispatch(&mut self, command: &Command) -> ActionResult {
         let (player, comparison) = (&mut self.player, &mut self.comparison);
         let edits = &mut self.edits;
@@ -92,7 +94,7 @@ impl Lab {
         }
     }
 
-    /// Gives the push of `choice`. In a lesson, a push that is tried again replaces the one that was tried before.
+    /// Starts the push of `choice`. In a lesson, a push that is tried again replaces the previous try.
     fn push(&mut self, choice: &PushChoice) -> ActionResult {
         if self.view.sheet.is_some() && self.edits.is_push_tried_again(choice, &self.player) {
             self.turn(Edits::undo, 1)?;
@@ -101,7 +103,7 @@ impl Lab {
         Ok(self.apply(edit))
     }
 
-    /// Undoes the last `times` acts, or does as many undone ones again.
+    /// Undoes or redoes `times` edits.
     fn turn(&mut self, turn: fn(&mut Edits, &Player) -> Edited, times: u32) -> ActionResult {
         let mut done = Done::SILENT;
         for _ in 0..times {
@@ -111,7 +113,7 @@ impl Lab {
         Ok(done)
     }
 
-    /// Changes every part of the lab to the scenario of `edit`.
+    /// Switches every part of the lab to the scenario of `edit`.
     pub(super) fn apply(&mut self, edit: ScenarioEdit) -> Done {
         let (change, scenario) = (edit.change, &edit.scenario);
         let before = Arc::clone(self.player.run().scenario());
@@ -127,7 +129,7 @@ impl Lab {
             change,
             RunChange::BeginsAnew { .. } | RunChange::Returns { .. }
         ) {
-            self.view.swing_mark = None; // it is a turn of the run that was left
+            self.view.swing_mark = None; // it marks a turning point of the previous run
         }
         self.edits.follow(&self.player);
         let now = self.player.run().scenario();
@@ -144,7 +146,7 @@ impl Lab {
         self.edits.answer(edit, &self.player)
     }
 
-    /// Carries out `commands` up to the first that is refused, and shows their messages.
+    /// Carries out `commands` until one is refused, and shows their messages.
     pub(super) fn carry_out_all(&mut self, commands: &[Command]) {
         for command in commands {
             let answer = self.carry_out(command);
@@ -156,12 +158,12 @@ impl Lab {
         }
     }
 
-    /// Shows the message of a command, or why it was refused.
+    /// Shows the message of a command, or the reason why it was refused.
     pub(super) fn tell_answer(&mut self, answer: ActionResult) {
         self.changed |= self.messages.answer(answer, self.now);
     }
 
-    /// Carries out `command` as a key does: it removes the present message and shows that of the command.
+    /// Carries out `command` as a key does: replaces the present message by the message of the command.
     pub fn carry_out_now(&mut self, command: &Command) {
         self.clear();
         self.carry_out_all(std::slice::from_ref(command));
@@ -172,8 +174,8 @@ impl Lab {
         self.messages.clear(self.popups.count.take())
     }
 
-    /// Carries out the commands that a key means: `meant` returns them for the count that was typed before it, or why it
-    /// means none.
+    /// Carries out the commands that a key triggers. `meant` returns them for the count that was typed before the key,
+    /// or an error that says why the key does nothing.
     pub fn press(&mut self, meant: impl FnOnce(&Self, Option<u64>) -> KeyCommands) {
         let count = self.clear().count;
         self.edits.values.forget_nudge();

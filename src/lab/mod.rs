@@ -1,30 +1,30 @@
-//! The lab: a run, what the user does to it, and how it is shown. It draws nothing, and reads no clock: the time is
-//! passed to it.
+//! The lab: a run, the user's edits of it, and how it is shown. It draws nothing and reads no clock: its caller passes
+//! the time.
 //!
 //! It uses the [`engine`](crate::engine) for the run, and [`report`](crate::report) and [`studies`](crate::studies) for figures
-//! and checks. All state of the lab belongs here. What a terminal draws belongs to [`tui`](crate::tui).
+//! and checks. All state of the lab belongs here. Drawing on a terminal belongs to [`tui`](crate::tui).
 //!
-//! [`Lab`] consists of parts. Each owns its state; [`Lab::carry_out`] calls the part that carries out a [`Command`](command::Command):
+//! [`Lab`] consists of parts. Each owns its state. [`Lab::carry_out`] passes a [`Command`](command::Command) to its part:
 //!
 //! | part | state | commands |
 //! |---|---|---|
-//! | [`Player`] | step, speed, cursor's numbers, readouts | `step`, `go_to`, `run_until`, `run`, `pause`, `speed` |
+//! | [`Player`] | step, speed, numbers at the cursor, readouts | `step`, `go_to`, `run_until`, `run`, `pause`, `speed` |
 //! | [`Comparison`] | exact motion, ghost, pinned run, measured data | `exact`, `pin`, `measured` |
-//! | [`Edits`] | journal of the runs, values, push to come | `open`, `set`, `nudge`, `push`, `next_push`, `undo`, `redo`, `take_advice` |
-//! | [`Adviser`] | search for advice, offer | |
+//! | [`Edits`] | journal of the runs, values, next push | `open`, `set`, `nudge`, `push`, `next_push`, `undo`, `redo`, `take_advice` |
+//! | [`Adviser`] | search for a better scheme or time step, its result | |
 //! | [`View`] | `[view]`, focus, window, cursor | every key of `[view]`, `since_s`, `magnify`, `cursor`, `fill`, `point_at` |
-//! | [`StepPane`] | workings of a time step | |
-//! | [`Files`] | folder, export under way | `export`, `figure`, `save` |
-//! | [`CommandScript`] | commands to come | `wait_s`, `chapter` |
+//! | [`StepPane`] | intermediate results of a time step | |
+//! | [`Files`] | folder, running export | `export`, `figure`, `save` |
+//! | [`CommandScript`] | commands not yet carried out | `wait_s`, `chapter` |
 //! | [`Popups`] | browser, help, dialog, count | |
-//! | [`Messages`] | message, trouble with the session | |
-//! | [`Settings`] | what is remembered | |
+//! | [`Messages`] | message, problem with the session | |
+//! | [`Settings`] | settings kept between sessions | |
 //!
 //! For a command that changes the run, [`Edits`] returns a `ScenarioEdit`; `Lab::apply` changes the other parts.
-//! `dispatch` leads commands to the parts, `routing` leads [actions](action::Action), and `time` lets time pass.
+//! `dispatch` passes commands to the parts, `routing` passes [actions](action::Action), and `time` advances the clock.
 //!
-//! A new command changes three files: [`command`] with the row in its table, the `match` of `Lab::dispatch`, and the part that
-//! carries it out. It is also added to the table above.
+//! A new command changes three files: [`command`] (a row of its table), the `match` of `Lab::dispatch`, and the part that
+//! carries it out. Add it to the table above too.
 
 pub mod action;
 mod advice;
@@ -104,14 +104,14 @@ pub struct Lab {
     pub settings: Settings,
     /// The time since the lab was opened.
     now: Duration,
-    /// Whether the picture has changed since it was drawn.
+    /// True if the picture has changed since it was last drawn.
     changed: bool,
-    /// What is said before the lab is left, where leaving ends something for others.
+    /// A warning to show before the user quits, if quitting ends something for others.
     quit_warning: Option<String>,
 }
 
 impl Lab {
-    /// A lab with the run of `scenario`, opened as `name`, at step 0. It plays if `running` is true.
+    /// Creates a lab with the run of `scenario`, opened as `name`, at step 0. The run plays if `running` is true.
     pub fn new(name: &str, scenario: Arc<Scenario>, view: View, running: bool) -> Self {
         let mut lab = Self {
             edits: Edits::new(name, &scenario),
@@ -134,41 +134,43 @@ impl Lab {
         lab
     }
 
-    /// Makes `file` the scenario as the user opened it. Where the run differs from it, the lab says so instead of showing
-    /// the file's line about what there is to see.
+    /// Sets `file` as the scenario that the user opened.
+    ///
+    /// If the run differs from it, the lab says so instead of showing the file's line about what to look at.
     pub fn set_file(&mut self, file: &Arc<Scenario>) {
         self.edits.runs.set_file(file);
         self.edits.follow(&self.player);
     }
 
-    /// Looks for what would make an unreliable run reliable, and waits for it: a picture shows it.
+    /// Searches for a scheme or time step that would make an unreliable run reliable, and waits for the result.
+    /// Pictures need it before they are drawn.
     pub fn look_for_advice(&mut self) {
         self.adviser.look_now(&self.player);
     }
 
-    /// From now on looks in the background for a scheme or time step that would make an unreliable run reliable.
+    /// Starts searching in the background for a scheme or time step that would make an unreliable run reliable.
     pub fn take_advice(&mut self) {
         self.adviser.is_on = true;
-        self.read_now(); // a run that stands still is not read again by itself
+        self.read_now(); // a paused run is not read again by itself
     }
 
-    /// Says `warning` before the lab is left; `None`: it is left at once.
+    /// Sets the warning to show before the user quits. With `None` the lab quits at once.
     pub fn set_quit_warning(&mut self, warning: Option<String>) {
         self.quit_warning = warning;
     }
 
-    /// Shows so many swings in the traces, if the run has more.
+    /// Shows at most `swings` swings in the traces.
     pub fn show_swings(&mut self, swings: usize) {
         self.view.swings = swings;
         self.choose_window();
     }
 
-    /// Chooses the time that the traces show.
+    /// Chooses the time window of the traces.
     fn choose_window(&mut self) {
         self.view.window = self.player.window(self.now, &self.view, &self.comparison);
     }
 
-    /// Reads the numbers of the run, and whatever depends on them.
+    /// Reads the numbers of the run and updates everything that depends on them.
     fn read_now(&mut self) {
         self.player.read(self.now, &self.view);
         self.comparison.compare(&self.player);
@@ -183,7 +185,7 @@ impl Lab {
         self.changed = true;
     }
 
-    /// Shows why a key means nothing here, and forgets the count that was typed.
+    /// Shows why a key does nothing here, and discards the count that was typed.
     pub fn refuse(&mut self, text: impl Into<String>) {
         self.popups.count = None;
         self.say(text);
@@ -211,17 +213,17 @@ impl Lab {
         self.changed |= self.messages.set_trouble(trouble);
     }
 
-    /// How long the present message stays; `None` where only a key removes it, or there is none.
+    /// Returns how long the present message stays. Returns `None` if there is no message or only a key removes it.
     pub fn notice_ends_in(&self) -> Option<Duration> {
         self.messages.ends_in(self.now)
     }
 
-    /// The line about what there is to see in the run.
+    /// Returns the line about what to look at in the run.
     pub fn note(&self) -> Cow<'_, str> {
         messages::note(&self.view, &self.edits.runs, &self.player)
     }
 
-    /// The message at the bottom of the screen: the steps that are being taken, the message, or the export's progress.
+    /// Returns the line at the bottom of the screen: the progress of a seek, the message, or the progress of an export.
     pub fn notice(&self) -> Option<String> {
         let stepping = self.player.in_words();
         stepping
@@ -229,17 +231,17 @@ impl Lab {
             .or_else(|| self.files.export_in_words())
     }
 
-    /// Whether the picture has changed since it was drawn.
+    /// Returns true if the picture has changed since it was last drawn.
     pub fn has_changed(&self) -> bool {
         self.changed
     }
 
-    /// As [`has_changed`](Self::has_changed); from then on the picture counts as drawn.
+    /// Does the same as [`has_changed`](Self::has_changed), and marks the picture as drawn.
     pub fn take_changed(&mut self) -> bool {
         std::mem::take(&mut self.changed)
     }
 
-    /// What a session keeps, with the state of the `lessons`.
+    /// Returns the content of a session file, including the state of the `lessons`.
     pub fn content(&mut self, lessons: &Table) -> SessionContent {
         let (comparison, edits) = (&self.comparison, &self.edits);
         let (files, view, snapshot) = (&self.files, &self.view, self.snapshot());
@@ -255,7 +257,7 @@ impl Lab {
         &self.edits.runs
     }
 
-    /// Keeps undo from taking back what was done up to now, or lets it again.
+    /// Stops undo at the present act if `is_here` is true, or removes that limit.
     pub fn set_undo_floor(&mut self, is_here: bool) {
         self.edits.runs.set_floor(is_here);
     }
@@ -292,7 +294,7 @@ impl Lab {
         &self.view
     }
 
-    /// Returns what is open on top of the panes, or has the focus as a list does: it decides what keys mean.
+    /// Returns the mode that decides what keys mean: the top window, or the list that has the focus.
     pub fn mode(&self) -> Mode {
         let is_list = self.view.sheet.as_ref().is_some_and(|sheet| sheet.is_list);
         match self.popups.mode {
@@ -301,18 +303,18 @@ impl Lab {
         }
     }
 
-    /// Returns the time since the lab was opened, as it was last told.
+    /// Returns the time since the lab was opened, as of the last call of [`advance`](Self::advance).
     pub fn now(&self) -> Duration {
         self.now
     }
 
-    /// The view, to be changed by hand; the picture then counts as changed.
+    /// Returns the view for direct changes, and marks the picture as changed.
     pub fn view_mut(&mut self) -> &mut View {
         self.changed = true;
         &mut self.view
     }
 
-    /// Shows `sheet` beside the panes, or none.
+    /// Shows `sheet` next to the panes, or removes it.
     pub fn set_sheet(&mut self, sheet: Option<Sheet>) {
         self.changed |= self.view.set_sheet(sheet);
     }
@@ -339,10 +341,12 @@ impl Lab {
     }
 }
 
-/// Sessions, and measured data.
+/// Sessions and measured data.
 impl Lab {
-    /// The lab with `content`: on its way to the step where it stood, and paused there. `view` returns how its run is
-    /// shown on this screen. If `confined` is given, the lab reads and writes in that folder only.
+    /// Creates a lab from the `content` of a session. It seeks the step at which the session ended, and pauses there.
+    ///
+    /// `view` returns how the run is shown on this screen. If `confined` is given, the lab reads and writes in that
+    /// folder only.
     pub fn resumed(
         content: &SessionContent,
         confined: Option<&Confined>,
@@ -372,8 +376,9 @@ impl Lab {
         Ok(lab)
     }
 
-    /// Takes up what may be lost without the run: the pinned run and the measured data. Says what is there again, and what
-    /// is lost.
+    /// Restores the pinned run and the measured data, and reports what was restored and what was lost.
+    ///
+    /// A failure here does not affect the run.
     fn take_up(&mut self, place: &KeptPlace, pinned: Option<KeptPinned>) {
         let mut text = place.in_words();
         match pinned.map(KeptPinned::reference).transpose() {
@@ -393,8 +398,8 @@ impl Lab {
         self.tell(text);
     }
 
-    /// Puts the measured data `name` beside the run, as the command line wants it, or else those that the scenario's
-    /// `[view]` names.
+    /// Shows the measured data `name` with the run, with the `options` of the command line. Without `name`, shows the
+    /// data that the scenario's `[view]` names.
     pub fn begin_with_measured(
         &mut self,
         name: Option<&str>,

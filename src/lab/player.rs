@@ -1,7 +1,7 @@
 //! The player of the run on the screen: its step, its speed, the cursor on its traces, and the numbers read from it.
 //!
-//! `seek` moves the run: to a step, or on as time passes. `replay` plays a run that an edit restarted to the time at which
-//! the previous run was.
+//! `seek` moves the run: to a step, or forward as time passes. `replay` plays a run that an edit restarted up to the
+//! time of the previous run. `window` chooses the time that the traces show.
 
 mod replay;
 mod seek;
@@ -28,29 +28,31 @@ pub(super) use seek::{Halt, MOST_UNTIL};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// If a step takes longer than this at the chosen speed, s, a message says so.
+/// Wall-clock time of a step at the chosen speed above which a message warns the user, s.
 const LONG_STEP_S: f64 = 3.0;
 
-/// How the run on the screen goes over to another scenario.
+/// How the run on the screen changes to another scenario.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum RunChange {
-    /// To one with the same numbers at every step: another title, length or `[view]`.
+    /// A scenario with the same numbers at every step: another title, length or `[view]`.
     Described,
-    /// From the present step on.
+    /// A change from the present step on.
     GoesOn,
-    /// At this step, where an act was undone or done again.
+    /// A change from this step on, where an edit was undone or redone.
     ContinuesAt(u64),
-    /// From the start, played to the time at which it stands; by an act at step 0 of the same journal, or in a new run.
-    /// `is_again`: the edit is one more nudge of the same value.
+    /// A change from the start, replayed to the present time: by an edit at step 0 of the same journal (`is_act`), or
+    /// in a new run.
+    ///
+    /// `is_again` is true if the edit is one more nudge of the same value.
     BeginsAnew { is_act: bool, is_again: bool },
-    /// To the run before or after, which was left at this step.
+    /// A return to the run before or after in the journal, which was left at this step.
     Returns { left_at: u64, is_of_same_name: bool },
-    /// To a scenario that was opened, paused at step 0.
+    /// A scenario that was opened, paused at step 0.
     Opens,
 }
 
 impl RunChange {
-    /// Returns true if the run was opened under another name than the one before.
+    /// Returns true if the run was opened under a different name than the previous one.
     pub(super) fn is_of_other_name(self) -> bool {
         use RunChange::{Opens, Returns};
         matches!(
@@ -66,36 +68,37 @@ impl RunChange {
 
 /// The numbers at the cursor.
 struct CursorNumbers {
-    /// That of their run.
+    /// The scenario of their run.
     scenario: Arc<Scenario>,
     run: StepNumbers,
-    /// The exact motion at the same time; `None` where it is not known.
+    /// The exact motion at the same time; `None` if it is unknown.
     exact: Option<Moment>,
 }
 
-/// The run, its pace and its goal, and its latest reading.
+/// The run, its speed, its goal, and its latest reading.
 pub struct Player {
     pub(super) run: LiveRun,
     pace: Pace,
     goal: Option<Goal>,
     /// The time at which the run ends, s.
     pub end_s: f64,
-    /// Returns the present time, for the steps that are taken before returning.
+    /// Clock that limits the steps that are taken before a function returns.
     clock: fn() -> Instant,
-    /// The replay after the last edit that restarted the run; `None` if another edit came after it.
+    /// The replay after the last edit that restarted the run; `None` after any other edit.
     replay: Option<Replay>,
     pub reading: Reading,
     read_at: Duration,
-    /// When the window of the traces was held last.
+    /// Time at which the window of the traces was last held.
     window_held_at: Duration,
     seen_swing: Option<window::SeenSwing>,
     at_cursor: Option<CursorNumbers>,
-    /// Whether a single step keeps its intermediate results, until they are read.
+    /// True if a single step keeps its intermediate results until they are read.
     pub(super) keeps_workings: bool,
 }
 
 impl Player {
-    /// Creates a player of the run of `scenario` at step 0, with the exact motion where its `[view]` says so.
+    /// Creates a player of the run of `scenario` at step 0. It shows the exact motion if the scenario's `[view]` says
+    /// so.
     pub fn new(scenario: Arc<Scenario>, running: bool) -> Self {
         let pace = Pace::of_scenario(&scenario, running);
         let end_s = Clock::end_s(&scenario);
@@ -152,8 +155,7 @@ impl Player {
         }
     }
 
-    /// Begins the run of another `scenario`. The speed, whether the run plays, and whether the exact motion is shown stay
-    /// as they are.
+    /// Starts the run of another `scenario`. Speed, pause and the display of the exact motion stay as they are.
     pub(super) fn restart(&mut self, scenario: &Arc<Scenario>) {
         let shows_exact = self.run.shows_exact();
         self.run = LiveRun::new(Arc::clone(scenario));
@@ -162,7 +164,7 @@ impl Player {
         self.end_s = Clock::end_s(scenario);
     }
 
-    /// Begins the run of `scenario`, paused, as its `[view]` says.
+    /// Starts the run of `scenario`, paused, with the speed and display that its `[view]` says.
     fn open(&mut self, scenario: &Arc<Scenario>) {
         self.pace = Pace::of_scenario(scenario, false);
         self.restart(scenario);
@@ -171,7 +173,7 @@ impl Player {
         }
     }
 
-    /// Goes to `step`, at which a session has left the run, with its speed and its end, and with the exact motion or not.
+    /// Seeks `step`, at which a session left the run, and restores its speed, end (s) and display of the exact motion.
     pub(super) fn resume(&mut self, step: u64, speed: Speed, shows_exact: bool, end_s: f64) {
         self.end_s = end_s;
         self.pace.set_speed(speed);
@@ -183,7 +185,7 @@ impl Player {
         let here = self.step_number();
         match steps {
             0.. => {
-                // A step that is taken apart need not be taken a second time.
+                // The step pane then need not take the step a second time.
                 if steps == 1 {
                     self.run.keep_workings(self.keeps_workings);
                 }
@@ -229,13 +231,13 @@ impl Player {
         }
     }
 
-    /// Returns the step that `typed` means, seen from the present step.
+    /// Returns the step that `typed` means at the present step.
     pub(super) fn step_meant(&self, typed: &str) -> Result<u64, String> {
         let text = typed.trim();
         let (here, here_s) = (self.step_number(), self.run().now().time_s);
         let sign = text.chars().next().filter(|sign| "+-".contains(*sign));
         let size = SeekTarget::parse(&text[sign.map_or(0, char::len_utf8)..]);
-        // With a sign it counts from here.
+        // A number with a sign counts from the present step.
         match (sign, size) {
             (None, Some(place)) => self.step_of(place),
             (Some('+'), Some(SeekTarget::Step(steps))) => Ok(here.saturating_add(steps)),
@@ -284,7 +286,10 @@ impl Player {
         )
     }
 
-    /// Returns the speed `notches` places higher, or lower, in the list of speeds.
+    /// Returns the command for the speed that is `notches` places higher in the list of speeds, or lower if negative.
+    ///
+    /// # Errors
+    /// Returns an error if there is no such speed.
     pub fn other_speed(&self, notches: i32) -> Result<Command, String> {
         let now = self.speed();
         match now.shifted(notches) {
@@ -312,7 +317,7 @@ impl Player {
         Simulation::step_at(self.run.scenario(), self.end_s)
     }
 
-    /// Returns the scenario that starts from the present state, as TOML.
+    /// Returns a scenario that starts from the present state, as TOML.
     pub(super) fn present_as_text(&self) -> Result<String, String> {
         let run = self.run().simulation();
         let scenario = scenario_from(run.scenario(), run.state(), run.step_number())
@@ -320,7 +325,7 @@ impl Player {
         toml::to_string(&scenario.file).map_err(|error| error.to_string())
     }
 
-    /// Returns true if the numbers must be read again at `now`.
+    /// Returns true if the numbers must be read again at `now`, the time since the lab was opened.
     pub(super) fn is_due(&self, now: Duration) -> bool {
         self.is_flat_out() || now >= self.read_at + READING_INTERVAL
     }
@@ -349,7 +354,7 @@ impl Player {
         });
     }
 
-    /// Returns the exact motion at `time_s` (s), the time of `step`; `None` where it is not known.
+    /// Returns the exact motion at `time_s` (s), the time of `step`; `None` if it is unknown.
     fn exact_at(&self, step: u64, time_s: f64) -> Option<Moment> {
         let predictable = self.reading.readouts.health.predictability;
         let is_predictable = predictable.until_s.is_none_or(|until_s| time_s <= until_s);
@@ -377,13 +382,13 @@ impl Player {
         &self.run
     }
 
-    /// Gravity, scheme and time step of the step to come.
+    /// Returns gravity, scheme and time step of the next step.
     pub fn motion(&self) -> Motion {
         let simulation = self.run().simulation();
         in_force(simulation.scenario(), simulation.step_number()).0
     }
 
-    /// Returns the number called `name`, as it was read last; `None` if there is no such number, or if it has no value
+    /// Returns the latest reading of the number called `name`; `None` if there is no such number or it has no value
     /// now.
     pub fn number(&self, name: &str) -> Option<f64> {
         let readouts = &self.reading.readouts;
@@ -399,7 +404,7 @@ impl Player {
         .filter(|number| number.is_finite())
     }
 
-    /// Returns the message while steps are taken.
+    /// Returns the message about a seek in progress.
     pub(super) fn in_words(&self) -> Option<String> {
         let left = HumanCount(self.steps_to_go()?);
         Some(if self.is_replaying() {
@@ -410,7 +415,7 @@ impl Player {
     }
 }
 
-/// What the user may type to say where to go.
+/// The targets that the user may type, for messages.
 pub(super) const WHERE: &str =
     "a step (421), a time (12.5 s), so many on or back (+50, -2 s), start or end";
 

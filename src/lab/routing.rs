@@ -1,4 +1,6 @@
-//! Leads actions to the parts of the lab.
+//! Passes actions to the parts of the lab.
+//!
+//! A new [`Action`] gets its arm in `Lab::act`, or in `act_on_top` if it concerns popups or the main loop.
 
 use super::action::{
     Action, Ask, Direction, FieldEdit, LabRequest, LessonKey, PAGE_KEY_ROWS, repeated, signed,
@@ -15,7 +17,7 @@ use crate::engine::text::unit::number_in;
 use std::sync::Arc;
 
 impl Lab {
-    /// Carries out `action`. Returns what only the main loop can do.
+    /// Carries out `action`. Returns a request if only the main loop can do it.
     pub fn update(&mut self, action: Action) -> Option<LabRequest> {
         let cleared = self.clear();
         if !action.keeps_nudge() {
@@ -31,8 +33,10 @@ impl Lab {
         None
     }
 
+    /// Carries out `action`, with the count and messages that its key has `cleared`.
+    ///
     /// # Errors
-    /// Why the action does nothing now.
+    /// Returns an error if the action does nothing now.
     fn act(&mut self, action: Action, cleared: Cleared) -> Result<Option<LabRequest>, String> {
         let count = cleared.count;
         let times = repeated(count);
@@ -75,7 +79,7 @@ impl Lab {
         Ok(None)
     }
 
-    /// Does what concerns popups, or what only the main loop can do.
+    /// Carries out an action on popups, or returns the request for an action of the main loop.
     fn act_on_top(
         &mut self,
         action: Action,
@@ -107,12 +111,12 @@ impl Lab {
                 Some(warning) if !cleared.was_warned => self.messages.warn(warning, self.now),
                 _ => return Ok(Some(LabRequest::Quit)),
             },
-            _ => {} // tui has the entries of the help, and carries them out
+            _ => {} // `tui` has the entries of the help and carries them out
         }
         Ok(None)
     }
 
-    /// Returns what to say before the lab is left, where leaving ends something.
+    /// Returns the warning to show before the user quits, if quitting ends something.
     fn quit_warning(&self) -> Option<String> {
         if self.files.is_exporting() {
             let text = "an export is under way: q again leaves it unfinished, and writes nothing";
@@ -128,7 +132,7 @@ impl Lab {
         Ok(())
     }
 
-    /// Does what an arrow or page key does that is pressed `times` times, where that is no command of the pane in focus.
+    /// Carries out `times` presses of an arrow or page key that is not a command of the pane in focus.
     fn move_by(&mut self, direction: Direction, times: i32) -> Result<(), String> {
         let rows = direction.rows(PAGE_KEY_ROWS) * times as isize;
         let of_values = self.view.focus == Pane::Parameters;
@@ -163,7 +167,7 @@ impl Lab {
         self.read_now();
     }
 
-    /// Selects the value of this number in the list of values.
+    /// Selects the value at `index` in the list of values.
     pub fn select_value(&mut self, index: usize) {
         self.edits.values.list.select_index(index);
         self.changed = true;
@@ -201,14 +205,14 @@ impl Lab {
         self.changed = true;
     }
 
-    /// Puts rows that were pasted beside the run; undo takes them back.
+    /// Shows pasted rows as measured data. Undo removes them.
     fn take_rows(&mut self, text: &str) -> ActionResult {
         let (words, command) = paste_rows::keep(text, &self.files, &self.comparison, &self.player)?;
         self.carry_out(&command)?;
         Ok(Done::saying(words))
     }
 
-    /// Changes the setting that is selected in the dialog, which then shows its new value.
+    /// Changes the selected setting to its next value (or to the previous one), and updates the dialog.
     fn change_setting(&mut self, forward: bool) {
         let Some(dialog) = self.popups.take_dialog() else {
             return;
@@ -224,8 +228,8 @@ impl Lab {
         self.popups.open_dialog(changed);
     }
 
-    /// Carries out the command that the open dialog asked for. If it is refused, the dialog stays and shows the reason.
-    /// Returns the number that a room above asked for.
+    /// Carries out the command of the open dialog. If it is refused, the dialog stays open and shows the reason.
+    /// Returns the number if a module above asked for one.
     fn accept(&mut self) -> Option<LabRequest> {
         let dialog = self.popups.take_dialog()?;
         let answer = match &dialog.question {
@@ -251,11 +255,12 @@ impl Lab {
         None
     }
 
-    /// Closes or stops the first of these that there is: a popup, the script, the steps asked for, the cursor, the pane that
-    /// fills the screen, the focus on the parameters, the export, the pane in focus that was asked for. If there is none of
-    /// these, it says how to leave, unless the key has already removed a message or a count.
+    /// Closes or stops the first that applies: a popup, the script, the seek, the cursor, full screen, the focus on the
+    /// values, the export, the pane in focus if it is shown on request.
+    ///
+    /// If none applies, says how to quit, unless the key has already removed a message or a count.
     fn close(&mut self, cleared: &Cleared) -> Option<LabRequest> {
-        // The focus returns from the values to the run even if the key has removed a message too.
+        // The focus returns from the values to the run even if the key has also removed a message.
         let is_done = self.close_popup()
             || self.stop()
             || self.unfill()
@@ -276,11 +281,11 @@ impl Lab {
         None
     }
 
-    /// Closes the topmost popup, or shows all values again; returns whether there was one, or some were left out.
+    /// Closes the top popup, or lists all values again. Returns true if it did one of these.
     fn close_popup(&mut self) -> bool {
         let is_found = self.popups.mode == Mode::Find;
         let is_filtered = self.popups.mode == Mode::Lab && self.view.focus == Pane::Parameters;
-        // From a value that was searched for, one Esc leads back to the page of a lesson, as it does from any other.
+        // In a lesson, a single Esc leads from a value that was searched for back to the page, as from any other value.
         let is_left = is_filtered && self.view.sheet.is_some();
         let list = &mut self.edits.values.list;
         let is_shown = (is_found || is_filtered)
@@ -289,7 +294,7 @@ impl Lab {
         self.popups.close() || is_shown
     }
 
-    /// Stops the script, or the steps asked for.
+    /// Stops the script or the seek. Returns false if there was neither.
     fn stop(&mut self) -> bool {
         if !self.script.is_done() {
             let left_out = self.script.drop_all();
@@ -303,7 +308,7 @@ impl Lab {
         true
     }
 
-    /// Takes the cursor away, or shows all panes again.
+    /// Removes the cursor, or else leaves full screen. Returns false if there was neither.
     fn unfill(&mut self) -> bool {
         match self.view.cursor {
             Some(_) => self.carry_out_all(&[Command::Cursor(CursorTo::Nowhere)]),
@@ -316,7 +321,7 @@ impl Lab {
         true
     }
 
-    /// Opens the entry that is selected in the browser: plays its run, or lists what is in the folder.
+    /// Opens the entry that is selected in the browser: plays its run, or lists its folder.
     fn open_chosen(&mut self) -> Result<(), String> {
         if let Some(name) = self.popups.choose(&self.files)? {
             let was_edited = self.edits.runs.changed_from_file().is_some();
@@ -333,10 +338,10 @@ impl Lab {
         Ok(())
     }
 
-    /// Changes to the run of `snapshot`, which another lab shows. It is paused at step 0.
+    /// Opens the run of `snapshot`, which another lab shows. The run is paused at step 0.
     ///
     /// # Errors
-    /// What is wrong with the run; nothing has changed then.
+    /// Returns an error if the run of `snapshot` is not valid. Nothing has changed then.
     pub fn show_run(&mut self, snapshot: &Snapshot) -> Result<(), Problems> {
         let scenario = Document::parse(&snapshot.name, &snapshot.run)?.scenario()?;
         self.take_commands(Commands::default());

@@ -1,5 +1,5 @@
-//! A script: commands that are carried out one after the other. Each waits until the action that the one before has
-//! started is complete.
+//! A script: commands that are carried out one after the other. Each waits until the action of the previous one is
+//! complete.
 
 use super::answer::{ActionResult, Done, PendingAction};
 use super::command::{Command, Commands, LocatedCommand, SeekTarget};
@@ -9,7 +9,7 @@ use indicatif::HumanCount;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// Why a run that is played until something holds was refused, where a key has stopped it.
+/// The reason for a failed `run_until` that a key has stopped. `was_stopped` recognizes it.
 const STOPPED_TEXT: &str = "stopped before it held";
 
 #[derive(Clone, Debug, Default)]
@@ -17,17 +17,17 @@ pub struct CommandScript {
     /// The file of the commands, as the user named it.
     pub origin: String,
     left: VecDeque<LocatedCommand>,
-    /// The command whose action takes time, and that action.
+    /// The command in progress and its action.
     under_way: Option<(LocatedCommand, PendingAction)>,
-    /// The command that was refused, and why.
+    /// The message about the command that was refused.
     failed: Option<String>,
-    /// Whether its commands were dropped before they were complete.
+    /// True if the commands were dropped before they were complete.
     is_dropped: bool,
-    /// Titles of the chapters that were begun and not taken yet.
+    /// Titles of the chapters that were begun since [`take_chapters`](Self::take_chapters) was last called.
     chapters: Vec<String>,
-    /// Whether the script was paused, and waits until the user lets it go on.
+    /// True if the script is paused and waits for the user to continue it.
     pub(super) waits: bool,
-    /// Whether the run played when the script was paused, and plays again when it goes on.
+    /// True if the run played when the script was paused. It plays again when the script continues.
     plays_again: bool,
 }
 
@@ -40,22 +40,22 @@ impl CommandScript {
         }
     }
 
-    /// Returns the command that was refused, and why.
+    /// Returns the message about the command that was refused.
     pub fn failure(&self) -> Option<&str> {
         self.failed.as_deref()
     }
 
-    /// Returns why a command was refused, to be said once more by the caller.
+    /// Returns the message about the command that was refused, and forgets it.
     pub(super) fn take_failure(&mut self) -> Option<String> {
         self.failed.take()
     }
 
-    /// Returns the titles of the chapters that were begun since this was asked last.
+    /// Returns the titles of the chapters that were begun since the last call.
     pub fn take_chapters(&mut self) -> Vec<String> {
         std::mem::take(&mut self.chapters)
     }
 
-    /// Lets the next command wait until `seconds` have passed since `now`.
+    /// Delays the next command until `seconds` after `now`.
     pub(super) fn wait(seconds: f64, now: Duration) -> Done {
         let until = now + Duration::try_from_secs_f64(seconds).unwrap_or_default();
         Done::SILENT.going_on(PendingAction::Waiting(until))
@@ -66,12 +66,12 @@ impl CommandScript {
         Done::saying(title)
     }
 
-    /// Returns how many commands are not complete, with the one under way.
+    /// Returns the number of commands that are not complete, including the one in progress.
     pub fn count(&self) -> usize {
         self.left.len() + usize::from(self.under_way.is_some())
     }
 
-    /// Returns how many commands are left, and the keys of a script that waits.
+    /// Returns a message with the number of commands left and the keys of a paused script.
     pub(super) fn left_in_words(&self) -> String {
         let origin = &self.origin;
         match self.count() {
@@ -86,18 +86,18 @@ impl CommandScript {
         self.count() == 0
     }
 
-    /// Returns whether it has ended before its end: it was dropped, or a command was refused.
+    /// Returns true if the script ended early: it was dropped, or a command was refused.
     pub fn has_broken_off(&self) -> bool {
         self.is_dropped || self.failed.is_some()
     }
 
-    /// Returns whether a key has broken it off: the key has dropped its commands, or stopped the run that one of them
+    /// Returns true if a key ended the script early: it dropped the commands, or stopped the run that one of them
     /// played.
     pub fn was_stopped(&self) -> bool {
         self.has_broken_off() && self.failure().is_none_or(|why| why.ends_with(STOPPED_TEXT))
     }
 
-    /// Drops all commands; returns how many there were, in words.
+    /// Drops all commands, and returns a message with their number.
     pub(super) fn drop_all(&mut self) -> String {
         let left = self.count();
         *self = Self {
@@ -110,7 +110,7 @@ impl CommandScript {
         }
     }
 
-    /// Returns the time until which the command under way waits.
+    /// Returns the time until which the command in progress waits.
     pub(super) fn waits_until(&self) -> Option<Duration> {
         match self.under_way {
             Some((_, PendingAction::Waiting(until))) => Some(until),
@@ -118,8 +118,9 @@ impl CommandScript {
         }
     }
 
-    /// Returns the command under way as it is carried out again: a run goes to the same step or until the same condition
-    /// holds, a wait lasts for what is left of it at `now`.
+    /// Returns the command with which the one in progress continues after a pause.
+    ///
+    /// A run goes to the same step or until the same condition holds. A wait lasts for the rest of its time at `now`.
     fn under_way_again(&self, player: &Player, now: Duration) -> Option<LocatedCommand> {
         let (placed, under_way) = self.under_way.as_ref()?;
         let command = match under_way {
@@ -136,7 +137,8 @@ impl CommandScript {
         Some(LocatedCommand { command, line })
     }
 
-    /// Pauses the script at `now`. When it goes on, the command under way is carried out again. An export goes on meanwhile.
+    /// Pauses the script at `now`. When it continues, the command in progress is carried out again. An export continues
+    /// meanwhile.
     pub(super) fn pause(&mut self, player: &Player, now: Duration) {
         self.waits = true;
         self.plays_again = player.is_running() && !player.seeks_condition();
@@ -149,7 +151,7 @@ impl CommandScript {
         }
     }
 
-    /// Lets a waiting script go on.
+    /// Continues a paused script.
     pub(super) fn release(&mut self, player: &mut Player) {
         if std::mem::take(&mut self.plays_again) {
             player.set_running(true);
@@ -157,11 +159,11 @@ impl CommandScript {
         self.waits = false;
     }
 
-    /// Returns the next command to be carried out; `None` where there is none, or where it must wait. `halt` tells why the
-    /// run has just stopped by itself, if it has.
+    /// Returns the next command to carry out; `None` if there is none or it must wait. `halt` is the reason if the run
+    /// has just stopped by itself.
     ///
     /// # Errors
-    /// Which command has failed, and why: the others are dropped.
+    /// Returns an error if the command in progress has failed. The others are then dropped.
     pub(super) fn next(
         &mut self,
         halt: Option<Halt>,
@@ -185,10 +187,10 @@ impl CommandScript {
         Ok(self.left.pop_front())
     }
 
-    /// Takes note of the answer to the command `placed`, which was carried out; returns what it has done.
+    /// Records the `answer` to the command `placed`, and returns the effect of the command.
     ///
     /// # Errors
-    /// As [`next`](Self::next).
+    /// Returns an error if the command was refused or its step is too far away. The others are then dropped.
     pub(super) fn take_answer(
         &mut self,
         placed: LocatedCommand,
@@ -212,10 +214,10 @@ impl CommandScript {
         }
     }
 
-    /// Fails where the commands have taken more than `steps` in all.
+    /// Fails the command in progress if the commands have taken too many `steps` in total.
     ///
     /// # Errors
-    /// As [`next`](Self::next).
+    /// Returns an error if that is so. The other commands are then dropped.
     pub(super) fn limit(&mut self, steps: u64, player: &mut Player) -> Result<(), String> {
         match self.under_way.take_if(|_| steps > MOST_UNTIL) {
             Some((placed, _)) => {
@@ -230,7 +232,7 @@ impl CommandScript {
         }
     }
 
-    /// Drops all commands because `placed` was refused for `reason`; returns the message about it.
+    /// Drops all commands because `placed` was refused for `reason`, and returns the message about it.
     fn fail(&mut self, placed: &LocatedCommand, reason: &str) -> String {
         let rest = match self.left.len() {
             0 => String::new(),

@@ -1,4 +1,4 @@
-//! The time step that the step pane takes apart, and the commands that its keys mean.
+//! The time step that the step pane explains, and the commands of the pane's keys.
 
 use super::action::{Direction, PAGE_KEY_ROWS};
 use super::command::{Command, SeekTarget};
@@ -12,8 +12,8 @@ use crate::physics::workings::{ColumnSums, Phase, PhaseName, PointTable, WorkedV
 use crate::physics::{State, Workings};
 use std::sync::Arc;
 
-/// The most points of a body whose steps are taken apart while the run goes on. The step of a larger body is taken
-/// apart once the run stands still.
+/// Maximum number of points of a body whose steps are explained while the run moves. The step of a larger body is
+/// explained once the run is paused.
 const MOST_POINTS_MOVING: usize = 1000;
 
 /// A time step with the intermediate results of its scheme.
@@ -21,17 +21,17 @@ const MOST_POINTS_MOVING: usize = 1000;
 pub struct StepWorkings {
     pub step: u64,
     pub states: (State, State),
-    /// The intermediate results: the numbers that made the step itself.
+    /// The intermediate results from which the step itself was computed.
     pub workings: Arc<Workings>,
     pub scenario: Arc<Scenario>,
-    /// The sums of the table on the page, if some of its rows are added up.
+    /// The running sums of the table on the page, and the page's index; `None` if no rows are added up.
     sums: Option<(usize, ColumnSums)>,
-    /// The first dip of the run up to this step; `None` where the page does not show it, and where the axle was upright.
+    /// The first dip of the run up to this step; `None` if the page does not show it or the axle was upright.
     pub dip: Option<Dip>,
 }
 
 impl StepWorkings {
-    /// Reads the workings of the step taken last; `None` at step 0.
+    /// Reads the intermediate results of the latest step; `None` at step 0.
     fn read(player: &mut Player) -> Option<Self> {
         let now = player.run().simulation().now();
         let (step, states) = (now.number(), (*now.before()?, *now.after()));
@@ -46,21 +46,22 @@ impl StepWorkings {
         })
     }
 
-    /// Returns the phase on `page` with its number, from 1, and how many there are; `None` for a page that shows none.
+    /// Returns the phase on `page` with its number, from 1, and the number of phases; `None` for a page without a
+    /// phase.
     pub fn phase(&self, page: StepPageChoice) -> Option<(&Phase, usize, usize)> {
         let index = page.index(&self.workings)?;
         let phase = self.workings.phases().nth(index)?;
         Some((phase, index + 1, self.workings.phases().count()))
     }
 
-    /// Returns the sum of each column over the first `rows` rows of `table`, the one on `page`; `None` where nobody has
-    /// asked for one.
+    /// Returns the sum of each column over the first `rows` rows of `table`, the one on `page`; `None` if no sum was
+    /// requested.
     pub fn sums(&self, page: StepPageChoice, table: &PointTable, rows: usize) -> Option<Vec<f64>> {
         let (of, sums) = self.sums.as_ref()?;
         (Some(*of) == page.index(&self.workings)).then(|| sums.first(table, rows))
     }
 
-    /// Makes what the page of `view` needs, unless it is there.
+    /// Computes the sums or the dip that the page of `view` needs, unless they exist.
     fn complete(&mut self, view: &View) {
         let index = view.look.phase.index(&self.workings);
         let known = self.sums.as_ref().map(|(of, _)| *of);
@@ -75,7 +76,7 @@ impl StepWorkings {
     }
 }
 
-/// Returns the table of `phase` whose rows are added up: its first, if it has rows.
+/// Returns the table of `phase` whose rows are added up: its first table, if that has rows.
 pub fn table_of(phase: &Phase) -> Option<&PointTable> {
     let mut values = phase.quantities.iter().map(|quantity| &quantity.value);
     let first = values.find_map(|value| match value {
@@ -91,12 +92,12 @@ pub struct StepPane {
 }
 
 impl StepPane {
-    /// Returns the time step that is taken apart; `None` at step 0, and while the pane is not shown.
+    /// Returns the time step that the pane explains; `None` at step 0 and while the pane is hidden.
     pub fn shown(&self) -> Option<&StepWorkings> {
         self.shown.as_ref()
     }
 
-    /// Takes the present step apart where the pane is shown.
+    /// Reads the intermediate results of the present step if the pane is shown.
     pub(super) fn read(&mut self, player: &mut Player, view: &View) {
         player.keeps_workings = view.shows(Pane::Step);
         let now = player.run().simulation().now();
@@ -118,7 +119,10 @@ impl StepPane {
         }
     }
 
-    /// Refuses a page that names a phase which the scheme of the present step does not have.
+    /// Checks that the scheme of the present step has the phase that `page` names.
+    ///
+    /// # Errors
+    /// Returns an error if it does not: the phases that the scheme has.
     pub(super) fn may_show(&self, page: StepPageChoice, player: &Player) -> Result<(), String> {
         let (StepPageChoice::Named(name), Some(shown)) = (page, &self.shown) else {
             return Ok(());
@@ -137,8 +141,8 @@ impl StepPane {
         ))
     }
 
-    /// Returns the commands that go `times` phases forward or back. The first phase of the next step follows the last
-    /// phase of a step.
+    /// Returns the commands that move `times` phases forward, or back if negative. After the last phase of a step comes
+    /// the first phase of the next step.
     pub fn other_phase(
         &self,
         times: i32,
@@ -178,7 +182,7 @@ impl StepPane {
         Ok(vec![Command::Step(steps), Command::look("phase", page)])
     }
 
-    /// Returns the command that adds up more rows of the table, or fewer. Beyond either end all rows are added up.
+    /// Returns the command that adds up more rows of the table, or fewer. Past either end all rows are added up.
     pub fn other_sum(
         &self,
         direction: Direction,
@@ -212,7 +216,8 @@ impl StepPane {
 }
 
 impl View {
-    /// Returns the commands that show why the axle goes sideways, in the step pane, or there the first phase again.
+    /// Returns the commands that show why the axle moves sideways, in the step pane. If that page is shown already,
+    /// they return to the page before.
     pub fn why_sideways(&self) -> Vec<Command> {
         let is_open = self.shows(Pane::Step);
         let page = match self.look.phase {

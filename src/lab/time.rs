@@ -1,4 +1,4 @@
-//! Lets time pass: steps, exact motion, measured data, exports and the script follow it.
+//! Advances the lab with time: steps, exact motion, measured data, exports and the script.
 
 use super::command::{Command, Commands};
 use super::messages::{self, halt_in_words};
@@ -9,14 +9,16 @@ use std::ops::ControlFlow;
 use std::thread;
 use std::time::Duration;
 
-/// How often to look whether an export is complete while there is nothing else to do.
+/// Interval at which a running export is checked while there is nothing else to do.
 const EXPORT_POLL: Duration = Duration::from_millis(2);
-/// How long steps are taken before the caller decides whether to go on.
+/// Duration of stepping before the caller decides whether to continue.
 const STEPPING_BUDGET: Duration = Duration::from_millis(100);
 
 impl Lab {
-    /// Advances everything that changes with time up to now. `clock` returns the time since the lab was opened; it is read
-    /// several times, so that the steps of a fast run end in time for the next frame.
+    /// Advances everything that changes with time up to now.
+    ///
+    /// `clock` returns the time since the lab was opened. It is read several times, so that the steps of a fast run end
+    /// in time for the next frame.
     pub fn advance(&mut self, clock: &mut dyn FnMut() -> Duration) {
         let now = clock();
         let wall = now.saturating_sub(self.now);
@@ -43,10 +45,13 @@ impl Lab {
         }
     }
 
-    /// Takes the run to `step` before returning, as long as `go_on` says so, and turns the camera to the axle there.
+    /// Takes the run to `step` before returning, unless `go_on` breaks, and turns the camera to the axle there.
     ///
-    /// The window of the traces depends on the one before. It is chosen after 1, 2, 4 and so on steps, so that the picture
-    /// does not depend on how fast the steps are taken.
+    /// Each window of the traces depends on the previous one. It is chosen after 1, 2, 4 and so on steps, so that the
+    /// picture does not depend on the speed of the computer.
+    ///
+    /// # Errors
+    /// Returns an error if the numbers stop being finite on the way.
     pub fn begin_at(
         &mut self,
         step: u64,
@@ -73,7 +78,7 @@ impl Lab {
         }
     }
 
-    /// Brings exact motion, measured data and numbers up to the present step.
+    /// Updates exact motion, measured data and numbers to the present step.
     fn arrive(&mut self) {
         self.player.run.follow_exact(|| false);
         self.comparison.catch_up(&self.player);
@@ -106,7 +111,7 @@ impl Lab {
         }
     }
 
-    /// Pauses the run or starts it; a script that waits for a key goes on.
+    /// Pauses the run or starts it. Continues a script that waits for a key.
     pub(super) fn toggle_pause(&mut self) {
         match (self.script.is_done(), self.script.waits) {
             (false, true) => {
@@ -128,13 +133,13 @@ impl Lab {
         }
     }
 
-    /// Carries out `commands` as time passes, in place of the present script.
+    /// Replaces the present script by `commands`, which are carried out as time passes.
     pub fn take_commands(&mut self, commands: Commands) {
         self.script = CommandScript::new(commands);
         self.go_on_with_script(None);
     }
 
-    /// Removes what the commands of the script have said, unless one of them was refused.
+    /// Removes the messages of the script's commands, unless one of them was refused.
     pub fn forget_message_of_script(&mut self) {
         if self.script.failure().is_none() {
             self.messages.take_back();
@@ -142,8 +147,8 @@ impl Lab {
         }
     }
 
-    /// Carries out the commands of the script that need not wait any longer. `halt` tells why the run has just stopped by
-    /// itself, if it has.
+    /// Carries out the commands of the script that need not wait any longer. `halt` is the reason if the run has just
+    /// stopped by itself.
     fn go_on_with_script(&mut self, halt: Option<Halt>) {
         if let Err(text) = self.carry_out_script(halt) {
             self.tell(text);
@@ -162,11 +167,13 @@ impl Lab {
         Ok(())
     }
 
-    /// Carries out the script at once, without a clock; it waits for exports only. Calls `go_on` several times a second with
-    /// the step at which the run is and the one at which it will stop. When `go_on` breaks, the other commands are dropped.
+    /// Carries out the script at once, without a clock. It waits only for exports.
+    ///
+    /// Calls `go_on` several times a second with the present step and the step at which the run will stop. When `go_on`
+    /// breaks, the remaining commands are dropped.
     ///
     /// # Errors
-    /// Which command was refused, and why; the commands after it are not carried out.
+    /// Returns an error if a command is refused: which one, and why. The commands after it are not carried out.
     pub fn finish_script_while(
         &mut self,
         mut go_on: impl FnMut(u64, u64) -> ControlFlow<()>,
@@ -191,12 +198,12 @@ impl Lab {
         }
         self.arrive();
         self.script.take_failure().map_or(Ok(()), |text| {
-            self.messages.take_back(); // the caller says it
+            self.messages.take_back(); // the caller reports it
             Err(text)
         })
     }
 
-    /// Lets pass the time for which the command under way waits.
+    /// Waits for the running export, and moves the lab's time to the end of a `wait_s` command.
     fn pass_time(&mut self) {
         if self.files.is_exporting() {
             thread::sleep(EXPORT_POLL);

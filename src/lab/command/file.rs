@@ -1,4 +1,4 @@
-//! A file of commands: a list of `[[do]]` tables with one command each.
+//! Reads a file of commands: a list of `[[do]]` tables with one command each.
 
 use super::{COMMANDS, Command, CommandRow, RERUN, SET};
 use crate::engine::scenario::problem::nearest;
@@ -10,7 +10,7 @@ use toml::Value;
 #[derive(Clone, Debug, PartialEq)]
 pub struct LocatedCommand {
     pub command: Command,
-    /// Its line, from 1; `None` where that is not known.
+    /// Its line, from 1; `None` if unknown.
     pub line: Option<usize>,
 }
 
@@ -21,12 +21,12 @@ pub struct Commands {
     pub list: Vec<LocatedCommand>,
 }
 
-/// Whether `document` is a file of commands, by its `[[do]]`.
+/// Returns true if `document` contains `[[do]]`, which makes it a file of commands.
 pub fn is_file_of_commands(document: &Document) -> bool {
     document.table().contains_key("do")
 }
 
-/// Reads the file of commands at `path`, or standard input where that is `-`.
+/// Reads the file of commands at `path`, or standard input if `path` is `-`.
 pub fn open(path: &Path) -> Result<Commands, Problems> {
     read(&if path == Path::new("-") {
         Document::read_from("standard input", std::io::stdin().lock())?
@@ -68,7 +68,7 @@ pub fn read(document: &Document) -> Result<Commands, Problems> {
     commands.map_err(|found| document.placed(found))
 }
 
-/// The command in `value`, a table `[[do]]`.
+/// Parses the command in `value`, a `[[do]]` table.
 fn one(value: &Value) -> Result<Command, Problems> {
     let Value::Table(table) = value else {
         return Err(Problem::with_value("", value, "must be a table").into());
@@ -102,7 +102,8 @@ fn one(value: &Value) -> Result<Command, Problems> {
     }
 }
 
-/// The problem that `name` is no command. `beside` is a command in the same table: `name` may belong into its value.
+/// Returns the problem that the command `name` is unknown. `beside` is another command in the same table: `name` may
+/// belong in its value.
 pub(super) fn unknown(name: &str, beside: Option<&CommandRow>) -> Problem {
     let near = match beside {
         Some(row) => format!(

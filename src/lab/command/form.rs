@@ -1,4 +1,4 @@
-//! What the value of a command may be.
+//! The schemas of command values, and the rules for several fields of a command.
 
 use super::{Command, CursorTo, Force, PushChoice, SeekTarget};
 use crate::engine::export::layout::LAYOUT_KEYS;
@@ -26,7 +26,7 @@ pub const MOST_MAGNIFIED: f64 = 1e6;
 
 pub(super) enum ValueSchema {
     Is(ValueKind),
-    /// The key or table of this path in `[view]`.
+    /// The value of the key or table at this path in `[view]`.
     View(&'static str),
     /// Dotted keys of the scenario and their values.
     Keys,
@@ -34,12 +34,12 @@ pub(super) enum ValueSchema {
     Fields(Schema, Shorthand),
 }
 
-/// What may stand in the place of a table.
+/// The shorthand that may replace a table.
 pub(super) enum Shorthand {
     Nothing,
-    /// `true` stands for the empty table.
+    /// `true` means the empty table.
     True,
-    /// A text stands for this field.
+    /// A text is the value of this field.
     Field(&'static str),
 }
 
@@ -96,7 +96,7 @@ const OF_PUSH: &[SchemaRow] = &[
     may("from_s", Number(NotNegative), ""),
     may("for_s", Number(Positive), ""),
 ];
-/// What every command that writes a file has.
+/// Fields of every command that writes a file.
 const OF_FILE: &[SchemaRow] = &[
     must("path", Line, "the file"),
     may("to_step", Whole(1, i64::MAX), "the last step in it"),
@@ -108,7 +108,7 @@ const OF_FIGURE: &[SchemaRow] = &[
 ];
 const OF_SAVE: &[SchemaRow] = &[may("from_here", Flag, "")];
 
-/// Checks what several fields of `command` must fulfil. The key of a problem is that of the field which is refused.
+/// Checks the rules for several fields of `command`. The key of a problem is the key of the refused field.
 pub(super) fn check_together(command: &Command) -> Result<(), Problem> {
     match command {
         Command::Export(export) => export.layout.clone().check().map(drop),
@@ -142,7 +142,7 @@ pub(super) fn check_together(command: &Command) -> Result<(), Problem> {
 }
 
 impl ValueSchema {
-    /// Checks `value`, that of the command `name`, and returns it with a shorthand written out.
+    /// Checks `value` of the command `name`, and returns it with any shorthand expanded.
     pub(super) fn check(&self, name: &str, value: &Value) -> Result<Value, Problems> {
         match self {
             Is(kind) => kind
@@ -202,7 +202,7 @@ fn can_be_nudged(key: &str) -> Result<(), String> {
     }
 }
 
-/// Checks `value`, that of the command `name`: dotted keys of the scenario, each with a value that it may have.
+/// Checks `value` of the command `name`: dotted keys of the scenario, each with an allowed value.
 fn are_keys(name: &str, value: &Value) -> Result<(), Problems> {
     let keys = match value {
         Value::Table(table) if !table.is_empty() => table,
@@ -216,14 +216,14 @@ fn are_keys(name: &str, value: &Value) -> Result<(), Problems> {
         let path = join(name, &quoted(key));
         let is_table = new.is_table() && !key.ends_with('.');
         match keys::find(key) {
-            // { motion.time_step_s = 0.05 }: TOML makes a table of a dotted key without quotes.
+            // In { motion.time_step_s = 0.05 }, TOML reads a dotted key without quotes as nested tables.
             Err(_) if is_table && !key.contains('.') => {
                 let inner = first_inside(key, new);
                 let rule =
                     format!("would be set as a whole: write each key in quotes, \"{inner}\"");
                 problems.add(|| Problem::at(path, rule));
             }
-            // A whole push, or another table: it is checked when it is set.
+            // A whole push, or another table, is checked when it is set.
             Err(_) if is_table && SCENARIO.is_table(key) => {}
             Err(rule) => problems.add(|| Problem::at(path, rule)),
             Ok((_, kind)) => {
@@ -235,7 +235,7 @@ fn are_keys(name: &str, value: &Value) -> Result<(), Problems> {
     problems.or(())
 }
 
-/// The dotted key of the first value in `value`, which stands at `key`.
+/// Returns the dotted key of the first value inside `value`, whose own key is `key`.
 fn first_inside(key: &str, value: &Value) -> String {
     match value.as_table().and_then(|table| table.iter().next()) {
         Some((name, inner)) => first_inside(&join(key, name), inner),

@@ -1,33 +1,34 @@
-//! The replay of a run that an edit restarted, up to the time at which the previous run was; and the step at which a run
-//! is left.
+//! The replay of a run that an edit restarted, up to the time of the previous run; and the step at which a run is left.
 
 use super::Player;
 use super::seek::{Seek, SeekPurpose};
 use crate::engine::run::{Clock, Simulation};
 use crate::lab::playback::live::LiveRun;
 
-/// The greatest [cost](Player::cost) of the steps of a replay that are taken before returning: about 50 ms for the first
-/// edit, and a little less for each further nudge of a held key.
+/// Maximum [cost](Player::cost) of the steps of a replay that are taken before returning: about 50 ms for the first
+/// edit.
+///
+/// A further nudge of a held key has slightly less: `MOST_COST_PER_NUDGE`.
 const MOST_COST_PER_EDIT: u64 = 10_000_000;
 const MOST_COST_PER_NUDGE: u64 = 8_000_000;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Replay {
-    /// The time at which the previous run was, s.
+    /// The time of the previous run, s.
     time_s: f64,
-    /// Whether the run plays from there.
+    /// True if the run plays from there.
     then_plays: bool,
-    /// Whether the edit is an act at step 0 of the same journal.
+    /// True if the edit was made at step 0 of the same journal.
     is_act_at_start: bool,
 }
 
 impl Player {
-    /// Returns true if a run that an edit restarted is on its way to the time at which the previous run was.
+    /// Returns true if a run that an edit restarted is being replayed to the time of the previous run.
     pub(in crate::lab) fn is_replaying(&self) -> bool {
         self.replayed_to().is_some()
     }
 
-    /// Returns the step that the replay leads to, if there is one.
+    /// Returns the last step of the replay, if there is one.
     fn replayed_to(&self) -> Option<u64> {
         match self.seeking() {
             Some(Seek {
@@ -43,24 +44,25 @@ impl Player {
         self.replay.is_some()
     }
 
-    /// Returns true if one more nudge of the value that was nudged last acts at step 0, as that one did.
+    /// Returns true if one more nudge of the same value takes effect at step 0, as the previous one did.
     pub(in crate::lab) fn nudges_at_start(&self) -> bool {
         self.replay.is_some_and(|replay| replay.is_act_at_start)
     }
 
-    /// Returns true if an edit at the present step restarts the run: at step 0 of a run that was played further.
+    /// Returns true if an edit at the present step restarts the run. It does at step 0 of a run that was played
+    /// further.
     pub(in crate::lab) fn restarts_on_edit(&self) -> bool {
         self.step_number() == 0 && (furthest_s(&self.run) > 0.0 || self.is_replaying())
     }
 
-    /// Returns the step to be recorded when an edit leaves the present run.
+    /// Returns the step to record when an edit leaves the present run.
     pub(in crate::lab) fn step_to_leave_at(&self) -> u64 {
-        // The new run begins with the settings that the old one has at the step on the screen, even if the old one is
-        // on its way back to another step. A run that is being replayed has the same settings there as here.
+        // The new run starts with the settings that the old one has at the step on the screen, even if the old one is
+        // seeking another step. A run that is being replayed has the same settings at both steps.
         self.replayed_to().unwrap_or(self.step_number())
     }
 
-    /// Returns the present step, or the step that the run returns to by itself.
+    /// Returns the present step, or the step to which the run is returning by itself.
     pub(in crate::lab) fn step_to_keep(&self) -> u64 {
         match self.seeking() {
             Some(seek) if seek.purpose != SeekPurpose::Command => seek.step,
@@ -68,8 +70,10 @@ impl Player {
         }
     }
 
-    /// Returns the replay that follows an edit. Its time is that of the present step, or of the step that the run returns
-    /// to; at step 0 it is the latest time that the run has reached; with `is_again` it is that of the edit before.
+    /// Returns the replay that follows an edit.
+    ///
+    /// Its time is the time of the present step, or of the step to which the run is returning. At step 0 it is the
+    /// latest time that the run has reached. With `is_again` it is the time of the previous replay.
     pub(super) fn next_replay(&self, is_act: bool, is_again: bool) -> Replay {
         let step = self.step_to_keep();
         let (time_s, then_plays) = match self.seeking().map(|seek| seek.purpose) {
@@ -90,8 +94,9 @@ impl Player {
         }
     }
 
-    /// Plays the run, which is at step 0, to the step that is nearest to the time of `replay`. About 50 ms of steps, or
-    /// with `is_again` 40 ms, are taken before returning, and the others over the next frames.
+    /// Plays the run, which is at step 0, to the step nearest to the time of `replay`.
+    ///
+    /// About 50 ms of steps (40 ms with `is_again`) are taken before returning, and the others over the next frames.
     pub(super) fn begin_replay(&mut self, replay: Replay, is_again: bool) {
         self.replay = Some(replay);
         let Replay {

@@ -1,4 +1,4 @@
-//! How the player moves the run: [`seek`](Player::seek) says where it goes, [`advance`](Player::advance) takes the steps.
+//! Moves the run: [`seek`](Player::seek) sets the goal, and [`advance`](Player::advance) takes the steps.
 
 use super::Player;
 use crate::engine::analysis::cost::has_closed_form;
@@ -9,33 +9,37 @@ use crate::lab::playback::pace::Speed;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// The longest time of stepping between two readings of the keyboard.
+/// Maximum duration of stepping between two reads of the keyboard.
 const PLAY_BUDGET: Duration = Duration::from_millis(12);
-/// The same of a run that seeks a step.
+/// The same for a run that seeks a step.
 const SEEK_BUDGET: Duration = Duration::from_millis(40);
-/// Computing time for the exact motion in each round of the loop while the run steps flat out: a tenth of that time.
+/// Computing time for the exact motion in each round of the main loop during a seek or at top speed: a tenth of the
+/// time for steps.
 const EXACT_BUDGET_FLAT_OUT: Duration = Duration::from_micros(1200);
-/// The same otherwise: a tenth of a frame at 15 frames a second.
+/// The same at other times: a tenth of a frame at 15 frames per second.
 const EXACT_BUDGET: Duration = Duration::from_millis(6);
-/// The number of steps after which playing until a condition holds is given up; commands of a file go no further at once.
+/// Number of steps after which playing until a condition gives up. Commands of a file go no further in one go.
 pub(in crate::lab) const MOST_UNTIL: u64 = 10_000_000;
 
-/// The greatest [cost](Player::cost) of returning to a step within one frame; it takes about 0.2 s.
+/// Maximum [cost](Player::cost) of returning to a step within one frame: about 0.2 s.
 const MOST_COST_PER_FRAME: u64 = 100_000_000;
-/// The greatest cost of steps that are taken before the next key is read, so that keys that arrive together act one by
-/// one; it takes a few milliseconds.
+/// Maximum cost of steps that are taken before the next key is read: a few milliseconds.
+///
+/// Keys that arrive together then act one by one.
 const MOST_COST_PER_KEY: u64 = 1_000_000;
-/// The longest time that steps before the next key may take, if their cost was underestimated: a push makes a step dear
-/// that is reckoned from the state before it. The other steps are then taken over the next frames.
+/// Maximum duration of steps before the next key, in case their cost was underestimated.
+///
+/// A push can make a step expensive, while the cost is estimated from the state before it. The remaining steps are
+/// taken over the next frames.
 const LONGEST_AT_ONCE: Duration = Duration::from_millis(200);
 
 pub(super) type Condition = Box<dyn FnMut(&mut LiveRun) -> bool>;
 
-/// What the run is on its way to; without a goal it plays at its pace up to the end.
+/// The goal of the run. Without a goal, the run plays at its speed to its end.
 pub(super) enum Goal {
-    /// A step, as fast as possible.
+    /// Seek a step as fast as possible.
     Seek(Seek),
-    /// A step at which the condition holds, at the pace that is set.
+    /// Play at the set speed until the condition holds.
     Condition { holds: Condition, give_up_at: u64 },
 }
 
@@ -51,7 +55,7 @@ pub enum SeekPurpose {
     Command,
     /// The run was left at the step.
     Resume,
-    /// An edit restarted the run; the previous run was at the time of the step.
+    /// An edit restarted the run. The step has the time of the previous run.
     Replay { then_plays: bool },
 }
 
@@ -59,26 +63,28 @@ pub enum SeekPurpose {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::lab) enum Halt {
     ConditionMet,
-    /// The condition was met at none of [`MOST_UNTIL`] steps.
+    /// The condition did not hold at any of [`MOST_UNTIL`] steps.
     GaveUp,
-    /// The run is at the scenario's last step; it can be played further.
+    /// The run is at the scenario's last step. It can be played further.
     EndOfRun,
-    /// The run is at the step that it was seeking.
+    /// The run reached the step that it was seeking.
     Arrived,
     NotFinite(NotFinite),
 }
 
-/// Where the run goes.
+/// Setting the goal of the run.
 impl Player {
-    /// Goes to `step` and stops there. A step that the run has reached before is usually shown at once; a later step, or a
-    /// long way with a large body, takes several frames.
+    /// Seeks `step` and stops there.
+    ///
+    /// A step that the run has reached before is usually shown at once. A later step, or a long distance with a large
+    /// body, takes several frames.
     pub fn seek(&mut self, step: u64, purpose: SeekPurpose) {
         self.set_running(false);
         self.run.begin_seek(step);
         self.approach(step, purpose);
     }
 
-    /// Goes to `step`, continues with `scenario`, which has the same motion up to there, and stops.
+    /// Seeks `step`, switches to `scenario`, which has the same motion up to there, and stops.
     pub(super) fn branch_at(&mut self, step: u64, scenario: &Arc<Scenario>) {
         self.set_running(false);
         self.run.begin_seek(step);
@@ -86,8 +92,9 @@ impl Player {
         self.approach(step, SeekPurpose::Command);
     }
 
-    /// Takes the steps to the run's seek target before returning, unless they take too long. Steps from there to `step`
-    /// that the run has not reached yet are taken like those of [`take_steps`](Self::take_steps).
+    /// Takes the steps to the run's seek target before returning, unless they take too long.
+    ///
+    /// Steps from there to `step` that the run has not reached yet are taken as in [`take_steps`](Self::take_steps).
     fn approach(&mut self, step: u64, purpose: SeekPurpose) {
         if let Some(target) = self.run.seek_target()
             && self.cost(target - self.step_number()) <= MOST_COST_PER_FRAME
@@ -101,8 +108,8 @@ impl Player {
         }
     }
 
-    /// Takes `steps` time steps as fast as possible and stops. A few steps are taken before returning, many over the next
-    /// frames.
+    /// Takes `steps` time steps as fast as possible and stops. A few steps are taken before returning; many are taken
+    /// over the next frames.
     pub(super) fn take_steps(&mut self, steps: u64, purpose: SeekPurpose) {
         let is_short = steps == 1 || self.cost(steps) <= MOST_COST_PER_KEY;
         self.fast_forward(steps, if is_short { steps } else { 0 }, purpose);
@@ -122,34 +129,38 @@ impl Player {
         self.goal = is_later.then_some(Goal::Seek(Seek { step, purpose }));
     }
 
-    /// Steps the run to `step` before returning. Where steps may have to be integrated, their cost is not known, and this
-    /// takes little more than [`LONGEST_AT_ONCE`]; elsewhere what one key does depends on no clock.
+    /// Steps the run to `step` before returning.
+    ///
+    /// If steps may have to be integrated, their cost is unknown, and stepping stops soon after [`LONGEST_AT_ONCE`].
+    /// Otherwise there is no time limit, so that the effect of a key does not depend on a clock.
     fn step_at_once(&mut self, step: u64) {
         let budget = if has_closed_form(self.run.scenario()) {
             Duration::MAX
         } else {
             LONGEST_AT_ONCE
         };
-        let _ = self.step_to(step, budget); // a failed step is tried again by advance(), which reports it
+        let _ = self.step_to(step, budget); // advance() tries a failed step again and reports it
     }
 
-    /// Steps the run to `step`, but for little more than `budget`.
+    /// Steps the run to `step`, but stops soon after `budget`.
     ///
     /// # Errors
-    /// If the numbers stop being finite on the way.
+    /// Returns an error if the numbers stop being finite on the way.
     pub fn step_to(&mut self, step: u64, budget: Duration) -> Result<(), NotFinite> {
         let (clock, begin) = (self.clock, (self.clock)());
         self.run
             .step_to(step, || clock().duration_since(begin) >= budget)
     }
 
-    /// Returns the cost of `steps` like the next one. A later one may cost far more.
+    /// Returns the cost of `steps` steps, if each costs as much as the next one. A later step may cost far more.
     pub(super) fn cost(&self, steps: u64) -> u64 {
         steps.saturating_mul(self.run.cost_of_a_step())
     }
 
-    /// Starts playing at its pace until `condition` holds; then it stops. It does not stop at the end of the scenario's
-    /// run, and gives up after [`MOST_UNTIL`] steps. Returns false, and does not start, if the condition holds already.
+    /// Starts playing at the set speed until `condition` holds, and then stops.
+    ///
+    /// Does not stop at the end of the scenario's run, and gives up after [`MOST_UNTIL`] steps. Returns false, and does
+    /// not start, if the condition holds already.
     pub(super) fn play_until(&mut self, mut condition: Condition) -> bool {
         self.set_running(false);
         if condition(&mut self.run) {
@@ -170,8 +181,8 @@ impl Player {
         self.pace.set_running(running);
     }
 
-    /// Returns the step at which the run stops by itself: that of its goal, or the scenario's last step. Once the run has
-    /// reached that, there is no further stop.
+    /// Returns the step at which the run stops by itself: the step of its goal, or the scenario's last step. Returns
+    /// `u64::MAX` once the run has reached the scenario's last step.
     pub(in crate::lab) fn stop(&self) -> u64 {
         match self.goal {
             Some(Goal::Seek(Seek { step, .. })) => step,
@@ -182,11 +193,12 @@ impl Player {
     }
 }
 
-/// The steps that are due.
+/// Taking the steps that are due.
 impl Player {
-    /// Advances the run and the exact motion by `wall`, the time up to `now`; `clock` returns the present time. Steps no
-    /// longer than 12 ms, or 40 ms if the run seeks a step. Returns why the run stopped by itself, if it did, and whether
-    /// the picture has changed.
+    /// Advances the run and the exact motion by `wall`, the time up to `now`. `clock` returns the present time.
+    ///
+    /// Steps for at most 12 ms, or 40 ms if the run seeks a step. Returns the reason if the run stopped by itself, and
+    /// true if the picture has changed.
     pub(in crate::lab) fn advance(
         &mut self,
         now: Duration,
@@ -218,8 +230,8 @@ impl Player {
         (halt, is_new)
     }
 
-    /// Advances the run towards its goal, as fast as possible and for little more than `budget`. Returns why the run
-    /// stopped; `None` if there is no goal, or the way is longer.
+    /// Advances the run towards its goal as fast as possible, and stops soon after `budget`. Returns the reason if the
+    /// run stopped; `None` if there is no goal or it was not reached.
     pub(in crate::lab) fn advance_to_goal(&mut self, budget: Duration) -> Option<Halt> {
         self.goal.as_ref()?;
         let (clock, begin) = (self.clock, (self.clock)());
@@ -228,7 +240,7 @@ impl Player {
         })
     }
 
-    /// Plays `owed_s` of simulated time, or until `is_over` returns true. Returns why the run stopped, if it did.
+    /// Plays `owed_s` of simulated time, or until `is_over` returns true. Returns the reason if the run stopped.
     fn play(&mut self, owed_s: f64, wall: Duration, is_over: impl FnMut() -> bool) -> Option<Halt> {
         let (begin_s, stop) = (self.run.now().time_s, self.stop());
         let end = match &mut self.goal {
@@ -260,18 +272,18 @@ impl Player {
         }
     }
 
-    /// Returns the number of steps to the step that the run seeks; `None` if it seeks none.
+    /// Returns the number of steps to the seek target; `None` if there is none.
     pub fn steps_to_go(&self) -> Option<u64> {
         let here = self.step_number();
         self.seeking().map(|seek| seek.step.saturating_sub(here))
     }
 
-    /// Returns true if it plays until a condition holds.
+    /// Returns true if the run plays until a condition holds.
     pub(in crate::lab) fn seeks_condition(&self) -> bool {
         matches!(self.goal, Some(Goal::Condition { .. }))
     }
 
-    /// Returns true if it plays, or seeks a step.
+    /// Returns true if the run plays or seeks a step.
     pub fn is_moving(&self) -> bool {
         self.is_running() || self.seeking().is_some()
     }
@@ -281,7 +293,7 @@ impl Player {
         self.is_moving() || self.run.overlay_is_behind()
     }
 
-    /// Returns true if it computes without pause, so that the loop should not wait for the next frame.
+    /// Returns true if the lab computes without pause, so that the main loop should not wait for the next frame.
     pub fn is_flat_out(&self) -> bool {
         let catches_up = !self.is_running() && self.run.overlay_is_behind();
         self.seeking().is_some() || catches_up || (self.is_running() && self.speed() == Speed::Top)
@@ -299,7 +311,7 @@ mod tests {
         static LOOKS: Cell<(Instant, u64)> = Cell::new((Instant::now(), 0));
     }
 
-    /// A clock on which every look at it takes a second.
+    /// A clock that advances by a second each time it is read.
     fn slow_clock() -> Instant {
         let (begin, looks) = LOOKS.get();
         LOOKS.set((begin, looks + 1));
@@ -308,19 +320,19 @@ mod tests {
 
     #[test]
     fn steps_that_are_integrated_are_taken_one_by_one_until_the_time_is_up() {
-        // A push that makes every step dear from 0.07 s on. Nothing before that says so.
+        // A push that makes every step expensive from 0.07 s on. Earlier steps do not show it.
         let push = "push.0={point='camera',force_N=[0,0,-1e9],from_s=0.07,for_s=1}";
         let mut document = Document::open("phone").unwrap();
         document.set(push).unwrap();
         let mut player = Player::new(Arc::new(document.scenario().unwrap()), false);
         player.clock = slow_clock;
-        player.take_steps(100, SeekPurpose::Command); // few, by the cost of the first
+        player.take_steps(100, SeekPurpose::Command); // few steps, judged by the cost of the first
         assert_eq!((player.step_number(), player.steps_to_go()), (1, Some(99)));
         player.take_steps(1, SeekPurpose::Command);
         assert_eq!((player.step_number(), player.steps_to_go()), (2, None));
         player.fast_forward(48, 48, SeekPurpose::Command);
         assert_eq!((player.step_number(), player.steps_to_go()), (3, Some(47)));
-        // Back to a step before, from the start of the run.
+        // Back to an earlier step, from the start of the run.
         player.step_to(60, Duration::MAX).unwrap();
         player.seek(40, SeekPurpose::Command);
         assert_eq!((player.step_number(), player.steps_to_go()), (1, Some(39)));

@@ -1,8 +1,8 @@
-//! Chooses the time that the traces show.
+//! Chooses the time window of the traces.
 //!
-//! The window is a few swings long and shows each of them. While its time passes too fast to be followed, the strips stand
-//! still like those of an oscilloscope and are replaced once a second by a window that ends at a maximum of z, so that
-//! successive pictures match. A run of few swings, or of none, is shown from its start.
+//! The window is a few swings long and shows each of them. If it passes too fast to be followed, the strips are held,
+//! as on an oscilloscope. Once a second they change to a window that ends at a maximum of z, so that successive
+//! pictures match. A run with few swings, or none, is shown from its start.
 
 use super::{Player, furthest_s};
 use crate::engine::recording::{Extent, RecordedCurve, Recording};
@@ -14,41 +14,42 @@ use crate::lab::view::window::TimeWindow;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// A run of at most so many times the swings that the strips have room for is shown as a whole.
+/// A run is shown as a whole if it has at most this many times the swings for which the strips have room.
 const FEW_WINDOWS: f64 = 2.0;
-/// The fewest swings to which the axis of such a run is shortened while the run is short.
+/// Minimum number of swings on the shortened axis of such a run while the run is short.
 const FEWEST_SWINGS: f64 = 4.0;
-/// The most times that this axis is halved.
+/// Maximum number of times that this axis is halved.
 const MOST_HALVINGS: i32 = 3;
-/// The point swings by itself if it turns so many times as often as the tilt.
+/// The traced point counts as swinging by itself if it turns at least this many times as often as the tilt.
 const MORE_TURNS: f64 = 3.0;
-/// A period or a height must differ by this share before another window is chosen for it.
+/// Relative change of a period or a height at which another window is chosen.
 const HYSTERESIS: f64 = 0.1;
-/// A swing of the traced point that is smaller than this share of its distance from the pivot is no reason for a window:
-/// the run is shown as a whole, where slow motion is seen.
+/// Minimum swing of the traced point, as a share of its distance from the pivot. A run with smaller swings is shown as
+/// a whole, which shows slow motion.
 const LEAST_SWING: f64 = 5e-4;
-/// The least range of values of a strip, as a share of the distance between pivot and traced point; of the tilt, rad.
+/// Minimum range of values of a strip, as a share of the distance between pivot and traced point; for the tilt, rad.
 const LEAST_RANGE: f64 = 2e-3;
-/// A window that passes in less wall time than this, s, is held.
+/// A window that passes in less wall-clock time than this is held, s.
 const PASSES_S: f64 = 4.0;
-/// How long the strips then stand still.
+/// Duration for which a window is held.
 const HOLD: Duration = Duration::from_secs(1);
-/// The window jumps by this share of its length where the run leaves it.
+/// Share of its length by which the window jumps when the run leaves it.
 const JUMP: f64 = 0.5;
-/// By how much a range is extended where the curve leaves it, as a share of the range.
+/// Extension of a range when the curve leaves it, as a share of the range.
 const EXTENSION: f64 = 0.3;
-/// A range stays in the next window if that needs more than this share of it: successive pictures then match.
+/// A range is kept for the next window if that window needs more than this share of it, so that successive pictures
+/// match.
 const KEPT_RANGE: f64 = 0.9;
 
-/// The swings of a run as its steps show them.
+/// The swings of a run as measured on its steps.
 #[derive(Clone, Copy)]
 pub(super) struct Swing {
     period_s: f64,
-    /// How far they carry the traced point, m.
+    /// Peak-to-peak distance of the traced point, m.
     height_m: f64,
 }
 
-/// The latest swings that were seen in a run.
+/// The swings that were first seen in a run.
 pub(super) struct SeenSwing {
     scenario: Arc<Scenario>,
     swing: Swing,
@@ -56,7 +57,7 @@ pub(super) struct SeenSwing {
 }
 
 impl Player {
-    /// Returns the window to show at `now`; `view.window` is the one shown before.
+    /// Returns the window to show at `now`. `view.window` is the previous window.
     pub(in crate::lab) fn window(
         &mut self,
         now: Duration,
@@ -92,13 +93,13 @@ impl Player {
         window
     }
 
-    /// Returns the longest time that the traces can show, s: the whole run, or what was chosen.
+    /// Returns the longest time that the traces can show, s: the whole run, or the chosen length.
     fn span_s(&self, view: &View) -> f64 {
         let chosen_s = view.look.window_s.unwrap_or(f64::INFINITY);
         chosen_s.min(self.whole_s())
     }
 
-    /// Returns the length of the window, s; `None` if it is the whole run.
+    /// Returns the length of the window, s; `None` if the window is the whole run.
     fn window_length_s(&self, view: &View, swing: Option<Swing>) -> Option<f64> {
         let span_s = self.span_s(view);
         let before_s = view.window.end_s - view.window.begin_s;
@@ -112,7 +113,7 @@ impl Player {
         }
     }
 
-    /// Returns the beginning and the length of a window of `length_s` that follows the run (s), and whether it is held.
+    /// Returns the start and the length (s) of a window of `length_s` that follows the run, and true if it is held.
     fn follow(
         &mut self,
         now: Duration,
@@ -145,7 +146,7 @@ impl Player {
         (begin_s, length_s, false)
     }
 
-    /// Returns the same where the traces show the whole run.
+    /// Returns the same for traces that show the whole run.
     fn follow_whole(&self, view: &View, swing_s: Option<f64>) -> (f64, f64, bool) {
         let (now_s, span_s) = (self.run.now().time_s, self.span_s(view));
         let begin_s = follow_by_halves(now_s, span_s);
@@ -157,15 +158,15 @@ impl Player {
         (begin_s, length_s, false)
     }
 
-    /// Returns the time at the right end of the overview, s: that of the scenario's run, doubled as often as the run has
-    /// continued beyond it.
+    /// Returns the time at the right end of the overview, s: the length of the scenario's run, doubled until it
+    /// includes the whole played run.
     pub fn whole_s(&self) -> f64 {
         let end_s = self.end_s.max(f64::MIN_POSITIVE);
         let doublings = libm::log2(furthest_s(&self.run) / end_s * (1.0 - 1e-9)).ceil();
         end_s * libm::exp2(doublings.max(0.0))
     }
 
-    /// Returns true if a run of `span_s` (s) has more swings than its strips can show, and they can be seen.
+    /// Returns true if a run of `span_s` (s) has more visible swings than its strips can show.
     fn is_fast(&self, swing: Swing, span_s: f64, view: &View) -> bool {
         let ease = if view.window.has_overview {
             1.0 - HYSTERESIS
@@ -177,8 +178,10 @@ impl Player {
         span_s / swing.period_s > ease * few && swing.height_m > ease * LEAST_SWING * arm_m
     }
 
-    /// Returns the swings of the run. Where none are seen yet, they are those that the same run had later, so that the panes
-    /// stay as they are where one goes back to its start.
+    /// Returns the swings of the run.
+    ///
+    /// If none are seen yet, returns those that the same run had later. The panes then stay as they are when the user
+    /// goes back to the start.
     fn seen_swing(&mut self) -> Option<Swing> {
         let (scenario, now_s) = (self.run.scenario(), self.run.now().time_s);
         let later = self.seen_swing.as_ref();
@@ -200,7 +203,7 @@ impl Player {
         }
     }
 
-    /// Returns the swings of the tilt, or those of the traced point if they are faster or the tilt does not swing.
+    /// Returns the swings of the tilt, or of the traced point if they are faster or the tilt does not swing.
     fn swing(&self) -> Option<Swing> {
         let arm_m = self.run.scenario().arm_m();
         let of_point = self.swing_of_point();
@@ -223,7 +226,7 @@ impl Player {
         })
     }
 
-    /// Returns the swings of x as they are recorded, over the latest half of the run.
+    /// Returns the swings of x, from the recording of the second half of the run so far.
     fn swing_of_point(&self) -> Option<Swing> {
         let now_s = self.run.now().time_s;
         let bins = self.run.recording().since(0.5 * now_s);
@@ -235,7 +238,8 @@ impl Player {
         })
     }
 
-    /// Returns how far `curve` went in the last `period_s` (s), without its drift from the period before, in its unit.
+    /// Returns the range of `curve` in the last `period_s` (s), in its unit, without its drift since the previous
+    /// period.
     fn height_of_swing(&self, curve: RecordedCurve, period_s: f64) -> f64 {
         let now_s = self.run.now().time_s;
         let extent = |end_s: f64| {
@@ -251,8 +255,8 @@ impl Player {
         }
     }
 
-    /// Sets the range of values of each strip and of the overview. While the run is played, a range grows in steps, and that
-    /// of a strip shrinks only with another window.
+    /// Sets the range of values of each strip and of the overview. While the run is played, a range grows in steps, and
+    /// the range of a strip shrinks only with another window.
     fn set_ranges(&self, window: &mut TimeWindow, before: &TimeWindow, comparison: &Comparison) {
         let is_same = (window.begin_s, window.end_s) == (before.begin_s, before.end_s);
         window.ranges = RecordedCurve::ALL.map(|curve| {
@@ -285,8 +289,8 @@ impl Player {
         };
     }
 
-    /// Returns the extremes of `curve` in the window: of the run up to now, of the exact motion, and of other runs that are
-    /// shown beside it.
+    /// Returns the minimum and maximum of `curve` in the window, over the run up to now, the exact motion, and the
+    /// other runs shown.
     fn extent(&self, window: &TimeWindow, curve: RecordedCurve, comparison: &Comparison) -> Extent {
         let now_s = self.run.now().time_s;
         let shown = |recording: &Recording, end_s: f64| {
@@ -308,7 +312,7 @@ impl Player {
             .unwrap_or(Extent::single(self.run.now().value(curve)))
     }
 
-    /// Returns the least range of a strip: m, and degrees for the tilt.
+    /// Returns the minimum range of a strip, m; degrees for the tilt.
     fn least_range(&self, curve: RecordedCurve) -> f64 {
         match curve {
             RecordedCurve::Tilt => LEAST_RANGE.to_degrees(),
@@ -317,19 +321,19 @@ impl Player {
     }
 }
 
-/// Returns `length_s`, or `before_s` if the two differ by little.
+/// Returns `length_s`, or `before_s` if the two are nearly equal.
 fn kept(length_s: f64, before_s: f64) -> f64 {
     let is_near = (length_s - before_s).abs() < HYSTERESIS * before_s;
     if is_near { before_s } else { length_s }
 }
 
-/// Returns the beginning of the window of `length_s` that has `now_s` and has jumped by halves of its length (all s).
+/// Returns the start of the window of `length_s` that contains `now_s` and jumps by half of its length (all s).
 fn follow_by_halves(now_s: f64, length_s: f64) -> f64 {
     let jumps = ((now_s / length_s * (1.0 - 1e-12) - 1.0) / JUMP).ceil();
     jumps.max(0.0) * JUMP * length_s
 }
 
-/// Returns `whole_s`, halved as often as that holds `now_s` and a few swings of `swing_s` (all s).
+/// Returns `whole_s`, halved as long as the result still contains `now_s` and a few swings of `swing_s` (all s).
 fn halved(whole_s: f64, now_s: f64, swing_s: Option<f64>) -> f64 {
     let least_s = now_s.max(FEWEST_SWINGS * swing_s.unwrap_or(0.0));
     (0..=MOST_HALVINGS)
@@ -339,7 +343,7 @@ fn halved(whole_s: f64, now_s: f64, swing_s: Option<f64>) -> f64 {
         .unwrap_or(whole_s)
 }
 
-/// Returns the time of the latest maximum of z up to `now_s`, in the last swing of `swing_s` (all s).
+/// Returns the time of the maximum of z in the last swing, of `swing_s`, up to `now_s` (all s).
 fn highest_s(recording: &Recording, now_s: f64, swing_s: f64) -> f64 {
     let bins = recording.between(now_s - swing_s, now_s);
     let highest = bins
@@ -348,7 +352,7 @@ fn highest_s(recording: &Recording, now_s: f64, swing_s: f64) -> f64 {
     highest.map_or(now_s, |(_, time_s)| time_s)
 }
 
-/// Returns `extent` with a range of at least `least`.
+/// Returns `extent`, widened to a range of at least `least`.
 fn widened(extent: Extent, least: f64) -> Extent {
     let missing = (least - (extent.max - extent.min)).max(0.0);
     Extent {
@@ -357,13 +361,13 @@ fn widened(extent: Extent, least: f64) -> Extent {
     }
 }
 
-/// Returns true if `extent` is inside `range` and has most of it.
+/// Returns true if `extent` is inside `range` and covers most of it.
 fn nearly_fills(extent: Extent, range: Extent) -> bool {
     let is_inside = extent.min >= range.min && extent.max <= range.max;
     is_inside && extent.max - extent.min > KEPT_RANGE * (range.max - range.min)
 }
 
-/// Returns `range`, extended where `extent` leaves it.
+/// Returns `range`, extended on the sides where `extent` leaves it.
 fn extended(range: Extent, extent: Extent) -> Extent {
     let more = EXTENSION * (range.max - range.min);
     Extent {
