@@ -1,4 +1,4 @@
-//! The list of presets and files, with a preview of what is selected.
+//! The list of presets and files, with a preview of the selected one.
 
 use super::{below_rule, longest, popup_rule, write};
 use crate::engine::scenario::Scenario;
@@ -14,7 +14,7 @@ use ratatui::layout::{Position, Rect};
 use std::path::Path;
 
 const TITLE: &str = "open a preset or a file";
-/// Width of the list; the preview has the rest.
+/// Width of the list, columns. The preview has the rest.
 const LIST: u16 = 30;
 
 pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
@@ -40,12 +40,13 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     preview(browser, theme, rest, buf);
 }
 
+/// Returns the number of the first visible entry, so that the selected one is visible.
 fn first_shown(browser: &Browser, height: usize) -> usize {
     let selected = browser.selected;
     selected.saturating_sub(height.saturating_sub(1))
 }
 
-/// The number of the entry at the cell `at` of the screen where `browser` is drawn on `area`.
+/// Returns the number of the entry at the cell `at` of the screen if `browser` is drawn on `area`.
 pub fn row_at(browser: &Browser, area: Rect, at: Position) -> Option<usize> {
     let inside = below_rule(area);
     let line = at.y.checked_sub(inside.y + 1)?;
@@ -55,7 +56,7 @@ pub fn row_at(browser: &Browser, area: Rect, at: Position) -> Option<usize> {
     (is_in_list && row < browser.shown().len()).then_some(row)
 }
 
-/// The keys of the list, and how many files of the folder it contains, as much as fits in `width` columns.
+/// Returns the keys of the list and, if it fits in `width` columns, the number of files in the folder.
 fn keys(files: usize, others: usize, width: usize) -> String {
     const BROWSER_KEYS: &str = "type to filter, Enter opens";
     let with_files = format!("{BROWSER_KEYS}; files here: {files} with a run, {others} without");
@@ -121,7 +122,7 @@ fn preview(browser: &Browser, theme: &Theme, area: Rect, buf: &mut Buffer) {
     }
 }
 
-/// `name` without the `folder` in which it is, which the frame names.
+/// Returns `name` without its `folder`, which the title names.
 fn below<'a>(name: &'a str, folder: Option<&Path>) -> &'a str {
     let rest = folder
         .and_then(Path::to_str)

@@ -18,17 +18,18 @@ use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-/// A title of up to this many columns is written whole before scheme and time step have room.
+/// Columns of a title that are written before scheme and time step get room.
 const LEAST_TITLE: usize = 32;
-/// The speed of playback is written in this many columns, so that the time before it does not move.
+/// Columns of the playback speed, fixed so that the time before it does not move.
 const PACE_COLUMNS: usize = 12;
-/// The fewest columns between the scheme and the time.
+/// Minimum columns between the scheme and the time.
 const HEADER_GAP: usize = 6;
-/// From this width on, phrases and keys are three columns apart, else two.
+/// Minimum width at which phrases and keys are three columns apart instead of two.
 const WIDE_FROM: u16 = 100;
+/// Separator between phrases.
 pub(super) const SEPARATOR: &str = " · ";
 
-/// Draws title, scheme and time step at the left, and time, step and speed at the right: the longest form that fits.
+/// Draws title, scheme and time step at the left, and time, step and speed at the right, in the longest form that fits.
 pub fn header(lab: &Lab, area: Rect, buf: &mut Buffer) {
     if lab.view().look.bare {
         return bare_header(lab, area, buf);
@@ -78,12 +79,12 @@ fn bare_header(lab: &Lab, area: Rect, buf: &mut Buffer) {
     write(left, (0, 0), title, theme.style(Role::Heading), buf);
 }
 
-/// Digits after the point of a time that tell every step from the next, of a run whose shortest step is `time_step_s`.
+/// Returns the decimals with which the times of all steps differ, if the shortest time step is `time_step_s`.
 fn time_decimals(time_step_s: f64) -> usize {
     (-libm::log10(time_step_s)).ceil().clamp(0.0, 6.0) as usize
 }
 
-/// Time, step and speed in fixed columns; `with_total` says whether with the number of steps of the whole run.
+/// Returns time, step and speed in fixed columns, with the number of steps of the whole run if `with_total` is true.
 fn clock(lab: &Lab, with_total: bool) -> String {
     let reading = &lab.player().reading;
     let scenario = lab.player().run().scenario();
@@ -102,7 +103,7 @@ fn clock(lab: &Lab, with_total: bool) -> String {
     format!("t {time:>time_columns$} s   step {step:>step_columns$}{total}   {pace:<PACE_COLUMNS$}")
 }
 
-/// As [`clock`], for a screen of this `width`, where the title needs `least_title` columns.
+/// Returns a shorter [`clock`] for a screen of this `width` on which the title needs `least_title` columns.
 fn short_clock(lab: &Lab, width: usize, least_title: usize) -> String {
     let reading = &lab.player().reading;
     let decimals = time_decimals(lab.player().run().scenario().least_time_step_s());
@@ -117,8 +118,10 @@ fn short_clock(lab: &Lab, width: usize, least_title: usize) -> String {
     shortened(&longest(clocks, room), width).into_owned()
 }
 
-/// Draws the verdict on the run: a word, the reasons, and the key that fixes it. Reasons give way to the key. While a question
-/// is open, the row says what answers it.
+/// Draws the verdict on the run: a word, the reasons, and the key that fixes the run. Reasons are dropped before the
+/// key.
+///
+/// While a question is open, the row shows the keys that answer it.
 pub fn verdict(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
     if let Some(asked) = lab.view().asked() {
@@ -186,8 +189,10 @@ enum PhraseKind {
     Cure,
 }
 
-/// The phrases of `verdict` and `cure` in at most `room` columns: all at length, else without the hint, then in short from the
-/// first on, then with as many reasons as fit.
+/// Returns the phrases of `verdict` and `cure` in at most `room` columns.
+///
+/// The first form that fits is used: all in full, without the hint, shortened from the first on, and then with fewer
+/// reasons.
 fn fitting_phrases(
     verdict: &Verdict,
     cure: Option<&Phrase>,
@@ -226,7 +231,7 @@ fn text_of(phrase: &Phrase, is_short: bool) -> &str {
     }
 }
 
-/// The columns of `phrases`, the first `in_short` of them in short, `gap` columns apart.
+/// Returns the columns of `phrases`, `gap` columns apart, if the first `in_short` of them are shortened.
 fn length_of(phrases: &[(&Phrase, PhraseKind)], in_short: usize, gap: usize) -> usize {
     let texts = phrases
         .iter()
@@ -235,7 +240,7 @@ fn length_of(phrases: &[(&Phrase, PhraseKind)], in_short: usize, gap: usize) -> 
     texts.sum::<usize>().saturating_sub(gap)
 }
 
-/// Draws the keys of the mode, as many as fit.
+/// Draws as many keys of the mode as fit.
 pub fn keys(lab: &Lab, places: &ScreenLayout, buf: &mut Buffer) {
     let (theme, area) = (&lab.view().theme, places.keys);
     for (at, item) in place_keys(lab, places) {
@@ -245,7 +250,7 @@ pub fn keys(lab: &Lab, places: &ScreenLayout, buf: &mut Buffer) {
     }
 }
 
-/// The key that the row of keys names at the column `x` of the screen.
+/// Returns the key in the footer at the column `x` of the screen.
 pub fn key_at(lab: &Lab, places: &ScreenLayout, x: u16) -> Option<Key> {
     let column = x.checked_sub(places.keys.x)?;
     let mut placed = place_keys(lab, places).into_iter();
@@ -259,7 +264,7 @@ pub fn key_at(lab: &Lab, places: &ScreenLayout, x: u16) -> Option<Key> {
     under.or(item.keys.first().copied())
 }
 
-/// Keys that share a word in the row of keys.
+/// Keys that share a word in the footer.
 #[derive(Clone)]
 struct FooterItem {
     keys: Vec<Key>,
@@ -273,14 +278,14 @@ impl FooterItem {
         keys.join(" ")
     }
 
-    /// Columns of the keys and their word.
+    /// Returns the columns of the keys and their word.
     fn length(&self) -> u16 {
         let blank = usize::from(!self.word.is_empty());
         (self.label().len() + blank + self.word.len()) as u16
     }
 }
 
-/// Returns whether the page of the lesson continues below what the screen shows of it.
+/// Returns true if the lesson's page continues below the visible rows.
 pub fn page_goes_on(lab: &Lab, places: &ScreenLayout) -> bool {
     let place = places.place_of(Pane::Lesson);
     place.is_some_and(|place| lesson::has_more(lab, place))
@@ -299,8 +304,9 @@ fn place_keys(lab: &Lab, places: &ScreenLayout) -> Vec<(u16, FooterItem)> {
         .collect()
 }
 
-/// As many of `items` as `width` has room for, and the columns between two of them. Keys that are used less give way first,
-/// from the last; then blanks, and the words of the pane's own keys.
+/// Returns the `items` that fit in `width`, and the columns between them.
+///
+/// Items of low priority are removed first, from the last on. Then the gaps shrink, and words are removed.
 fn fitted(mut items: Vec<FooterItem>, width: u16) -> (Vec<FooterItem>, u16) {
     let mut gap = if width >= WIDE_FROM { 3 } else { 2 };
     loop {
@@ -321,11 +327,11 @@ fn fitted(mut items: Vec<FooterItem>, width: u16) -> (Vec<FooterItem>, u16) {
     }
 }
 
-/// The keys that the footer names where there is room for all; `goes_on` says whether the page has more to be scrolled to.
+/// Returns the keys of the footer, before they are fitted. `goes_on` is true if the page can be scrolled further.
 fn footer(lab: &Lab, goes_on: bool) -> Vec<FooterItem> {
     let mode = lab.mode();
     let of_pane = super::keys_of(lab);
-    // The keys of a page and of a pane that was asked for differ in meaning from those of the run, touched or not.
+    // The keys of a page or of a pane on request have meanings of their own, so they are shown before any is used.
     let focus = lab.view().focus;
     let always = focus == Pane::Lesson || focus.is_on_request();
     let of_touched = of_pane
@@ -374,7 +380,7 @@ fn footer(lab: &Lab, goes_on: bool) -> Vec<FooterItem> {
     all
 }
 
-/// What the footer says of a key now; `None` where the key does nothing.
+/// Returns the word for a key in the footer, or `None` if the key does nothing now.
 fn footer_word(lab: &Lab, goes_on: bool, row: &Binding) -> Option<&'static str> {
     let is_why = lab.view().look.phase == StepPageChoice::Why;
     let sheet = lab.view().sheet.as_ref();
@@ -386,7 +392,7 @@ fn footer_word(lab: &Lab, goes_on: bool, row: &Binding) -> Option<&'static str> 
     let is_of_use = match (row.footer, action) {
         ("residuals", _) => lab.comparison().data().is_some(),
         ("exact" | "fix", _) => !lab.view().hides_answers(),
-        // A run whose numbers are no longer finite cannot go on.
+        // A run whose numbers are no longer finite cannot continue.
         ("pause" | "step", _) => !lab.player().run().simulation().has_ended(),
         (_, Some(Action::Lesson(LessonKey::Take))) => !enter.is_empty(),
         (_, Some(Action::Lesson(LessonKey::Next))) => {

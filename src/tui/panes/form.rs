@@ -1,4 +1,4 @@
-//! A form, over the bottom of the panes.
+//! A form, drawn over the bottom of the panes.
 
 use super::{below_rule, popup_rule, wrapped_to, write};
 use crate::engine::text::wrap::{columns, wrapped};
@@ -11,11 +11,12 @@ use ratatui::layout::{Margin, Position, Rect};
 use ratatui::widgets::{Clear, Widget};
 
 const FORM_WIDTH: u16 = 80;
-/// Below this height or width there is no room for a frame.
+/// Minimum height and width for a frame, cells.
 const LEAST_FRAMED: u16 = 3;
+/// Maximum number of lines of an error message.
 const MOST_COMPLAINT: usize = 3;
 
-/// A form on top of the panes, as high as it needs to be, at the bottom of the area it is drawn on.
+/// A form over the panes, at the bottom of its area and only as high as necessary.
 pub struct FormPane<'a> {
     pub form: &'a InputForm,
     pub theme: &'a Theme,
@@ -36,7 +37,7 @@ impl Widget for FormPane<'_> {
         else {
             return;
         };
-        // A blank column at each side sets the form off from the panes.
+        // A blank column at each side separates the form from the panes.
         Clear.render(place.outer(Margin::new(1, 0)).intersection(area), buf);
         let inside = if is_framed {
             popup_rule(&self.form.title, place, self.theme, buf)
@@ -56,16 +57,16 @@ impl Widget for FormPane<'_> {
     }
 }
 
-/// The lines of a form, and where it stands.
+/// Lines of a form, and their area.
 struct PlacedForm<'a> {
     lines: Vec<FormLine<'a>>,
     place: Rect,
-    /// Whether there is room for its title.
+    /// True if there is room for the title.
     is_framed: bool,
 }
 
 impl FormPane<'_> {
-    /// The number of the field at the cell `at` of the screen where the form is drawn on `area`.
+    /// Returns the number of the field at the cell `at` of the screen if the form is drawn on `area`.
     pub fn field_at(&self, area: Rect, at: Position) -> Option<usize> {
         let placed = self.placed(area)?;
         let inside = if placed.is_framed {
@@ -80,7 +81,7 @@ impl FormPane<'_> {
         }
     }
 
-    /// The form at the bottom of `area`; `None` if there is no room.
+    /// Returns the form at the bottom of `area`, or `None` if there is no room.
     fn placed(&self, area: Rect) -> Option<PlacedForm<'_>> {
         let width = area.width.min(FORM_WIDTH);
         let x = area.x + (area.width - width) / 2;
@@ -99,14 +100,16 @@ impl FormPane<'_> {
         })
     }
 
-    /// The lines that fit in `height`: first the selected field and a line of the complaint, then the other fields, the
-    /// rest of the complaint, the keys and the information.
+    /// Returns the lines that fit in `height`.
+    ///
+    /// Priority: the selected field and a line of the error message, the other fields, the rest of the message, the
+    /// keys, the information.
     fn lines(&self, width: u16, height: usize) -> Vec<FormLine<'_>> {
         let (form, width) = (self.form, usize::from(width));
         let mut room = height;
         let reserved = usize::from(form.complaint.is_some() && height > 1);
         room -= reserved;
-        let fields = taken(&mut room, form.fields.len());
+        let fields = take_rows(&mut room, form.fields.len());
         room += reserved;
         let most = room.min(MOST_COMPLAINT);
         let complaint: Vec<_> = form
@@ -116,14 +119,14 @@ impl FormPane<'_> {
             .collect();
         room -= complaint.len();
         let keys = wrapped(form.keys, width).len();
-        let keys = wrapped_to(form.keys, width, taken(&mut room, keys));
+        let keys = wrapped_to(form.keys, width, take_rows(&mut room, keys));
         let mut info: Vec<_> = form
             .info
             .iter()
             .flat_map(|text| wrapped(text, width))
             .collect();
-        info.truncate(taken(&mut room, info.len()));
-        // The selected field is among those that are shown.
+        info.truncate(take_rows(&mut room, info.len()));
+        // Start so that the selected field is visible.
         let first = (form.selected + 1).saturating_sub(fields);
         let fields = form.fields.iter().enumerate().skip(first).take(fields);
         let mut lines: Vec<_> = fields
@@ -145,7 +148,7 @@ impl FormPane<'_> {
         lines
     }
 
-    /// The labels in one column, and the texts beside it.
+    /// Draws a field: the label in a column as wide as the widest label, then the text.
     fn field(&self, is_selected: bool, field: &InputField, area: Rect, buf: &mut Buffer) {
         let labels = self.form.fields.iter().map(|other| columns(&other.label));
         let widest = labels.max().unwrap_or(0) as u16 + 1;
@@ -160,7 +163,7 @@ impl FormPane<'_> {
         self.text(is_selected, field, room, buf);
     }
 
-    /// As much of the text as there is room for, with the cursor if the field is selected.
+    /// Draws the visible part of the text, with the cursor if the field is selected.
     fn text(&self, is_selected: bool, field: &InputField, area: Rect, buf: &mut Buffer) {
         if area.is_empty() {
             return;
@@ -198,14 +201,14 @@ impl FormPane<'_> {
     }
 }
 
-/// At most `wanted` of the lines there is `room` for, which are then taken.
-fn taken(room: &mut usize, wanted: usize) -> usize {
+/// Takes up to `wanted` lines from `room` and returns their number.
+fn take_rows(room: &mut usize, wanted: usize) -> usize {
     let taken = wanted.min(*room);
     *room -= taken;
     taken
 }
 
-/// The first of `chars` that is shown on `width` columns, so that the one at `cursor` is visible.
+/// Returns the first visible one of `chars` on `width` columns, so that the one at `cursor` is visible.
 fn first_shown(chars: &[char], cursor: usize, width: usize) -> usize {
     let mut first = cursor.min(chars.len());
     let at_cursor = chars.get(first).map_or(1, |&c| wide(c).max(1));

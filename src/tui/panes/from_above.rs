@@ -1,7 +1,7 @@
 //! The path of the traced point from above, x to the right and y up, with axes in meters.
 //!
-//! The path in the window of the traces is bright, the path before it is dim. A ring marks the start, a spot the shown
-//! moment. The exact motion is dashed, with a spot at the same moment.
+//! The path in the window of the traces is bright, the path before it is dim. A ring marks the start, and a spot the
+//! displayed time. The exact motion is dashed, with a spot at the same time.
 
 mod extent;
 
@@ -30,26 +30,27 @@ use ratatui::layout::Rect;
 use ratatui::widgets::Widget;
 use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 
-/// Length of a push's arrow, as a share of half of what is shown. Only its direction has a meaning.
+/// Length of a push's arrow, as a fraction of half the visible size. Only its direction has a meaning.
 const PUSH_ARROW_SHARE: f64 = 0.35;
-/// A force with a horizontal part smaller than this share of it counts as straight up or down.
+/// A force whose horizontal component is a smaller fraction of it counts as straight up or down.
 const VERTICAL_FORCE_SHARE: f64 = 0.1;
+/// Length of a push's arrowhead, fine dots.
 const PUSH_HEAD_DOTS: f64 = 5.0;
 
-/// Fine dots between what is shown and the edge of the picture.
+/// Fine dots between the motion and the edge of the picture.
 const MARGIN_DOTS: f64 = 4.0;
-/// The distance between two ticks is the next round number above this share of what is shown.
+/// Minimum distance between two ticks, as a fraction of the visible size. It is rounded up.
 const TICK_SHARE: f64 = 0.2;
-/// Decimals of a tick's number; a finer one has an exponent.
+/// Maximum decimals of a tick's number. A finer tick is written with an exponent.
 const MOST_TICK_DECIMALS: i64 = 4;
 
-/// Fine dots between two dots of the circle that theory predicts.
+/// Fine dots between two dots of the circle predicted by theory.
 const CIRCLE_DOTS: f64 = 3.0;
-/// Fine dots of a dash of the exact path.
+/// Fine dots per dash of the exact path.
 const EXACT_DASH_DOTS: f64 = 8.0;
-/// The longest line between two places of the earlier path, dots.
+/// Longest line between two points of the earlier path, fine dots.
 const LONGEST_EARLIER_LINE: f64 = 8.0;
-/// The longest line between two places of the bright path, of the sheet's shorter side.
+/// Longest line between two points of the bright path, as a fraction of the sheet's shorter side.
 const LONGEST_RECENT_LINE: f64 = 0.5;
 
 pub const FROM_ABOVE_ROW: PaneRow = PaneRow {
@@ -62,6 +63,7 @@ pub const FROM_ABOVE_ROW: PaneRow = PaneRow {
     arrows: None,
 };
 
+/// The view from above, as a widget.
 pub struct FromAbove<'a>(pub PlotInputs<'a>);
 
 impl Widget for FromAbove<'_> {
@@ -92,7 +94,7 @@ struct AbovePicture<'a> {
     picture: Rect,
     plane: Plane,
     now: RecordedSample,
-    /// The exact motion at the same time, where its curves are shown.
+    /// Exact motion at the same time, if its curves are shown.
     exact: Option<Vector2<f64>>,
 }
 
@@ -141,13 +143,13 @@ impl<'a> AbovePicture<'a> {
         self.plane.dot((at.x, at.y))
     }
 
-    /// The cell of a place, also outside the picture.
+    /// Returns the cell of a point, which may be outside the picture.
     fn cell(&self, at: &Vector2<f64>) -> (i32, i32) {
         let (x, y) = self.dot(at);
         cell_of((x, y))
     }
 
-    /// Where the axes cross: the origin, or the nearest place in the picture.
+    /// Returns the crossing of the axes: the origin, or the nearest dot in the picture.
     fn crossing(&self) -> FineDot {
         let (x, y) = self.plane.dot((0.0, 0.0));
         let (width, height) = (self.plane.size.0 as f64, self.plane.size.1 as f64);
@@ -157,7 +159,7 @@ impl<'a> AbovePicture<'a> {
         )
     }
 
-    /// The ticks of both axes: their values, m.
+    /// Returns the distance of the ticks and their values on both axes, m.
     fn ticks(&self) -> (f64, [Vec<f64>; 2]) {
         let (width, height) = (self.plane.size.0 as f64, self.plane.size.1 as f64);
         let shown = [width / self.plane.scale.0, height / self.plane.scale.1];
@@ -198,7 +200,7 @@ impl<'a> AbovePicture<'a> {
         }
     }
 
-    /// The circle that theory predicts, of a run that covers too little of it to show it. Returns a place on it.
+    /// Draws the circle predicted by theory, for a run too short to show it. Returns a point on the circle.
     fn circle(&self, dots: &mut LayeredDots) -> Option<Vector2<f64>> {
         if self.seen.view.hides(HideablePart::Predicted) {
             return None;
@@ -213,7 +215,7 @@ impl<'a> AbovePicture<'a> {
         Some(Vector2::new(FRAC_1_SQRT_2, FRAC_1_SQRT_2) * radius_m)
     }
 
-    /// The previous run and the pinned one, each with its dashes.
+    /// Returns the previous and the pinned run, each with its name and dashes.
     fn ghosts(&self) -> [(Option<&'a Ghost>, &'static str, Dashes); 2] {
         [
             (self.seen.ghost, "previous", dots::PREVIOUS_DASHES),
@@ -254,8 +256,9 @@ impl<'a> AbovePicture<'a> {
         }
     }
 
-    /// The exact path is drawn over the run: where the two agree, its dashes alternate with the run. The dashes belong to
-    /// places, so that those of one turn are over those of another.
+    /// Draws the exact path over the run; where both coincide, its dashes alternate with the run.
+    ///
+    /// The dashes are fixed in space, so that those of different turns coincide.
     fn exact_path(&self, dots: &mut LayeredDots) {
         let Some(overlay) = self.seen.overlay() else {
             return;
@@ -272,7 +275,7 @@ impl<'a> AbovePicture<'a> {
         }
     }
 
-    /// The measured places. Those at times that the run has not reached are less prominent.
+    /// Draws the measured points. Points at times that the run has not reached are less prominent.
     fn points(&self, buf: &mut Buffer) {
         let Some(data) = self.seen.measured else {
             return;
@@ -301,14 +304,15 @@ impl<'a> AbovePicture<'a> {
         points.add(self.in_cells(x, y), level, upright, role);
     }
 
-    /// A place in cells from the upper left.
+    /// Returns a position in cells from the upper left.
     fn in_cells(&self, x: f64, y: f64) -> (f64, f64) {
         let (column, row) = self.plane.dot((x, y));
         let (across, down) = self.plane.in_cell;
         (column / across as f64, row / down as f64)
     }
 
-    /// The pushes that act: the pushed point of each, and the tip of its arrow, unless it is straight up or down.
+    /// Returns for each acting push the pushed point, the tip of its arrow (none if it is straight up or down) and the
+    /// vertical force, N.
     fn acting_pushes(&self) -> Vec<(Vector2<f64>, Option<Vector2<f64>>, f64)> {
         let simulation = self.seen.run.simulation();
         let points = self.seen.run.scenario().body.mechanics.points();
@@ -334,7 +338,7 @@ impl<'a> AbovePicture<'a> {
         }
     }
 
-    /// The start, the exact motion now, and the run now.
+    /// Draws the start, the exact motion now, and the run now.
     fn marks(&self, dots: &mut LayeredDots) {
         if let Some(at) = self.start() {
             dots.ring(self.dot(&at), ink(Role::Label, Layer::Start));
@@ -347,7 +351,7 @@ impl<'a> AbovePicture<'a> {
         dots.spot(now, Spot::Three, ink(Role::Cursor, Layer::Now));
     }
 
-    /// Where the run began.
+    /// Returns the start of the run, or `None` if it is not finite.
     fn start(&self) -> Option<Vector2<f64>> {
         let scenario = self.seen.run.scenario();
         let traced = scenario.body.mechanics.points()[scenario.trace].at;
@@ -355,7 +359,7 @@ impl<'a> AbovePicture<'a> {
         at.iter().all(|part| part.is_finite()).then(|| at.xy())
     }
 
-    /// The labels of now, start, exact and cursor, the most important first.
+    /// Labels now, start and exact, the most important first, and marks the cursor.
     fn label_marks(&self, circle: Option<Vector2<f64>>, labels: &mut Labels<'_>) {
         let theme = &self.seen.view.theme;
         if let Some(cursor) = self.seen.cursor {
@@ -386,7 +390,7 @@ impl<'a> AbovePicture<'a> {
         }
     }
 
-    /// The names of the other runs, at the end of their paths.
+    /// Writes the names of the other runs at the ends of their paths.
     fn label_other_runs(&self, labels: &mut Labels<'_>) {
         let style = self.seen.view.theme.style(Role::Previous);
         for (ghost, name, _) in self.ghosts() {
@@ -418,8 +422,9 @@ impl<'a> AbovePicture<'a> {
     }
 }
 
-/// The plane about `middle` that reaches `half` to each side, and up and down (m), with a margin. Its origin is in the upper
-/// half of a cell, so that the ticks of x are in the cells of the axis.
+/// Returns the plane around `middle` that reaches `half` to each side, and up and down (m), with a margin.
+///
+/// Its origin is in the upper half of a cell, so that the ticks of x are in the cells of the axis.
 fn plane(picture: Rect, middle: Vector2<f64>, half: Vector2<f64>) -> Plane {
     let dots = Vector2::new(
         2.0 * f64::from(picture.width),
@@ -447,7 +452,7 @@ fn cell_of((x, y): FineDot) -> (i32, i32) {
     ((x / 2.0).floor() as i32, (y / 4.0).floor() as i32)
 }
 
-/// The number of a tick, m, where ticks are `step` apart.
+/// Returns the number of a tick, m, if ticks are `step` apart.
 fn tick_text(value: f64, step: f64) -> String {
     let decimals = (-libm::log10(step).floor() as i64).max(0);
     with_minus_sign(&if decimals <= MOST_TICK_DECIMALS {
@@ -457,10 +462,10 @@ fn tick_text(value: f64, step: f64) -> String {
     })
 }
 
-/// The moment that is shown, and the exact motion at that moment if its curves are shown.
+/// Returns the displayed sample, and the exact position at its time if the exact curves are shown.
 ///
-/// It is the present moment. Where the traces are held because swings pass too fast to be followed, it is the moment of
-/// the latest reading. Where the scheme has broken down, it is the last moment before.
+/// Usually the sample is the present one. If the traces are held because swings are too fast to follow, it is the
+/// sample of the latest reading. If the scheme has broken down, it is the last sample before that.
 fn shown_moment(seen: &PlotInputs<'_>) -> (RecordedSample, Option<Vector2<f64>>) {
     let is_shown = seen.overlay().is_some();
     let is_held = seen.view.window.is_held;

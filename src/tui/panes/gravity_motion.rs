@@ -1,10 +1,11 @@
-//! The motion that gravity alone would give a run, from its start on: the size of its pictures is known from it.
+//! The motion of a run under gravity alone. It determines the size of its pictures in advance.
 
 use crate::engine::scenario::Scenario;
 use crate::physics::{LagrangeTop, Loads, SymmetricTop};
 
-/// Returns the exact motion from the start under gravity alone, about the vertical; `None` without gravity, and for a
-/// body that is not nearly symmetric about its axle.
+/// Returns the exact motion from the start under gravity alone, about the vertical.
+///
+/// Returns `None` without gravity, and for a body that is not nearly symmetric about its axle.
 pub fn gravity_motion(scenario: &Scenario) -> Option<LagrangeTop> {
     let body = &scenario.body.mechanics;
     let (top, _) = SymmetricTop::nearly(body)?;
@@ -25,7 +26,7 @@ pub fn gravity_motion(scenario: &Scenario) -> Option<LagrangeTop> {
     })
 }
 
-/// Returns the least and the greatest tilt of that motion, degrees from +z.
+/// Returns the minimum and the maximum tilt of that motion, degrees from +z.
 pub fn predicted_tilts_deg(scenario: &Scenario) -> Option<(f64, f64)> {
     let motion = gravity_motion(scenario)?;
     let (low, high) = motion.tilt_range();

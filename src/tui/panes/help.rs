@@ -1,5 +1,5 @@
-//! The help: keys and words, searched by typing; Enter does the key that is selected. Keys are grouped by their
-//! purpose, and the words are those of the glossary.
+//! The help: keys and words of the glossary, searched by typing. Enter does the effect of the selected key. Keys are
+//! grouped by purpose.
 
 use super::{SELECTED_MARK, below_rule, carry_out, popup_rule, rows, write};
 use crate::engine::text::wrap::{columns, wrapped};
@@ -12,10 +12,11 @@ use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-/// Column of keys and words, and the columns between them and their texts.
+/// Column of keys and words.
 const NAMES_COLUMN: usize = 2;
+/// Columns between them and their texts.
 const COLUMN_GAP: usize = 2;
-/// A text that would have fewer columns than this stands below its key, not in a column of its own.
+/// Minimum width of the column of texts. If a text has less room, it is written below its key.
 const LEAST_TEXT: usize = 40;
 
 fn selected(lab: &Lab) -> Option<HelpEntry> {
@@ -23,7 +24,7 @@ fn selected(lab: &Lab) -> Option<HelpEntry> {
     found.get(lab.popups().help.selected).copied()
 }
 
-/// Keeps the selection of the help among the entries that are found.
+/// Keeps the selection of the help among the matching entries.
 pub fn limit(lab: &mut Lab) {
     if lab.popups().mode == Mode::Help {
         let entries = find_entries(&lab.popups().help.text).len();
@@ -31,8 +32,9 @@ pub fn limit(lab: &mut Lab) {
     }
 }
 
-/// Closes the help and does what the key of the selected entry does. For a key of a pane it moves the focus to that
-/// pane first. Where nothing can be done it says why.
+/// Closes the help and does the effect of the selected key.
+///
+/// For a key of a pane, it moves the focus to that pane first. If the entry has no effect here, a message says why.
 pub fn do_entry(lab: &mut Lab) -> Option<LabRequest> {
     let Some(entry) = selected(lab) else {
         lab.refuse("nothing is selected: Esc clears the search");
@@ -99,7 +101,7 @@ fn selected_of(found: &[HelpEntry], lab: &Lab) -> usize {
     selected.min(found.len().saturating_sub(1))
 }
 
-/// The lines of the entries `found`, and the number of the first one that is shown on `inside`.
+/// Returns the lines of the entries `found`, and the number of the first visible line on `inside`.
 fn shown_lines(found: &[HelpEntry], lab: &Lab, inside: Rect) -> (Vec<HelpLine>, usize) {
     let is_grouped = lab.popups().help.text.is_empty();
     let lines = help_lines(found, is_grouped, inside.width as usize);
@@ -107,7 +109,7 @@ fn shown_lines(found: &[HelpEntry], lab: &Lab, inside: Rect) -> (Vec<HelpLine>, 
     (lines, first)
 }
 
-/// The number of the entry at the cell `at` of the screen where the help is drawn on `area`.
+/// Returns the number of the entry at the cell `at` of the screen if the help is drawn on `area`.
 pub fn row_at(lab: &Lab, area: Rect, at: Position) -> Option<usize> {
     let inside = below_rule(area);
     if !inside.contains(at) {
@@ -118,17 +120,18 @@ pub fn row_at(lab: &Lab, area: Rect, at: Position) -> Option<usize> {
     lines.get(first + usize::from(at.y - inside.y))?.entry
 }
 
-/// One line of the screen: texts, and the columns where they begin.
+/// A line of the screen: texts, each with its first column.
 struct HelpLine {
-    /// The number of its entry; none for a heading.
+    /// Number of the entry; `None` for a heading.
     entry: Option<usize>,
-    /// Whether it is the first line of its entry.
+    /// True for the first line of an entry.
     is_first: bool,
     pieces: Vec<(usize, String, Role)>,
 }
 
-/// The first of `lines` that is shown on `height` lines, so that the entry `selected` is in the middle where it can be,
-/// and its first line is always shown.
+/// Returns the first of `lines` to show on `height` lines.
+///
+/// The entry `selected` is in the middle if possible, and its first line is always visible.
 fn first_shown(lines: &[HelpLine], selected: usize, height: usize) -> usize {
     let mut entries = lines.iter().map(|line| line.entry);
     let length = entries
@@ -143,7 +146,7 @@ fn first_shown(lines: &[HelpLine], selected: usize, height: usize) -> usize {
     begin.saturating_sub(above).min(most)
 }
 
-/// `entries` in lines of `width` columns; `grouped` says whether under the headings of their groups.
+/// Returns the lines of `entries` on `width` columns, under the headings of their groups if `grouped` is true.
 fn help_lines(entries: &[HelpEntry], grouped: bool, width: usize) -> Vec<HelpLine> {
     let longest = entries.iter().map(|entry| columns(&entry.name())).max();
     let column = NAMES_COLUMN + longest.unwrap_or(0) + COLUMN_GAP;
@@ -189,7 +192,7 @@ fn heading(entry: &HelpEntry, width: usize) -> Vec<HelpLine> {
 
 type HelpPieces = Vec<(usize, String, Role)>;
 
-/// The text of `entry`. For a key of a pane it names the pane, unless a heading does.
+/// Returns the text of `entry`. For a key of a pane it names the pane, unless a heading does.
 fn text_of(entry: &HelpEntry, grouped: bool) -> String {
     match entry.pane {
         Some(_) if !grouped => format!("{} ({})", entry.text, entry.group),
@@ -197,7 +200,7 @@ fn text_of(entry: &HelpEntry, grouped: bool) -> String {
     }
 }
 
-/// The name of `entry`, and its `text` in lines that begin in `column`.
+/// Returns the name of `entry`, with its `text` in lines that begin in `column`.
 fn beside(entry: &HelpEntry, text: &str, column: usize, width: usize) -> Vec<HelpPieces> {
     let text = wrapped(text, width.saturating_sub(column))
         .into_iter()
@@ -209,7 +212,7 @@ fn beside(entry: &HelpEntry, text: &str, column: usize, width: usize) -> Vec<Hel
     lines
 }
 
-/// The name of `entry`, and its `text` below it.
+/// Returns the name of `entry`, with its `text` below it.
 fn below(entry: &HelpEntry, text: &str, width: usize) -> Vec<HelpPieces> {
     const HELP_INDENT: usize = NAMES_COLUMN + COLUMN_GAP - 1;
     let text = wrapped(text, width.saturating_sub(HELP_INDENT))
@@ -219,25 +222,26 @@ fn below(entry: &HelpEntry, text: &str, width: usize) -> Vec<HelpPieces> {
     std::iter::once(name).chain(text).collect()
 }
 
-/// The words that the lab uses, each in one sentence: those of the motion first, then those of the numbers and of the screen.
+/// The words of the lab, each explained in one sentence: words of the motion first, then of the numbers and of the
+/// screen.
 const GLOSSARY: &str = include_str!("help/glossary.txt");
 
-/// A key, or several that mean the same; or a word of the glossary.
+/// Help on a key (or several keys with the same effect), or on a word of the glossary.
 #[derive(Clone, Copy, Debug)]
 pub struct HelpEntry {
-    /// The heading under which it stands.
+    /// Heading of the group.
     pub group: &'static str,
-    /// The pane whose key it is; `None` for a key that every pane has, and for a word.
+    /// Pane of the key; `None` for a key of every pane, and for a word.
     pub pane: Option<Pane>,
-    /// Its key; `None` for a word.
+    /// Key; `None` for a word.
     pub binding: Option<&'static Binding>,
-    /// A word, or what the footer says of a key.
+    /// The word, or the key's text in the footer.
     short: &'static str,
-    /// What it does, or means.
+    /// Effect of the key, or meaning of the word.
     pub text: &'static str,
 }
 
-/// The groups of the keys of other modes, in order.
+/// Groups of the keys of other modes, in order.
 const PLACES: [(Mode, &str); 5] = [
     (
         Mode::Browser,
@@ -258,8 +262,7 @@ impl HelpEntry {
         })
     }
 
-    /// How well it matches `search`, of which `lower` is the lower case: 0 is the best match; `None` where it does not
-    /// match.
+    /// Returns how well the entry matches `search` (`lower` in lower case): 0 is the best match, `None` no match.
     fn answers(&self, search: &str, lower: &str) -> Option<u8> {
         let keys = self.binding.map_or(&[][..], |binding| binding.keys);
         let is_key =
@@ -315,7 +318,7 @@ pub fn entries() -> Vec<HelpEntry> {
         .collect()
 }
 
-/// The entries that match `search`, the best match first; if it is empty, all entries, group by group.
+/// Returns the entries that match `search`, best match first. If it is empty, returns all entries, group by group.
 pub fn find_entries(search: &str) -> Vec<HelpEntry> {
     let (search, mut found) = (search.trim(), entries());
     if search.is_empty() {
@@ -323,7 +326,7 @@ pub fn find_entries(search: &str) -> Vec<HelpEntry> {
     }
     let lower = search.to_lowercase();
     found.retain(|entry| entry.answers(search, &lower).is_some());
-    found.sort_by_key(|entry| entry.answers(search, &lower)); // stable: among equals the order of the groups
+    found.sort_by_key(|entry| entry.answers(search, &lower)); // stable: equal matches stay in the order of the groups
     found
 }
 

@@ -1,4 +1,4 @@
-//! The note: what there is to see, and for a while a message.
+//! The note on what to look at, or for a while a message.
 
 use super::chrome::SEPARATOR;
 use super::{step, wrapped_to, write};
@@ -12,18 +12,20 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::{Clear, Widget};
 
-/// What a screen says that has no room for everything.
+/// Text on a screen that is too small for everything.
 const CRAMPED: &str = "80x24 shows more";
-/// Rows that a message may take.
+/// Maximum rows of a message.
 const MOST_HINT_LINES: u16 = 4;
 
-/// Rows that the note takes on a screen of this width while there is no message.
+/// Returns the rows of the note on a screen of this width while there is no message.
 pub fn lines_of_note(lab: &Lab, width: u16) -> u16 {
     lines_of(whole_sentences(&lab.note(), width), width)
 }
 
-/// As many sentences of `note` as fit in one row of a screen of this width, or in two or three of a narrow one; all of it if not
-/// even the first fits.
+/// Returns the sentences of `note` that fit on a screen of this width: in one row, or in two or three rows of a narrow
+/// screen.
+///
+/// Returns the whole note if not even the first sentence fits.
 fn whole_sentences(note: &str, width: u16) -> &str {
     let most_rows = match width {
         width if width < NOTE_COLUMNS.0 => 3,
@@ -42,8 +44,9 @@ fn lines_of(text: &str, width: u16) -> u16 {
     lines.min(u16::MAX.into()) as u16
 }
 
-/// Where the hint of `lab` stands. A message that needs more lines takes lines above as long as it stays: the verdict,
-/// and the last of a pane.
+/// Returns the area of the note or message of `lab`.
+///
+/// A message that needs more lines covers the verdict and the last lines of a pane while it is shown.
 pub fn place(lab: &Lab, layout: &ScreenLayout) -> Rect {
     let place = layout.note;
     let needed = if has_message(lab) {
@@ -71,7 +74,7 @@ pub fn place(lab: &Lab, layout: &ScreenLayout) -> Rect {
     }
 }
 
-/// What is to be said now; else what there is to see. On a small screen, that there would be more, if there is room.
+/// Draws the message, or else the note. On a small screen it adds, if there is room, that a larger screen shows more.
 pub fn draw(lab: &Lab, is_cramped: bool, area: Rect, buf: &mut Buffer) {
     let (text, role) = said(lab, area.width);
     let theme = &lab.view().theme;
@@ -82,7 +85,7 @@ pub fn draw(lab: &Lab, is_cramped: bool, area: Rect, buf: &mut Buffer) {
         wrapped_to(&text, width, area.height as usize)
     };
     if has_message(lab) {
-        Clear.render(area, buf); // it may lie over the panes
+        Clear.render(area, buf); // it may cover the panes
     }
     let mut end = 0;
     for (line, y) in lines.iter().zip(0..area.height) {
@@ -90,7 +93,7 @@ pub fn draw(lab: &Lab, is_cramped: bool, area: Rect, buf: &mut Buffer) {
     }
     let last = area.height.saturating_sub(1);
     if lines.len() < area.height as usize {
-        end = 0; // the last line is free
+        end = 0; // the last line is empty
     }
     let x = area.width.saturating_sub(CRAMPED.len() as u16 + 1);
     if is_cramped && x >= end + 2 {
@@ -98,7 +101,7 @@ pub fn draw(lab: &Lab, is_cramped: bool, area: Rect, buf: &mut Buffer) {
     }
 }
 
-/// Whether there is something to be said now, besides what there is to see.
+/// Returns true if there is a message, a typed count or a typed value to show.
 pub fn has_message(lab: &Lab) -> bool {
     let (popups, messages) = (lab.popups(), lab.messages());
     let types_value = popups.dialog().is_some_and(Dialog::is_of_value);
@@ -107,7 +110,7 @@ pub fn has_message(lab: &Lab) -> bool {
 
 const NOT_KEPT: &str = "session not kept";
 
-/// The text of the note on a screen of this width. That the session is not saved is said as long as it is so.
+/// Returns the text of the note on a screen of this width. It mentions an unsaved session as long as saving fails.
 fn said(lab: &Lab, width: u16) -> (String, Role) {
     let (popups, messages) = (lab.popups(), lab.messages());
     if let Some(typed) = popups.dialog().and_then(value_typed) {
@@ -135,7 +138,7 @@ fn said(lab: &Lab, width: u16) -> (String, Role) {
     }
 }
 
-/// The value that is typed and the keys that end it, or why it was refused; `None` in any other dialog.
+/// Returns the value being typed with its keys, or its error message. Returns `None` in other dialogs.
 fn value_typed(dialog: &Dialog) -> Option<(String, Role)> {
     let form = &dialog.form;
     let field = form.fields.first().filter(|_| dialog.is_of_value())?;
@@ -149,7 +152,7 @@ fn value_typed(dialog: &Dialog) -> Option<(String, Role)> {
     })
 }
 
-/// The key, the value with all its digits and the meaning of the selected value while the values have the focus.
+/// Returns the key, the text with all digits, and the meaning of the selected value, while the values have the focus.
 fn about_selected(lab: &Lab) -> Option<String> {
     let view = lab.view();
     let selected = lab.values().list.selected()?;

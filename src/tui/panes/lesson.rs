@@ -1,4 +1,4 @@
-//! The page of a lesson beside the run: its text, the question with its answers, what is to be reached, and the keys.
+//! The page of a lesson next to the run: its text, the question with its answers, the goals, and the keys.
 
 use super::{PaneRow, below_rule, longest, rule, shortened, write};
 use crate::engine::text::wrap::{columns, wrapped};
@@ -23,27 +23,28 @@ pub const LESSON_ROW: PaneRow = PaneRow {
     arrows: None,
 };
 
-/// Columns before the words of an answer, and before those of an entry of a list.
+/// Columns before the words of an answer.
 const CHOICE_INDENT: u16 = 4;
+/// Columns before the words of a list entry.
 const LIST_INDENT: u16 = 2;
-/// Stands for a blank at which a line must not end.
+/// Placeholder for a blank that must not be broken.
 const KEPT_BLANK: char = '\u{e000}';
-/// The units of numbers in the texts of lessons.
+/// Units of numbers in the texts of lessons.
 const UNITS: [&str; 16] = [
     "m", "mm", "m/s", "m²", "s", "ms", "N", "kg", "J", "rad/s", "rad", "°", "degrees", "degree",
     "%", "times",
 ];
 
-/// A line of the page: its first column, and its pieces.
+/// A line of the page: its first column, and its pieces of text.
 #[derive(Default)]
 struct LessonLine {
-    /// The number of its paragraph; `None` for an empty line between two.
+    /// Number of its paragraph; `None` for an empty line between two.
     paragraph: Option<usize>,
     x: u16,
     pieces: Vec<(String, Style)>,
-    /// What stands at its end.
+    /// Mark at its end.
     mark: &'static str,
-    /// Whether it is the chosen one of several: it is reversed over the whole width.
+    /// True for the selected answer or entry, which is reversed over the whole width.
     is_selected: bool,
 }
 
@@ -53,7 +54,7 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
         return;
     };
     let page = ScrolledPage::new(sheet, below_rule(area), view);
-    // On a page without a free row, what the class says is on the rule: the shortest form.
+    // On a page without a free row, the rule has the status of the class in its shortest form.
     let class_words = match sheet.border.lines().last() {
         Some(shortest) if page.is_full => shortest,
         _ => "",
@@ -64,7 +65,7 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
         "" => (&sheet.title, sheet.place.as_str()),
         _ => (&framed, class_words),
     };
-    // Which page it is goes before the whole of a long title.
+    // The page number has priority over a long title.
     let room = area.width.saturating_sub(columns(place) as u16 + 5);
     let title = shortened(title, room.into());
     let right = Some((place, Role::Label)).filter(|_| !place.is_empty());
@@ -109,7 +110,7 @@ fn draw_line(line: &LessonLine, row: Rect, theme: &Theme, buf: &mut Buffer) {
     }
 }
 
-/// Writes what the border says of the class, and `more` where it fits beside that.
+/// Writes the status of the class, and `more` if both fit.
 fn write_border(said: &str, more: &str, border: Rect, style: Style, buf: &mut Buffer) {
     let room = border.width.saturating_sub(columns(more) as u16 + 1);
     let said = longest(said.lines().map(|form| format!(" {form} ")), room.into());
@@ -119,7 +120,7 @@ fn write_border(said: &str, more: &str, border: Rect, style: Style, buf: &mut Bu
     }
 }
 
-/// Scrolls the sheet of `lab`, whose pane has the area `place`, as a key does.
+/// Scrolls the sheet of `lab`, whose pane has the area `place`.
 pub fn scroll(lab: &mut Lab, direction: Direction, place: Rect) {
     let Some(sheet) = lab.view().sheet.clone() else {
         return;
@@ -131,13 +132,13 @@ pub fn scroll(lab: &mut Lab, direction: Direction, place: Rect) {
         .scroll_sheet(direction.rows(page_rows), first, shown, all);
 }
 
-/// Whether the page of `lab`, whose pane has the area `place`, goes on below what is shown.
+/// Returns true if the page of `lab`, whose pane has the area `place`, continues below the visible lines.
 pub fn has_more(lab: &Lab, place: Rect) -> bool {
     let sheet = lab.view().sheet.as_ref();
     sheet.is_some_and(|sheet| ScrolledPage::new(sheet, below_rule(place), lab.view()).has_more())
 }
 
-/// The number of the answer, or of the entry of a list, at the cell `at` of the screen where the page of `lab` has the area
+/// Returns the number of the answer or list entry at the cell `at` of the screen, if the page of `lab` has the area
 /// `place`.
 pub fn choice_at(lab: &Lab, place: Rect, at: Position) -> Option<usize> {
     let (sheet, inside) = (lab.view().sheet.as_ref()?, below_rule(place));
@@ -156,17 +157,20 @@ pub fn choice_at(lab: &Lab, place: Rect, at: Position) -> Option<usize> {
     is_choice.then(|| up_to_here.count() - 1)
 }
 
+/// A page in lines, scrolled.
 struct ScrolledPage {
     lines: Vec<LessonLine>,
     first: usize,
-    /// So many lines are shown. The last row is kept free for what the class says, and on a longer page for its keys.
+    /// Number of visible lines. The last row stays free for the status of the class and, on a longer page, for its
+    /// keys.
     height: usize,
-    /// Whether the page needs every row.
+    /// True if the page needs every row.
     is_full: bool,
 }
 
 impl ScrolledPage {
-    /// `sheet` in lines for the area `inside`, scrolled as `view` says, or else so far that what is to be seen is in view.
+    /// Creates the lines of `sheet` for the area `inside`. They are scrolled as `view` says, or else so that
+    /// `sheet.seen` is visible.
     fn new(sheet: &Sheet, inside: Rect, view: &View) -> Self {
         let mut lines: Vec<LessonLine> = Vec::new();
         let mut seen = (0, 0);
@@ -216,7 +220,7 @@ impl ScrolledPage {
     }
 }
 
-/// Whether an empty line stands between two paragraphs.
+/// Returns true if an empty line separates the two paragraphs.
 fn are_apart(before: &SheetLineKind, after: &SheetLineKind) -> bool {
     fn is_list(kind: &SheetLineKind) -> bool {
         matches!(
@@ -233,7 +237,7 @@ fn are_apart(before: &SheetLineKind, after: &SheetLineKind) -> bool {
     }
 }
 
-/// What stands before a paragraph's first line, and the look of its words.
+/// Returns the mark before a paragraph's first line, its indent in columns, and the role of its words.
 fn dressed(kind: &SheetLineKind) -> (String, u16, Role) {
     fn plain(mark: &str, role: Role) -> (String, u16, Role) {
         (mark.to_owned(), 0, role)
@@ -297,7 +301,7 @@ fn lines_of(paragraph: &Paragraph, width: u16, theme: &Theme) -> Vec<LessonLine>
     lines
 }
 
-/// Makes `lines` those of an answer, or of an entry of a list.
+/// Turns `lines` into an answer or a list entry.
 fn as_choice(
     lines: &mut [LessonLine],
     number: Option<usize>,
@@ -332,7 +336,7 @@ fn as_choice(
     }
 }
 
-/// As [`wrapped`], but no line ends between a number and its unit.
+/// Wraps `text` like [`wrapped`], but never between a number and its unit.
 fn wrapped_with_units(text: &str, room: usize) -> Vec<String> {
     let words: Vec<&str> = text.split_whitespace().collect();
     let mut joined = String::with_capacity(text.len());
@@ -346,7 +350,7 @@ fn wrapped_with_units(text: &str, room: usize) -> Vec<String> {
             _ => joined.push(' '),
         }
         joined += word;
-        // A joule has its second behind it in the unit of L.
+        // In J s, the unit of L, the second follows the joule.
         let is_number = word.ends_with(|letter: char| letter.is_ascii_digit());
         follows_number = is_number || is_kept && *word == "J";
     }
@@ -354,7 +358,8 @@ fn wrapped_with_units(text: &str, room: usize) -> Vec<String> {
     lines.map(|line| line.replace(KEPT_BLANK, " ")).collect()
 }
 
-/// `text` in pieces of one style each. Its letters are the next of `letters`, but for the blanks between words.
+/// Returns `text` in pieces of uniform style. Its letters are the next ones of `letters`, except for blanks between
+/// words.
 fn styled_pieces(
     text: &str,
     letters: &mut Peekable<impl Iterator<Item = (char, Emphasis)>>,
@@ -380,7 +385,7 @@ fn styled_pieces(
     pieces
 }
 
-/// `line` of code as it is, or in several lines where it is longer than there is room.
+/// Returns a line of code unchanged, or wrapped if it is longer than `room`.
 fn in_room(line: &str, room: usize) -> Vec<String> {
     if columns(line) <= room {
         vec![line.to_owned()]
@@ -389,7 +394,7 @@ fn in_room(line: &str, room: usize) -> Vec<String> {
     }
 }
 
-/// The letters of a paragraph with their emphasis.
+/// Returns the letters of a paragraph with their emphasis.
 fn letters_of(paragraph: &Paragraph) -> impl Iterator<Item = (char, Emphasis)> {
     let pieces = paragraph.words.iter();
     pieces.flat_map(|words| words.text.chars().map(|letter| (letter, words.emphasis)))

@@ -1,4 +1,4 @@
-//! The line about the measured data beside the run: their mark and their file, and how far they are from the run.
+//! The row on the measured data: their mark, their file, and their distance from the run.
 
 use super::chrome::SEPARATOR;
 use super::{shortened, write};
@@ -14,7 +14,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use std::path::Path;
 
-/// The fewest columns to which a file's name is shortened.
+/// Minimum columns of a shortened file name.
 const LEAST_NAME: usize = 12;
 
 pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
@@ -43,8 +43,9 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     }
 }
 
-/// The name of the data, their counts and the parts of the line that fit in `room` columns: short forms make room for the
-/// rest, then a shorter name, then the last parts give way.
+/// Returns the name of the data, their counts, and the parts of the row that fit in `room` columns.
+///
+/// Short forms are tried first, then a shorter name; then the last parts are dropped.
 fn fitting(beside: &DataComparison, end_s: f64, room: usize) -> (String, String, Vec<String>) {
     let sum = &beside.compared.sum;
     let name = file_name(&beside.name);
@@ -68,7 +69,7 @@ fn fitting(beside: &DataComparison, end_s: f64, room: usize) -> (String, String,
     (shortened(&name, rest).into_owned(), form.0, form.1)
 }
 
-/// The name of data, or of a file without its folders.
+/// Returns the name of the data, or of a file without its folders.
 fn file_name(name: &str) -> String {
     let last = Path::new(name)
         .file_name()
@@ -76,8 +77,10 @@ fn file_name(name: &str) -> String {
     printable(&last).into_owned()
 }
 
-/// What was measured, how many values there are, and how many of them the run has reached: at length and in short.
-/// Where data go on after `end_s`, the end of the run, it says so, and the key that plays the run up to there.
+/// Returns the measured quantities, the number of points, and how many of them the run has reached: in full and in
+/// short.
+///
+/// If the data continue after `end_s`, the end of the run, it also names the key that plays the run to their end.
 fn reached(beside: &DataComparison, sum: &Sum, end_s: f64) -> [String; 2] {
     let names: Vec<_> = beside.quantities().map(RunQuantity::words).collect();
     let (names, all, reached) = (
@@ -102,7 +105,7 @@ fn reached(beside: &DataComparison, sum: &Sum, end_s: f64) -> [String; 2] {
     [format!("({names}: {long})"), format!("({short})")]
 }
 
-/// What is found out about rows of an own program: at length and in short.
+/// Returns the verdict on the rows of the user's own program: in full and in short.
 fn verdict(beside: &DataComparison) -> Option<[String; 2]> {
     let verdict = beside.own.as_ref()?.verdict()?;
     let slip = verdict
@@ -120,7 +123,7 @@ fn verdict(beside: &DataComparison) -> Option<[String; 2]> {
     })
 }
 
-/// How far the data are from the run, the most important first: each at length and in short.
+/// Returns the distances of the data from the run, the most important first, each in full and in short.
 fn parts(sum: &Sum) -> Vec<[String; 2]> {
     if sum.compared == 0 {
         return vec![["none of them reached yet"; 2].map(str::to_owned)];

@@ -1,6 +1,6 @@
-//! The panes. Each borrows what it shows and draws it on its area; none of them changes anything.
+//! The panes. Each draws what it borrows on its area; none changes anything.
 //!
-//! A new pane is a variant of [`Pane`], a file with its `ROW`, and that row's name in [`row`].
+//! A new pane needs a variant of [`Pane`], a file with its [`PaneRow`], and an arm in [`row`].
 
 pub mod browser;
 pub mod chrome;
@@ -40,22 +40,23 @@ use ratatui::widgets::{Clear, Widget};
 use std::borrow::Cow;
 use std::f64::consts::TAU;
 
-/// The mark of the selected line of a list.
+/// Mark of the selected line of a list.
 const SELECTED_MARK: &str = "►";
 
-/// A row of the table of panes: what the layout, the focus, the footer and the help need to know.
+/// A row of the table of panes: the data of a pane for the layout, the focus, the footer and the help.
 #[derive(Debug)]
 pub struct PaneRow {
     pub id: Pane,
-    /// Its title, on its rule and over its keys in the help; the pane may add words to it.
+    /// Title on the rule of the pane and above its keys in the help. The pane may add words to it.
     pub title: &'static str,
     pub draw: fn(&Lab, Rect, &mut Buffer),
-    /// The keys that are its own while it has the focus; they go before the keys of the lab.
+    /// Keys of the pane while it has the focus. They have priority over the keys of the lab.
     pub keys: &'static [Binding],
-    /// What an arrow or page key means while it has the focus, pressed so many times, if there is something it means.
+    /// Meaning of an arrow or page key while the pane has the focus, if it has one.
     pub arrows: Option<Arrows>,
 }
 
+///  Returns the commands for an arrow or page key that is pressed this number of times.
 pub type Arrows = fn(&Lab, Direction, i32) -> KeyCommands;
 
 pub fn row(pane: Pane) -> &'static PaneRow {
@@ -69,13 +70,14 @@ pub fn row(pane: Pane) -> &'static PaneRow {
     }
 }
 
-/// The rows of all panes, from left to right on the screen.
+/// Returns the rows of all panes, from left to right on the screen.
 pub fn rows() -> impl Iterator<Item = &'static PaneRow> {
     Pane::ALL.into_iter().map(row)
 }
 
-/// The keys of the pane in focus; in a lesson also the keys of the step pane where it is shown, and the keys that turn
-/// pages.
+/// Returns the keys of the pane in focus.
+///
+/// In a lesson, these include the keys that turn pages and, while the step pane is visible, its keys.
 pub fn keys_of(lab: &Lab) -> impl Iterator<Item = &'static Binding> + Clone {
     let view = lab.view();
     let is_beside = view.sheet.is_some() && view.side_by_side.contains(&Pane::Step);
@@ -97,7 +99,7 @@ pub fn keys_of(lab: &Lab) -> impl Iterator<Item = &'static Binding> + Clone {
     }))
 }
 
-/// Carries out what a key does; an arrow does what it means in the pane that has the focus.
+/// Carries out the effect of a key. An arrow key does what the pane in focus defines.
 pub fn carry_out(does: KeyEffect, lab: &mut Lab) -> Option<LabRequest> {
     let arrows = row(lab.view().focus).arrows;
     match (does, arrows.filter(|_| lab.popups().mode == Mode::Lab)) {
@@ -110,22 +112,24 @@ pub fn carry_out(does: KeyEffect, lab: &mut Lab) -> Option<LabRequest> {
     None
 }
 
-/// What the panes of the motion draw: a run, the runs and data beside it, and how they are looked at.
+/// Inputs of the panes that show the motion: a run, the runs and data to compare with it, and the view.
 #[derive(Clone, Copy)]
 pub struct PlotInputs<'a> {
     pub view: &'a View,
     pub run: &'a LiveRun,
-    /// The run before.
+    /// Previous run.
     pub ghost: Option<&'a Ghost>,
-    /// The run that was pinned as the reference, unless it is the present one.
+    /// Run pinned as the reference, unless it is the present run.
     pub pinned: Option<&'a Ghost>,
     pub measured: Option<&'a DataComparison>,
-    /// The column of the CSV that a strip shows.
+    /// Column of the CSV that a strip shows.
     pub column: Option<&'a RecordedColumn>,
-    /// The latest reading of the run, if it is read at all. Its precession says which turn is the last. The scene in space
-    /// is that of its time: a turning wheel changes most of the picture, which would load a slow line in every frame.
+    /// Latest reading of the run, if any.
+    ///
+    /// Its precession determines the last turn of the path. The 3-D view shows the run at its time: a turning wheel
+    /// changes most of the picture, which would load a slow line in every frame.
     pub reading: Option<&'a Reading>,
-    /// The time step that the step pane takes apart: the scene in space shows what its page is about.
+    /// Time step explained by the step pane. The 3-D view shows the quantities of its page.
     pub explained: Option<&'a StepWorkings>,
     pub cursor: Option<&'a Sample>,
 }
@@ -146,20 +150,22 @@ impl<'a> PlotInputs<'a> {
         }
     }
 
-    /// As [`from_lab`](Self::from_lab), for the views of the path: beside a page the run before would cover the path.
+    /// Returns the inputs of the views of the path: as [`from_lab`](Self::from_lab), but next to a lesson's page
+    /// without the previous run, which would cover the path.
     fn of_path(lab: &'a Lab) -> Self {
         let inputs = Self::from_lab(lab);
         let ghost = inputs.ghost.filter(|_| lab.view().sheet.is_none());
         Self { ghost, ..inputs }
     }
 
-    /// The exact motion, where it is shown beside the run.
+    /// Returns the exact motion if it is shown.
     fn overlay(&self) -> Option<&'a Overlay> {
         let overlay = self.run.overlay();
         overlay.filter(|_| !self.view.hides(HideablePart::Predicted))
     }
 
-    /// The time from which on the path is bright, s: the window of the traces, or the last turn where that is the whole run.
+    /// Returns the time from which the path is bright, s: the begin of the traces' window, or of the last turn if that
+    /// window is the whole run.
     fn bright_since_s(&self, now_s: f64) -> f64 {
         let window = &self.view.window;
         if window.has_overview {
@@ -177,7 +183,8 @@ impl<'a> PlotInputs<'a> {
     }
 }
 
-/// Draws the rule above a pane: `title` at its left, reversed where the pane has the focus, and `right` at its end.
+/// Draws the rule above a pane: `title` at its left, reversed if the pane has the focus, and `right` at its end.
+///
 /// Returns the area below.
 pub(super) fn rule(
     title: &str,
@@ -209,13 +216,14 @@ pub(super) fn rule(
     below_rule(area)
 }
 
-/// The area below the rule of a pane on `area`.
+/// Returns the area below the rule of a pane on `area`.
 pub(super) fn below_rule(area: Rect) -> Rect {
     split_rows(area, 1)[1]
 }
 
-/// The title of a round pane: `name`, its magnification, and the step that it shows if the scheme has broken down
-/// since. The longest form that fits in `width` columns.
+/// Returns the longest title of a round pane that fits in `width` columns.
+///
+/// It has the `name`, the magnification and, if the scheme has broken down since, the displayed step.
 fn round_title(name: &str, zoom: f64, reading: Option<&Reading>, width: u16) -> String {
     let title = if zoom == 1.0 {
         name.to_owned()
@@ -233,7 +241,7 @@ fn round_title(name: &str, zoom: f64, reading: Option<&Reading>, width: u16) -> 
     longest(forms, width.saturating_sub(4).into())
 }
 
-/// The first of `forms`, the longest first, that fits in `width` columns; else the last.
+/// Returns the first of `forms` (longest first) that fits in `width` columns, else the last.
 pub(super) fn longest(forms: impl IntoIterator<Item = String>, width: usize) -> String {
     forms
         .into_iter()
@@ -241,13 +249,14 @@ pub(super) fn longest(forms: impl IntoIterator<Item = String>, width: usize) -> 
         .unwrap_or_default()
 }
 
-/// As [`rule`], on top of whatever is there.
+/// Clears the area and draws a [`rule`] with the focus. Returns the area below.
 pub(super) fn popup_rule(title: &str, area: Rect, theme: &Theme, buf: &mut Buffer) -> Rect {
     Clear.render(area, buf);
     rule(title, None, true, area, theme, buf)
 }
 
-/// Writes `text`, made printable, at `x`, `y` relative to `area`, [`shortened`] at its right edge; gives the column after it.
+/// Writes `text`, made printable, at `x`, `y` relative to `area`, [`shortened`] at its right edge. Returns the column
+/// after the text.
 pub(super) fn write(
     area: Rect,
     (x, y): (u16, u16),
@@ -261,18 +270,18 @@ pub(super) fn write(
     let room = (area.width - x) as usize;
     let printed = printable(text);
     let short = shortened(&printed, room);
-    // Bold and faint are reset: the text before may have been either.
+    // Reset bold and dim, because the text before may have been either.
     let weight = (Modifier::BOLD | Modifier::DIM).difference(style.add_modifier);
     let reset = style.remove_modifier(weight);
     let (end, _) = buf.set_stringn(area.x + x, area.y + y, short, room, reset);
     end - area.x
 }
 
-/// The most pushes that a picture shows at one time.
+/// Maximum number of pushes that a picture shows at one time.
 const MOST_SHOWN_PUSHES: usize = 20;
 
-/// Takes the last of the highest rank out of `items`, but none of rank 0; whether there was one.
-fn leave_one_out<T>(items: &mut Vec<T>, rank: impl Fn(&T) -> u8) -> bool {
+/// Removes the least important item (the last of the highest rank above 0). Returns false if there is none.
+fn remove_least_important<T>(items: &mut Vec<T>, rank: impl Fn(&T) -> u8) -> bool {
     let ranks = items.iter().map(rank).enumerate();
     let last = ranks
         .max_by_key(|&(_, its_rank)| its_rank)
@@ -280,10 +289,10 @@ fn leave_one_out<T>(items: &mut Vec<T>, rank: impl Fn(&T) -> u8) -> bool {
     last.map(|(index, _)| items.remove(index)).is_some()
 }
 
-/// Stands for the rest of a text. Not every terminal's font has a single character for it.
+/// Replaces the end of a shortened text. Not every terminal's font has a single character for it.
 const REST: &str = "...";
 
-/// `text`, or as much of it as `width` columns hold, with dots for the rest.
+/// Returns `text`, or as much of it as fits in `width` columns, with dots for the rest.
 pub(super) fn shortened(text: &str, width: usize) -> Cow<'_, str> {
     if columns(text.trim_end()) <= width {
         return text.into();
@@ -294,7 +303,7 @@ pub(super) fn shortened(text: &str, width: usize) -> Cow<'_, str> {
     (begin.trim_end().to_owned() + rest).into()
 }
 
-/// As [`wrapped`], in no more than `height` lines; dots stand for what does not fit.
+/// Wraps `text` like [`wrapped`], in at most `height` lines, with dots for the rest.
 pub(super) fn wrapped_to(text: &str, width: usize, height: usize) -> Vec<String> {
     let mut lines = wrapped(text, width);
     if lines.len() > height {

@@ -1,5 +1,7 @@
-//! The whole run below the panes: z as it was, the window of the traces, the pushes and the edits. It is also the time
-//! line: a click or a drag goes to the time there. Where the traces show the whole run, it is one line, the scrub line.
+//! The overview below the panes: z over the whole run, the window of the traces, the pushes and the edits.
+//!
+//! It is also a time line: a click or a drag goes to that time. If the traces show the whole run, it is one line, the
+//! scrub line.
 
 use super::traces::canvas::{Canvas, Layer};
 use super::traces::{EDIT_MARK, Gutter, PUSH_BAR, cursor_line, draw_run, rows, times};
@@ -16,25 +18,30 @@ use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-/// The fewest rows of an overview: its rule, a row of its curve, and its ruler. With fewer it is a scrub line.
+/// Minimum rows of an overview: its rule, a row of its curve, and its ruler. With fewer it is a scrub line.
 const OVERVIEW_ROWS: u16 = 3;
-/// Fewest columns that are worth drawing.
+/// Minimum columns of an overview.
 const LEAST_WIDTH: u16 = 16;
-/// The word beside a push, and at the end of the rule.
+/// Word next to a push.
 const PUSH_WORD: &str = "push";
+/// Word next to an edit.
 const EDIT_WORD: &str = "edit";
+/// Words at the end of the rule.
 const WHOLE_RUN: &str = "whole run";
-/// The edges of the window.
+/// Edges of the window.
 const WINDOW_EDGES: [&str; 2] = ["▕", "▏"];
-/// The scrub line: how far the run has been, what is ahead, where it is, and where the scenario ends.
+/// Part of the scrub line that the run has reached.
 const REACHED: &str = "━";
+/// Part of the scrub line ahead of the run.
 const AHEAD: &str = "─";
+/// Present time on the scrub line.
 const NOW_MARK: &str = "┃";
+/// End of the scenario, or the cursor, on the scrub line.
 const END_MARK: &str = "│";
-/// How far the pinned run has been.
+/// Furthest time of the pinned run.
 const PINNED_MARK: &str = "┤";
 
-/// The whole run on `area`.
+/// The overview of a run on an area of the screen.
 pub struct Overview<'a> {
     lab: &'a Lab,
     marks: Marks,
@@ -42,12 +49,12 @@ pub struct Overview<'a> {
     scale: StripScale,
     gutter: Gutter,
     area: Rect,
-    /// Where its curve is; of a scrub line, the line.
+    /// Area of the curve, or the scrub line.
     sheet: Rect,
 }
 
 impl<'a> Overview<'a> {
-    /// Returns the overview of `lab` on `area`; `None` if there is no room.
+    /// Returns the overview of `lab` on `area`, or `None` if there is no room.
     pub fn new(lab: &'a Lab, area: Rect) -> Option<Self> {
         if area.width < LEAST_WIDTH || area.height == 0 {
             return None;
@@ -93,13 +100,13 @@ impl<'a> Overview<'a> {
         })
     }
 
-    /// Returns the time at column `x` of the screen, s; `None` beside the overview.
+    /// Returns the time at column `x` of the screen, s, or `None` outside the overview.
     pub fn time_s(&self, x: u16) -> Option<f64> {
         let is_inside = (self.sheet.left()..self.sheet.right()).contains(&x);
         is_inside.then(|| self.nearest_time_s(x))
     }
 
-    /// Returns the time at column `x` of the screen, s; beside the overview, that of its nearer end.
+    /// Returns the time at column `x` of the screen, s. Outside the overview, returns the time of its nearer end.
     pub fn nearest_time_s(&self, x: u16) -> f64 {
         let last = self.sheet.width.saturating_sub(1);
         let cell = x.saturating_sub(self.sheet.x).min(last);
@@ -107,7 +114,7 @@ impl<'a> Overview<'a> {
         self.span.begin_s + share * self.span.window_s
     }
 
-    /// Returns the column of cells of `time_s`; a time outside is at the nearer end.
+    /// Returns the column of `time_s`, in cells. A time outside is moved to the nearer end.
     fn cell(&self, time_s: f64) -> u16 {
         let share = ((time_s - self.span.begin_s) / self.span.window_s).clamp(0.0, 1.0);
         (share * f64::from(self.sheet.width.saturating_sub(1))).round() as u16
@@ -138,7 +145,7 @@ impl<'a> Overview<'a> {
         }
     }
 
-    /// Marks on the rule where pushes act and where the run was edited, with a word where there is room.
+    /// Marks pushes and edits on the rule, with a word if there is room.
     fn mark_rule(&self, buf: &mut Buffer) {
         let line = Rect {
             y: self.area.y,
@@ -176,7 +183,7 @@ impl<'a> Overview<'a> {
         }
     }
 
-    /// Returns the times of the edits in the time of the overview, s.
+    /// Returns the times of the edits within the overview, s.
     fn shown_edits(&self) -> impl Iterator<Item = f64> + '_ {
         let edits = self.marks.edits.iter().copied();
         edits.filter(|edit_s| (self.span.begin_s..=self.span.end_s()).contains(edit_s))
@@ -189,7 +196,7 @@ impl<'a> Overview<'a> {
         let bins = self.span.bins(run.recording());
         let mut extents = bins.columns(RecordedCurve::Z, &self.marks.edits);
         if view.window.is_held {
-            // It grows with each window: little is sent between two of them.
+            // The curve grows with each window, so that little is sent between two of them.
             let drawn = self.span.shown(self.span.begin_s, view.window.end_s);
             extents[drawn.end..].fill(None);
         }
@@ -207,7 +214,7 @@ impl<'a> Overview<'a> {
         canvas.render(&view.theme, buf);
     }
 
-    /// Draws the edges of the run before, dotted.
+    /// Draws the edges of the previous run, dotted.
     fn draw_run_before(&self, canvas: &mut Canvas) {
         let Some(before) = self.lab.comparison().ghost() else {
             return;
@@ -222,7 +229,7 @@ impl<'a> Overview<'a> {
         }
     }
 
-    /// Draws the window of the traces: its background, and its edges where the cells beside it are free.
+    /// Draws the window of the traces: its background, and its edges.
     fn draw_window(&self, buf: &mut Buffer) {
         let view = self.lab.view();
         let across = view.marker.dots().0;

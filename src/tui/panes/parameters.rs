@@ -1,5 +1,5 @@
-//! The values: what the run and the exact motion are now or at the cursor, and the values of the scenario, of which the
-//! underlined ones can be edited.
+//! The values pane: readouts of the run and of the exact motion now or at the cursor, and the values of the scenario.
+//! Underlined values can be edited.
 
 mod editor;
 mod table;
@@ -23,20 +23,20 @@ use ratatui::widgets::Widget;
 use std::borrow::Cow;
 use table::ValueTable;
 
-/// From this width on the values of the scenario are beside the table.
+/// Minimum width for the values of the scenario next to the table, columns.
 const BESIDE_FROM: u16 = 40;
-/// From this width on the table has further columns and comes first.
+/// Minimum width for a table with further columns, which then comes first, columns.
 const WIDE_FROM: u16 = 90;
-/// Columns of the table where it is beside the values of the scenario, by the width of the pane.
+/// Columns of the table next to the values of the scenario, for minimum widths of the pane: (width, columns).
 const TABLE_COLUMNS: [(u16, u16); 3] = [(WIDE_FROM, 54), (60, 29), (BESIDE_FROM, 22)];
-/// The fewest columns for a list of the scenario's values.
+/// Minimum columns for a list of the scenario's values.
 const LIST_COLUMNS: u16 = 27;
-/// The column of a wide list after the last digit of a value.
+/// Column after the last digit of a value in a wide list.
 const VALUE_END: u16 = 25;
-/// Below this height a pane in focus has the list alone.
+/// Minimum height for the table above the list while the pane has the focus, rows.
 const TABLE_FROM: u16 = 8;
 
-/// From this many columns on, dots stand for the rest of a label.
+/// Minimum width of a label that is shortened with dots, columns.
 const DOTTED_FROM: u16 = 9;
 
 pub const PARAMETERS_ROW: PaneRow = PaneRow {
@@ -47,17 +47,18 @@ pub const PARAMETERS_ROW: PaneRow = PaneRow {
     arrows: None,
 };
 
+/// The values pane with everything it shows.
 pub struct ValuesPane<'a> {
     pub readouts: &'a Readouts,
     pub now: &'a Moment,
-    /// The exact motion at the same time; `None` where it is not known.
+    /// Exact motion at the same time, if known.
     pub exact: Option<&'a Moment>,
     /// The run and the exact motion at the cursor.
     pub cursor: Option<(&'a Moment, Option<&'a Moment>)>,
     pub list: &'a ValueList,
-    /// Whether a part of a name is being typed, to find a value.
+    /// True while the user types a part of a name to find a value.
     pub is_searched: bool,
-    /// The field in the place of the selected value while it is typed.
+    /// Input field that replaces the selected value while it is edited.
     pub field: Option<&'a InputField>,
     pub view: &'a View,
 }
@@ -82,7 +83,7 @@ impl<'a> ValuesPane<'a> {
         self.view.focus == PARAMETERS_ROW.id
     }
 
-    /// The pane's title, or the name that is searched for.
+    /// Returns the pane's title, or the searched name.
     fn title(&self) -> Cow<'static, str> {
         let name = &self.list.name;
         match (self.has_focus() && !name.is_empty(), self.is_searched) {
@@ -92,7 +93,7 @@ impl<'a> ValuesPane<'a> {
         }
     }
 
-    /// The name that is searched for; empty if all values are shown.
+    /// Returns the searched name; empty if all values are shown.
     fn searched(&self) -> &str {
         if self.has_focus() {
             &self.list.name
@@ -105,7 +106,7 @@ impl<'a> ValuesPane<'a> {
         self.view.hides(HideablePart::Predicted)
     }
 
-    /// A unit as this screen can show it.
+    /// Returns a unit in the characters of this screen.
     fn unit(&self, unit: &'static str) -> &'static str {
         if self.view.marker == Marker::Ascii {
             return match unit {
@@ -123,11 +124,11 @@ impl<'a> ValuesPane<'a> {
         }
     }
 
-    /// Writes `label` and, where there is room for it within `width` columns, its unit.
+    /// Writes `label` and, if there is room within `width` columns, its unit.
     fn label(&self, label: &str, unit: &'static str, width: u16, area: Rect, buf: &mut Buffer) {
         let [place, _] = split_columns(area, width);
         let theme = &self.view.theme;
-        // In few columns the letters tell more than the dots of what is cut.
+        // In few columns, more letters tell more than dots for the rest.
         let most = usize::from(place.width);
         let cut: String = label.chars().take(most).collect();
         let text = if place.width < DOTTED_FROM {
@@ -142,7 +143,7 @@ impl<'a> ValuesPane<'a> {
         }
     }
 
-    /// Where the table and the list are on `area`.
+    /// Returns the areas of the table and the list on `area`.
     fn places(&self, area: Rect) -> Places {
         if area.width + 1 < BESIDE_FROM {
             self.stacked(area)
@@ -151,7 +152,7 @@ impl<'a> ValuesPane<'a> {
         }
     }
 
-    /// The table above, and the values of the scenario below.
+    /// Places the table above the values of the scenario.
     fn stacked(&self, area: Rect) -> Places {
         let (label_width, number_width) = table::narrow_columns(area.width);
         let list = |place| ListPlace {
@@ -174,7 +175,7 @@ impl<'a> ValuesPane<'a> {
         }
     }
 
-    /// The table, and beside it the values of the scenario.
+    /// Places the table and the values of the scenario side by side.
     fn side_by_side(&self, area: Rect) -> Places {
         let widths = TABLE_COLUMNS
             .iter()
@@ -200,7 +201,7 @@ impl<'a> ValuesPane<'a> {
         Places { table, list }
     }
 
-    /// Rows of the table, its rule included, in a pane of this height.
+    /// Returns the rows of the table, including its rule, in a pane of this height.
     fn table_rows(&self, height: u16) -> u16 {
         let [least, most] = table::row_counts(self).map(|rows| rows + 1);
         let list = if self.has_focus() {
@@ -212,31 +213,31 @@ impl<'a> ValuesPane<'a> {
     }
 }
 
-/// Where the parts of the pane are.
+/// Areas of the parts of the pane.
 struct Places {
-    /// Empty if only the list has room.
+    /// Area of the table; empty if only the list has room.
     table: Rect,
     list: ListPlace,
 }
 
-/// Where the values of the scenario are.
+/// Area of the values of the scenario.
 #[derive(Clone, Copy)]
 struct ListPlace {
     area: Rect,
-    /// How many lists are beside each other.
+    /// Number of lists side by side.
     columns: u16,
-    /// The column of each list after the last digit of a value.
+    /// Column of each list after the last digit of a value.
     value_end: u16,
 }
 
-/// Returns the number, in the list of values, of the one at `at` of the pane on `area`.
+/// Returns the number, in the list of values, of the value at the cell `at`, if the pane has this `area`.
 pub fn value_at(lab: &Lab, area: Rect, at: Position) -> Option<usize> {
     let pane = &ValuesPane::of(lab);
     let place = pane.places(without_gap(area)).list;
     Editor { pane, place }.value_at(at)
 }
 
-/// `area` without its last column, which is empty as the gap between panes is.
+/// Returns `area` without its last column, which stays empty like the gap between panes.
 fn without_gap(area: Rect) -> Rect {
     split_columns(area, area.width.saturating_sub(1))[0]
 }
@@ -266,7 +267,7 @@ impl Widget for ValuesPane<'_> {
     }
 }
 
-/// `number` with the minus sign of a printed text, and without that of a zero.
+/// Returns `number` with a typographic minus sign, and without a sign before zero.
 fn with_minus(number: String) -> String {
     without_minus_zero(number).replace('-', "−")
 }

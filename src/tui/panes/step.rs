@@ -1,5 +1,7 @@
-//! One time step taken apart, a phase a page: what happens, the formula, the numbers of this step, what they change, and
-//! where that is to be seen. The numbers are those that made the step: only the angle by which L turns is computed here.
+//! The step pane: one time step, one phase per page. A page has the explanation, the formula, the numbers of this step,
+//! their effect, and where the 3-D view shows it.
+//!
+//! The numbers are those of the step itself. Only the angle by which L turns is computed here.
 
 mod numbers;
 mod page;
@@ -26,12 +28,12 @@ use std::cmp::Ordering;
 
 /// Columns between the names of two phases.
 const PHASE_GAP: usize = 2;
-/// The z of L has stayed where it has changed by less than this share of L: by rounding alone.
+/// Maximum change of L_z, as a fraction of L, that counts as rounding.
 const SAME_HEIGHT: f64 = 1e-12;
 
-/// The rank of numbers that are less important while the rows of a table are added up.
+/// Rank of less important numbers while the rows of a table are added up.
 const ASIDE: u8 = 10;
-/// A point of the rim with this number or a larger one is named by its number alone, since there is no room for more.
+/// Number from which a point of the rim has no other name than its number, because the column is too narrow.
 const SHORT_NAMES_FROM: usize = 1000;
 
 pub const STEP_ROW: PaneRow = PaneRow {
@@ -74,7 +76,7 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     }
 }
 
-/// What stands on the rule at the left and at the right: the step, and which of its phases the page is about.
+/// Returns the texts on the rule, left and right: the step, and the phase of the page.
 fn titles(lab: &Lab) -> (String, String) {
     let Some(explained) = lab.step_pane().shown() else {
         return (STEP_ROW.title.to_owned(), String::new());
@@ -87,7 +89,7 @@ fn titles(lab: &Lab) -> (String, String) {
     (format!("step {} → {step}", step - 1), place)
 }
 
-/// What is to be done where there is no step to take apart.
+/// Tells the user how to get a step that can be explained.
 fn nothing_yet(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let player = lab.player();
     let texts: [&str; 2] = if player.step_number() == 0 {
@@ -111,18 +113,19 @@ fn nothing_yet(lab: &Lab, area: Rect, buf: &mut Buffer) {
     page::draw(&sections, area, &lab.view().theme, buf);
 }
 
+/// A page about a phase.
 struct PhasePage<'a> {
     explained: &'a StepWorkings,
     phase: &'a Phase,
     number: usize,
-    /// What the user's program does otherwise, in words, and its numbers of the phase.
+    /// Description of the slip in the user's program, and that program's numbers for the phase.
     trial: Option<(&'a str, Vec<WorkedQuantity>)>,
     view: &'a View,
     width: usize,
 }
 
 impl PhasePage<'_> {
-    /// Its sections, for `room` lines.
+    /// Returns the sections of the page for `room` lines.
     fn sections(&self, room: usize) -> Vec<StepPageSection> {
         let [happens, changes, seen] = words_of(self.phase.name);
         let text =
@@ -150,8 +153,9 @@ impl PhasePage<'_> {
         sections
     }
 
-    /// All phases in one row: those that are done, the present one, and those to come. Where there is no room for their names
-    /// the others have their numbers.
+    /// Returns all phases in one row: the finished ones, the present one, and those to come.
+    ///
+    /// If there is no room for all names, only the present phase has a name, and the others have numbers.
     fn list(&self) -> StepPageSection {
         let phases: Vec<_> = self.explained.workings.phases().zip(1..).collect();
         let named = |phase: &Phase, number: usize| format!("{number} {}", short_name(phase.name));
@@ -167,14 +171,14 @@ impl PhasePage<'_> {
                 _ => (number.to_string(), role_beside(number, self.number)),
             })
             .collect();
-        // The first ones give way until the present one is in view.
+        // The first ones are dropped until the present one is visible.
         while columns_until_present(&items) > self.width && items.len() > 1 {
             items.remove(0);
         }
         let mut line = StepPageLine::default();
         let mut at = 0;
         for (text, role) in items {
-            // The blanks beside the present one are a part of the gap.
+            // The blanks around the present one are part of the gap.
             let blank = usize::from(role == Role::Selected);
             let begin = at - blank.min(at);
             at = begin + columns(&text) + PHASE_GAP - blank;
@@ -183,7 +187,7 @@ impl PhasePage<'_> {
         StepPageSection::new(2, vec![line])
     }
 
-    /// The part of the step to which the phase belongs; empty where there is only one.
+    /// Returns a text on the part of the step to which the phase belongs; empty if the step has only one part.
     fn part(&self) -> String {
         let parts = &self.explained.workings.parts;
         let mut phases = 0;
@@ -199,7 +203,7 @@ impl PhasePage<'_> {
         format!("part {number} of {count} of the step, which is {length_s} s long")
     }
 
-    /// What the phase has made of L, in words; empty where it leaves L as it is.
+    /// Returns the effect of the phase on L in words; empty if the phase does not change L.
     fn outcome(&self) -> String {
         let [old, new] = ["L", "new L"].map(|symbol| match self.phase.value(symbol) {
             Some(WorkedValue::Vector(vector)) => Some(*vector),
@@ -222,7 +226,7 @@ impl PhasePage<'_> {
         }
     }
 
-    /// A section of `text` after `label`.
+    /// Returns a section with `label` before `text`.
     fn labelled(&self, rank: u8, label: &str, text: &str) -> StepPageSection {
         let column = label.len() + 2;
         let mut section =
@@ -237,12 +241,12 @@ impl PhasePage<'_> {
         section
     }
 
-    /// The numbers of the phase. Tables have their fewest lines.
+    /// Returns the numbers of the phase. Tables have their minimum number of lines.
     fn quantities(&self) -> Vec<StepPageSection> {
         let all = &self.phase.quantities;
         let format = CellFormat::of_vectors(self.width);
         let adds_up = self.sum().is_some();
-        // While points are added up, the quantities that are made of the full sums are less important.
+        // While points are added up, quantities computed from the full sums are less important.
         let is_aside = |quantity: &WorkedQuantity| adds_up && is_made_of_sums(self.phase, quantity);
         let has_heads = |quantity: &&WorkedQuantity| {
             matches!(
@@ -281,7 +285,7 @@ impl PhasePage<'_> {
         sections
     }
 
-    /// Where the step takes the traced point, in the run and in the user's program, where that has a slip.
+    /// Returns the traced point after the step, in the run and in the user's program, if that has a slip.
     fn traced(&self, heads: Option<StepPageSection>, format: CellFormat) -> Vec<StepPageSection> {
         let (scenario, (_, after)) = (&self.explained.scenario, &self.explained.states);
         let at = position(&scenario.body.mechanics, after, scenario.trace);
@@ -293,7 +297,7 @@ impl PhasePage<'_> {
         heads.into_iter().chain([own, yours]).collect()
     }
 
-    /// The numbers of the user's program in place of `quantity`, or that they are the same.
+    /// Returns the user's program's numbers for `quantity`, or a note that they are the same.
     fn yours(&self, quantity: &WorkedQuantity, format: CellFormat) -> Option<StepPageSection> {
         let (_, numbers) = self.trial.as_ref()?;
         let yours = numbers.iter().find(|it| it.symbol == quantity.symbol)?;
@@ -314,7 +318,7 @@ impl PhasePage<'_> {
         Some(StepPageSection::new(1, lines))
     }
 
-    /// How many rows are added up, and their sums.
+    /// Returns the number of rows that are added up, and their sums.
     fn sum(&self) -> Option<(usize, Vec<f64>)> {
         let table = table_of(self.phase)?;
         let rows = self.view.look.sum_to?.min(table.points.len());
@@ -324,7 +328,8 @@ impl PhasePage<'_> {
         ))
     }
 
-    /// The lines of the table that is the quantity of this index: `room` lines, or its fewest where that is more.
+    /// Returns the lines of the table with this index among the quantities: `room` lines, or its minimum if that is
+    /// more.
     fn table(&self, index: usize, room: usize) -> Vec<StepPageLine> {
         let WorkedValue::Table(table) = &self.phase.quantities[index].value else {
             return Vec::new();
@@ -340,7 +345,7 @@ impl PhasePage<'_> {
         view.lines(room.max(view.least()))
     }
 
-    /// Gives the tables the lines that are left.
+    /// Gives the remaining lines to the tables.
     fn fill_tables(&self, sections: &mut [StepPageSection], room: usize) {
         let mut left = room.saturating_sub(page::height(sections));
         for section in sections {
@@ -353,7 +358,7 @@ impl PhasePage<'_> {
     }
 }
 
-/// The look of the phase `number` beside the `present` one: whether it is done, or to come.
+/// Returns the role of the name of phase `number` next to the `present` one: finished or to come.
 const fn role_beside(number: usize, present: usize) -> Role {
     if number < present {
         Role::Text
@@ -362,13 +367,13 @@ const fn role_beside(number: usize, present: usize) -> Role {
     }
 }
 
-/// Columns of the phases up to the present one.
+/// Returns the columns of the phases up to the present one.
 fn columns_until_present(items: &[(String, Role)]) -> usize {
     let shown = items.iter().take_while(|(_, role)| *role != Role::Label);
     shown.map(|(text, _)| columns(text) + PHASE_GAP).sum()
 }
 
-/// The name of a phase in one or two words.
+/// Returns the name of a phase in one or two words.
 const fn short_name(name: PhaseName) -> &'static str {
     match name {
         PhaseName::Inertia => "inertia",
@@ -393,7 +398,7 @@ const fn short_name(name: PhaseName) -> &'static str {
     }
 }
 
-/// What the chosen point adds to the sums of the table, written out; `None` where no point is chosen.
+/// Returns the contribution of the chosen point to the sums of the table, written out, or `None` if no point is chosen.
 pub(super) fn about_point(lab: &Lab) -> Option<String> {
     let view = lab.view();
     let shown = lab.step_pane().shown();
@@ -424,7 +429,7 @@ pub(super) fn about_point(lab: &Lab) -> Option<String> {
     Some(format!("{name}: {of_x}, {of_y}"))
 }
 
-/// What the program of `trial` does otherwise, in words, and its numbers of `phase` in its step `step`.
+/// Returns the description of the slip in `trial`, and its numbers of `phase` in the time step `step`.
 fn trial_of<'a>(
     trial: &'a SlipTrial,
     step: u64,
@@ -435,13 +440,13 @@ fn trial_of<'a>(
     Some((&trial.words, of_phase.map(|(_, it)| it).collect()))
 }
 
-/// Whether `quantity` of `phase` is made of the sums over the table's rows.
+/// Returns true if `quantity` of `phase` is computed from the sums over the table's rows.
 fn is_made_of_sums(phase: &Phase, quantity: &WorkedQuantity) -> bool {
     let table = table_of(phase);
     table.is_some_and(is_summed) && matches!(quantity.symbol, "S" | "I" | "Σ m X")
 }
 
-/// The name of the point of this index; a point of the rim has its number on the rim.
+/// Returns the name of the point with this index. A point of the rim has its number on the rim.
 pub(super) fn name_of(scenario: &Scenario, point: usize) -> String {
     match scenario.point_name(point) {
         Some(name) => name,
@@ -450,8 +455,8 @@ pub(super) fn name_of(scenario: &Scenario, point: usize) -> String {
     }
 }
 
-/// Returns what happens in the phase, what it changes and what for, and where that is to be seen in the 3-D view: empty where
-/// nothing is.
+/// Returns three texts on a phase: the explanation, the quantity that it changes and its purpose, and where the 3-D
+/// view shows it. A text is empty if there is nothing to say.
 #[rustfmt::skip]
 const fn words_of(phase: PhaseName) -> [&'static str; 3] {
     match phase {

@@ -1,8 +1,8 @@
-//! The scene in space: a wheel with masses on an axle whose foot stands on a floor, the path of the axle's top, and the
-//! arrows of L, of the angular velocity and of the torque.
+//! The 3-D view: a wheel with masses on an axle whose foot is on a floor, the path of the axle's top, and the arrows of
+//! L, angular velocity and torque.
 //!
-//! The arrows begin at the pivot and are drawn beside the axle, so that they do not cover it. The torque begins at the
-//! tip of L: it shows where L goes. Lengths of arrows show directions only.
+//! L and the angular velocity begin at the pivot and are drawn next to the axle, so that they do not cover it. The
+//! torque begins at the tip of L and shows where L moves. The lengths of arrows have no meaning.
 
 mod arrows;
 mod body;
@@ -32,27 +32,27 @@ use ratatui::layout::Rect;
 use ratatui::widgets::Widget;
 use std::f64::consts::TAU;
 
-/// The least length of the axle as a unit of arrows, as a share of the body's size.
+/// Minimum length of the axle as the unit of arrows, as a fraction of the body's size.
 const LEAST_ARM: f64 = 0.7;
-/// A torque smaller than this share of the largest torque of the weight counts as zero.
+/// Torques smaller than this fraction of the weight's maximum torque count as zero.
 const NO_TORQUE: f64 = 1e-9;
-/// The torque whose arrow has its full length, as a share of the largest torque of the weight.
+/// Torque whose arrow has its full length, as a fraction of the weight's maximum torque.
 const FULL_TORQUE: f64 = 0.35;
 const CIRCLE_PARTS: usize = 72;
 
-/// Panes with fewer columns have no axes on the floor and no shadow.
+/// Minimum columns for axes on the floor and a shadow.
 const SMALL_COLUMNS: u16 = 32;
-/// Panes with more rows have larger masses and arrows' heads.
+/// Maximum rows of a pane with small masses and arrowheads.
 const LARGE_ROWS: u16 = 20;
-/// From so many rows and columns on, the last row says what the letters mean.
+/// Minimum rows and columns for a legend in the last row.
 const LEGEND_ROWS: u16 = 17;
 const LEGEND_COLUMNS: u16 = 48;
 /// Columns between two words of the legend.
 const LEGEND_WORD_GAP: u16 = 2;
 
-/// The path in space is that of so many swings, if the run has more of them.
+/// Number of swings of the path in space, if the run has more.
 const SWINGS: f64 = 2.2;
-/// The longest line between two places of a path, of the sheet's shorter side.
+/// Longest line between two points of a path, as a fraction of the sheet's shorter side.
 const LONGEST_LINE: f64 = 0.5;
 const FLOOR_DASHES: Dashes = (1, 3);
 const AXIS_DASHES: Dashes = (1, 2);
@@ -68,6 +68,7 @@ pub const THREE_D_ROW: PaneRow = PaneRow {
     arrows: Some(|lab, direction, times| one(lab.view().turned(direction, times))),
 };
 
+/// The 3-D view, as a widget.
 pub struct ThreeD<'a>(pub PlotInputs<'a>);
 
 impl Widget for ThreeD<'_> {
@@ -86,7 +87,7 @@ impl Widget for ThreeD<'_> {
     }
 }
 
-/// The area of the picture in a pane on `area`: below its rule, and above its legend where there is one.
+/// Returns the area of the picture in a pane on `area`: below its rule, and above its legend if there is one.
 fn below(area: Rect) -> Rect {
     let inside = super::below_rule(area);
     let has_legend = inside.height >= LEGEND_ROWS && inside.width >= LEGEND_COLUMNS;
@@ -94,7 +95,7 @@ fn below(area: Rect) -> Rect {
     split_rows(inside, inside.height - legend)[0]
 }
 
-/// The run at the time of the picture, and where everything is on the sheet.
+/// The run at the time of the picture, with the projection onto the sheet.
 struct Scene<'a> {
     seen: PlotInputs<'a>,
     picture: Rect,
@@ -103,18 +104,19 @@ struct Scene<'a> {
     state: &'a State,
     position: Vector3<f64>,
     shape: DrawnBody,
-    /// The size of the body, m.
+    /// Size of the body, m.
     reach: f64,
-    /// The length of the axle, m: the unit of the arrows' lengths.
+    /// Length of the axle, m: the unit of the arrows' lengths.
     arm: f64,
     /// Height of the floor, m.
     floor_z: f64,
     /// Radius of the circle on the floor, m.
     floor_radius: f64,
-    /// The torque of all forces about the pivot, and that with friction's, if there is one.
+    /// Torque of all forces about the pivot, as a fraction of the full length of its arrow; `None` if zero.
     torque: Option<Vector3<f64>>,
+    /// The same including friction.
     change: Option<Vector3<f64>>,
-    /// The phase that the step pane shows, if that is on the screen.
+    /// Phase on the page of the step pane, if that pane is visible.
     phase: Option<StepArrows<'a>>,
 }
 
@@ -159,7 +161,7 @@ impl<'a> Scene<'a> {
         self.picture.height > LARGE_ROWS
     }
 
-    /// The place of `point` (world frame, m) on the sheet.
+    /// Returns the position of `point` (world frame, m) on the sheet.
     fn dot(&self, point: &Vector3<f64>) -> FineDot {
         self.plane.dot(self.camera.project(point))
     }
@@ -187,7 +189,7 @@ impl<'a> Scene<'a> {
         self.label_floor(&mut sheet);
     }
 
-    /// The floor, the post that carries the pivot, and what lies below the path.
+    /// Draws the floor, the post that carries the pivot, and the shadow of the path.
     fn floor(&self, dots: &mut LayeredDots) {
         let floor = ink(Role::Floor, Layer::Ground);
         let circle = (0..=CIRCLE_PARTS).map(|part| {
@@ -219,7 +221,7 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// The ends of x and y on the floor.
+    /// Returns the ends of the x and y axes on the floor.
     fn floor_axes(&self) -> [Vector3<f64>; 2] {
         [
             Vector3::new(self.floor_radius, 0.0, self.floor_z),
@@ -237,14 +239,14 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// Whether the pivot carries a weight that is off it, so that a post is seen under it.
+    /// Returns true if the pivot carries a weight off the pivot, so that a post is drawn under it.
     fn stands(&self) -> bool {
         let body = &self.seen.run.scenario().body.mechanics;
         let weight = self.seen.run.simulation().loads().gravity.abs() * body.first_moment().norm();
         weight > 0.0
     }
 
-    /// The time from which on paths are drawn, s.
+    /// Returns the time from which paths are drawn, s.
     fn since_s(&self) -> f64 {
         let now_s = self.state.time_s;
         let since_s = self.seen.bright_since_s(now_s);
@@ -256,7 +258,7 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// The places of the traced point in `recording` while paths are drawn.
+    /// Returns the positions of the traced point in `recording` during the drawn part of the paths.
     fn bins(&self, recording: &'a Recording) -> impl Iterator<Item = Vector3<f64>> {
         let (since_s, now_s) = (self.since_s(), self.state.time_s);
         let bins = recording.between(since_s, now_s);
@@ -280,7 +282,7 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// The paths of the previous run and of the pinned one, and a line from the pivot to each of them now.
+    /// Draws the paths of the previous and the pinned run, and a line from the pivot to the end of each.
     fn other_runs(&self, dots: &mut LayeredDots) -> Vec<SpaceLabel> {
         let others = [
             (self.seen.ghost, "previous", dots::PREVIOUS_DASHES),
@@ -303,7 +305,7 @@ impl<'a> Scene<'a> {
         labels
     }
 
-    /// The traced point, and where the exact motion has it.
+    /// Draws the traced point of the run and of the exact motion.
     fn tops(&self, dots: &mut LayeredDots) {
         let spot = if self.is_large() {
             Spot::Five
@@ -319,8 +321,9 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// The torque of all forces about the pivot at `state`, and that with friction's, as shares of the largest torque of the
-/// weight; `None` if it is zero.
+/// Returns the torque of all forces about the pivot at `state`, without and with friction.
+///
+/// They are relative to [`FULL_TORQUE`] times the weight's maximum torque, at most 1 in length; `None` if zero.
 fn torques(run: &LiveRun, state: &State) -> [Option<Vector3<f64>>; 2] {
     let (loads, body) = (run.simulation().loads(), &run.scenario().body.mechanics);
     let torque = loads::torque(&state.orientation, &loads.moment(body));

@@ -1,5 +1,5 @@
-//! The traced point over time: a strip each for x, y and z, all over the same window of time, and a fourth strip where
-//! there is room or where one was chosen. The overview below the panes shows the whole run.
+//! The traces: the traced point over time, with one strip for each of x, y and z over the same window. A fourth strip
+//! is shown if there is room or if one was chosen. The overview below the panes shows the whole run.
 
 mod axis;
 pub mod canvas;
@@ -25,12 +25,12 @@ use ratatui::layout::{Position, Rect};
 use ratatui::widgets::Widget;
 pub(super) use strip::{EDIT_MARK, PUSH_BAR, cursor_line};
 
-/// Columns of dots for a swing, and the fewest swings that are shown: of small dots, and of dots as wide as a cell.
+/// Columns of dots per swing, and the minimum number of swings: for small dots, and for dots as wide as a cell.
 const SMALL_DOTS: (usize, usize) = (10, 4);
 const LARGE_DOTS: (usize, usize) = (8, 2);
-/// Fewest rows of a strip: its rule, and one of its curves.
+/// Minimum rows of a strip: its rule, and one row of its curves.
 const LEAST_STRIP_ROWS: u16 = 2;
-/// Columns of ticks beside a strip, about.
+/// Approximate columns of ticks next to a strip.
 const USUAL_GUTTER: usize = 7;
 
 pub const TRACES_ROW: PaneRow = PaneRow {
@@ -51,7 +51,7 @@ pub const TRACES_ROW: PaneRow = PaneRow {
     }),
 };
 
-/// Returns how many swings the traces can show where they are `width` columns wide.
+/// Returns how many swings the traces can show on `width` columns.
 pub fn swings(width: u16, marker: Marker) -> usize {
     let across = marker.dots().0;
     let (columns, fewest) = if across > 1 { SMALL_DOTS } else { LARGE_DOTS };
@@ -59,18 +59,19 @@ pub fn swings(width: u16, marker: Marker) -> usize {
     (dots / columns).clamp(fewest, USUAL_SWINGS)
 }
 
+/// The traces, as a widget.
 pub struct Traces<'a>(pub PlotInputs<'a>);
 
-/// A strip in its place.
+/// A strip with its area.
 struct Plot {
     content: StripContent,
-    /// Whether it shows measured values less those of the run.
+    /// True if it shows measured values minus those of the run.
     is_residual: bool,
     strip: Strip,
     scale: StripScale,
-    /// Its rule, and below that its curves and ticks.
+    /// Area of the rule and, below it, of the curves and ticks.
     area: Rect,
-    /// Where its curves are.
+    /// Area of the curves.
     sheet: Rect,
 }
 
@@ -97,7 +98,7 @@ impl Widget for Traces<'_> {
 }
 
 impl Traces<'_> {
-    /// Returns the strips that there is room for on `area`, above the axis of time, and the columns of their ticks.
+    /// Returns the strips that fit on `area`, above the time axis, and the columns of their ticks.
     fn plots(&self, area: Rect) -> (Vec<Plot>, Gutter) {
         let [strips, _] = split_rows(area, area.height.saturating_sub(1));
         let contents = if strips.height < LEAST_STRIP_ROWS {
@@ -116,7 +117,7 @@ impl Traces<'_> {
         let mut rest = strips;
         let mut plots = Vec::with_capacity(contents.len());
         for (index, (content, is_residual)) in contents.iter().enumerate() {
-            // The rows that are left over go to the lowest strips.
+            // Rows left over go to the lowest strips.
             let left = (contents.len() - index) as u16;
             let [place, below] = split_rows(rest, rest.height / left);
             rest = below;
@@ -137,7 +138,7 @@ impl Traces<'_> {
         (plots, gutter)
     }
 
-    /// Returns the time that the cell `at` of the screen shows where the traces are drawn on `area`, s; `None` beside the
+    /// Returns the time at the cell `at` of the screen if the traces are drawn on `area`, s. Returns `None` beside the
     /// strips.
     pub fn time_s(&self, area: Rect, at: Position) -> Option<f64> {
         let (plots, _) = self.plots(area);

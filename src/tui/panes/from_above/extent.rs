@@ -1,7 +1,7 @@
-//! What the picture from above shows: the origin, the run, and the motion that theory predicts.
+//! The extent of the picture from above: the origin, the run, and the motion predicted by theory.
 //!
-//! It does not change while the run keeps to theory. Else it grows in steps and never shrinks, because every change of the
-//! scale redraws the whole picture.
+//! It does not change while the run agrees with theory. Otherwise it grows in steps and never shrinks, because every
+//! change of the scale redraws the whole picture.
 
 use super::super::PlotInputs;
 use super::super::gravity_motion::{gravity_motion, predicted_tilts_deg};
@@ -10,23 +10,23 @@ use crate::engine::scenario::Scenario;
 use nalgebra::{Vector2, Vector3};
 use std::f64::consts::TAU;
 
-/// A picture of a point that stays on the vertical shows at least this to each side, m.
+/// Minimum half size of a picture, for a point that stays on the vertical, m.
 const LEAST_HALF_M: f64 = 1e-6;
-/// A run that leaves the predicted motion by less than this share is inside the picture's margin.
+/// A run that exceeds the predicted motion by less than this fraction is inside the picture's margin.
 const MARGIN_SHARE: f64 = 0.02;
-/// The natural logarithm of the steps in which a side grows: 10 %.
+/// Natural logarithm of the factor by which a side grows: 10 %.
 const STEP: f64 = 0.0953;
 
-/// If gravity turns L by less than this in the whole run, rad, the path is a circle about L.
+/// Maximum rotation of L by gravity in the whole run for which the path is a circle about L, rad.
 const STEADY_MOMENTUM_RAD: f64 = 0.35;
-/// A point that is nearer to the axle than this share of its distance from the pivot is on it.
+/// A point counts as on the axle if it is nearer to it than this fraction of its distance from the pivot.
 const POINT_ON_AXLE: f64 = 1e-6;
-/// A motion with a smaller swing of the tilt, rad, is a circle.
+/// Maximum swing of the tilt for which a motion is a circle, rad.
 const CIRCLE_SWING_RAD: f64 = 0.01;
-/// A run that covers less of a turn than this does not show its circle.
+/// Minimum fraction of a turn for which a run shows its circle.
 const COVERED_TURN: f64 = 1.0 / 3.0;
 
-/// A rectangle around the origin, m.
+/// A rectangle that contains the origin, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlaneExtent {
     least: Vector2<f64>,
@@ -65,7 +65,7 @@ impl PlaneExtent {
         }
     }
 
-    /// The motion of the traced point as theory predicts it at the start, without pushes.
+    /// Returns the extent of the traced point's motion, predicted from the start without pushes.
     fn predicted(scenario: &Scenario) -> Self {
         let traced = scenario.body.mechanics.points()[scenario.trace].at;
         if !is_on_axle(&traced) {
@@ -81,7 +81,7 @@ impl PlaneExtent {
         Self::about(Vector2::zeros(), radius)
     }
 
-    /// The sides of `predicted`, each grown in steps as far as this extent reaches.
+    /// Returns the sides of `predicted`, each grown in steps to contain this extent.
     fn in_steps(&self, predicted: &Self, arm_m: f64) -> Self {
         let grown = |reached, theory| side_in_steps(reached, theory, arm_m);
         Self {
@@ -94,13 +94,13 @@ impl PlaneExtent {
         0.5 * (self.least + self.most)
     }
 
-    /// Half of its width and height, m.
+    /// Returns half the width and height, m.
     pub fn half(&self) -> Vector2<f64> {
         (0.5 * (self.most - self.least)).map(|half| half.max(LEAST_HALF_M))
     }
 }
 
-/// The side of an extent, m: `theory`, grown in steps until the motion, which reached so far, is inside.
+/// Returns a side of an extent, m: `theory`, grown in steps until it contains `reached`.
 fn side_in_steps(reached: f64, theory: f64, arm_m: f64) -> f64 {
     if reached <= theory * (1.0 + MARGIN_SHARE) {
         return theory;
@@ -109,7 +109,7 @@ fn side_in_steps(reached: f64, theory: f64, arm_m: f64) -> f64 {
     base * libm::exp((libm::log(reached / base) / STEP).ceil() * STEP)
 }
 
-/// The radius of the circle that theory predicts, m, where the run covers too little of it to show it.
+/// Returns the radius of the circle predicted by theory, m, if the run is too short to show the circle.
 pub fn predicted_circle(scenario: &Scenario) -> Option<f64> {
     let traced = scenario.body.mechanics.points()[scenario.trace].at;
     let is_left_alone = scenario.pushes.is_empty() && scenario.edits.is_empty();
@@ -123,8 +123,9 @@ pub fn predicted_circle(scenario: &Scenario) -> Option<f64> {
     (is_circle && turn < COVERED_TURN).then(|| traced.norm() * libm::sin(high))
 }
 
-/// The circle about L that the traced point draws, from above: its middle and its radius, m. `None` if gravity turns L
-/// noticeably within the run.
+/// Returns the circle about L that the traced point describes, from above: middle and radius, m.
+///
+/// Returns `None` if gravity turns L noticeably within the run.
 fn circle_about_momentum(scenario: &Scenario) -> Option<(Vector2<f64>, f64)> {
     let momentum = scenario.start.momentum;
     let axis = momentum.try_normalize(f64::MIN_POSITIVE)?;
@@ -135,7 +136,7 @@ fn circle_about_momentum(scenario: &Scenario) -> Option<(Vector2<f64>, f64)> {
     let middle = axis * axis.dot(&start);
     let radius = (start - middle).norm();
     let is_steady = is_left_alone && turn < STEADY_MOMENTUM_RAD;
-    // A point on the line of L does not circle about it: it goes where gravity turns L.
+    // A point on the line of L does not circle about L: it moves with L, which gravity turns.
     let circles = radius > turn * start.norm() && middle.xy().norm() > 0.0;
     (is_steady && circles).then(|| (middle.xy(), radius))
 }

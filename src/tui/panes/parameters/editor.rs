@@ -1,4 +1,5 @@
-//! The values of the scenario: those that matter most, or in focus the whole list with one of them selected.
+//! The values of the scenario: the most important ones or, while the pane has the focus, the whole list with a
+//! selection.
 
 use super::{ListPlace, ValuesPane, with_minus};
 use crate::engine::analysis::readouts::four_digits;
@@ -20,7 +21,7 @@ const FIELD: u16 = 7;
 const GAP: u16 = 2;
 /// Columns of the longest number that is not rounded.
 const MOST_DIGITS: usize = 12;
-/// In fewer columns a heading is short.
+/// Minimum width for a long heading, columns.
 const LONG_HEADING_FROM: u16 = 27;
 
 pub(super) struct Editor<'p, 'a> {
@@ -33,9 +34,9 @@ pub(super) struct Editor<'p, 'a> {
 enum EditorRow<'a> {
     Blank,
     Heading(&'a str),
-    /// A value, its number in the list, and whether it is selected.
+    /// A value, its number in the list, and true if it is selected.
     Value(&'a ListedValue, usize, bool),
-    /// No value answers the search.
+    /// Message that no value matches the search.
     Nothing,
 }
 
@@ -49,7 +50,7 @@ impl EditorRow<'_> {
     }
 }
 
-/// Rows of the first group of the values that are always shown, its heading included.
+/// Returns the rows of the first group of values that are always shown, including its heading.
 pub(super) fn main_rows(list: &ValueList) -> u16 {
     let first = list
         .values
@@ -65,7 +66,7 @@ impl Editor<'_, '_> {
         }
     }
 
-    /// Returns the number, in the list of values, of the one at `at`.
+    /// Returns the number, in the list of values, of the value at the cell `at`.
     pub(super) fn value_at(&self, at: Position) -> Option<usize> {
         let mut rows = self.rows().into_iter();
         let (_, row) = rows.find(|(place, _)| place.contains(at))?;
@@ -75,7 +76,7 @@ impl Editor<'_, '_> {
         }
     }
 
-    /// The rows that are shown, each with its place.
+    /// Returns the visible rows, each with its area.
     fn rows(&self) -> Vec<(Rect, EditorRow<'_>)> {
         let ListPlace { area, columns, .. } = self.place;
         if area.is_empty() || columns == 0 {
@@ -100,7 +101,7 @@ impl Editor<'_, '_> {
         rows
     }
 
-    /// The values that are always shown, as many as there is room for.
+    /// Returns as many of the main values as fit.
     fn most_important(&self, height: usize) -> Vec<Vec<EditorRow<'_>>> {
         let values = self.pane.list.values.iter().enumerate();
         let mut groups = MAIN_GROUPS.map(|group| {
@@ -114,22 +115,22 @@ impl Editor<'_, '_> {
                 .iter_mut()
                 .zip(MAIN_GROUPS)
                 .map(|(group, heading)| {
-                    with_heading(heading, leave_out(group, height.saturating_sub(1)))
+                    with_heading(heading, keep_best(group, height.saturating_sub(1)))
                 })
                 .collect();
         }
         let [start, body] = &mut groups;
-        let mut rows = with_heading(MAIN_GROUPS[0], leave_out(start, height.saturating_sub(1)));
-        // With a blank row and its heading.
+        let mut rows = with_heading(MAIN_GROUPS[0], keep_best(start, height.saturating_sub(1)));
+        // Leave room for a blank row and a heading.
         let left = height.saturating_sub(rows.len() + 2);
         if left >= 2 && !body.is_empty() {
             rows.push(EditorRow::Blank);
-            rows.extend(with_heading(MAIN_GROUPS[1], leave_out(body, left)));
+            rows.extend(with_heading(MAIN_GROUPS[1], keep_best(body, left)));
         }
         vec![rows]
     }
 
-    /// All values that answer the search, as many as there is room for around the selected one.
+    /// Returns the values that match the search, as many as fit around the selected one.
     fn in_focus(&self, height: usize) -> Vec<Vec<EditorRow<'_>>> {
         let list = self.pane.list;
         let shown = list.shown();
@@ -179,7 +180,8 @@ impl Editor<'_, '_> {
         }
     }
 
-    /// A rule with `heading`; on the first one the key that finds a value, or in focus the place of the selected value.
+    /// Draws a rule with `heading`. At its right it has the key that finds a value, or the number of the selected value
+    /// if the pane has the focus.
     fn heading(&self, heading: &str, area: Rect, buf: &mut Buffer) {
         let pane = self.pane;
         let title = match heading {
@@ -246,7 +248,7 @@ impl Editor<'_, '_> {
         );
     }
 
-    /// The field in which the selected value is typed: the end of its text, with the cursor.
+    /// Draws the field of the edited value: the end of its text, with the cursor.
     fn field(&self, field: &InputField, area: Rect, buf: &mut Buffer) {
         let style = self.pane.view.theme.style(Role::Selected);
         let blank = " ".repeat(area.width.into());
@@ -264,7 +266,7 @@ impl Editor<'_, '_> {
     }
 }
 
-/// The number of the selected value among those that are shown.
+/// Returns the number of the selected value among the visible ones, and their count.
 fn place_in_list(list: &ValueList) -> String {
     let shown = list.shown();
     let at = shown
@@ -273,7 +275,7 @@ fn place_in_list(list: &ValueList) -> String {
     format!("{} of {}", at.map_or(0, |at| at + 1), shown.len())
 }
 
-/// A value and its number in the list.
+/// A value with its number in the list.
 type NumberedValue<'a> = (usize, &'a ListedValue);
 
 fn with_heading<'a>(heading: &'a str, values: &[NumberedValue<'a>]) -> Vec<EditorRow<'a>> {
@@ -285,8 +287,8 @@ fn with_heading<'a>(heading: &'a str, values: &[NumberedValue<'a>]) -> Vec<Edito
         .collect()
 }
 
-/// Leaves out values of the highest rank until there is `room` for the others.
-fn leave_out<'v, 'a>(
+/// Removes values of the highest rank until the rest fit in `room`.
+fn keep_best<'v, 'a>(
     values: &'v mut Vec<NumberedValue<'a>>,
     room: usize,
 ) -> &'v [NumberedValue<'a>] {
@@ -299,7 +301,8 @@ fn leave_out<'v, 'a>(
     values
 }
 
-/// `rows` in at most `most` columns of at most `height` that begin with a heading; `None` if there is no room for that.
+/// Returns `rows` in at most `most` columns of at most `height` that each begin with a heading. Returns `None` if they
+/// do not fit.
 fn by_group<'a>(
     rows: &[EditorRow<'a>],
     height: usize,
@@ -318,7 +321,7 @@ fn by_group<'a>(
     fits.then_some(columns)
 }
 
-/// `rows` below the heading of the first, unless that is a heading itself.
+/// Returns `rows` below the heading of the first value, unless the first is a heading itself.
 fn with_own_heading<'a>(rows: &[EditorRow<'a>]) -> Vec<EditorRow<'a>> {
     let heading = rows.first().and_then(|first| match first {
         EditorRow::Value(value, ..) => Some(EditorRow::Heading(&value.group)),
@@ -327,7 +330,7 @@ fn with_own_heading<'a>(rows: &[EditorRow<'a>]) -> Vec<EditorRow<'a>> {
     heading.into_iter().chain(rows.iter().copied()).collect()
 }
 
-/// The `room` rows around the selected one, with the heading of its group.
+/// Returns the `room` rows around the selected one, with the heading of its group.
 fn around_selected<'a>(rows: &[EditorRow<'a>], room: usize) -> Vec<EditorRow<'a>> {
     let selected = rows.iter().position(EditorRow::is_selected).unwrap_or(0);
     let most = rows.len().saturating_sub(room);
@@ -345,7 +348,7 @@ fn around_selected<'a>(rows: &[EditorRow<'a>], room: usize) -> Vec<EditorRow<'a>
     shown
 }
 
-/// The text of `value` on at most `room` columns: all digits that were given if there is room for them, else four.
+/// Returns the text of `value` on at most `room` columns: all given digits if they fit, else four.
 fn shown_text(value: &ListedValue, room: usize) -> String {
     let text = on_one_line(&value.text);
     let field = room.min(MOST_DIGITS);
@@ -356,7 +359,7 @@ fn shown_text(value: &ListedValue, room: usize) -> String {
     }
 }
 
-/// `text` on one line and printable.
+/// Returns `text` on one line and printable.
 fn on_one_line(text: &str) -> String {
     printable(&text.replace('\n', " ")).into_owned()
 }

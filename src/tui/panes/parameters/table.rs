@@ -1,4 +1,4 @@
-//! The table: what the run and the exact motion are, in one unit beside each other.
+//! The table of readouts of the run and of the exact motion, side by side in the same units.
 
 use super::{ValuesPane, with_minus};
 use crate::engine::analysis::readouts::{Readout, ShownValue, ValueGroup, ValueRow, value_rows};
@@ -11,11 +11,11 @@ use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-/// From this width on the table has two further columns.
+/// Minimum width for two further columns.
 const FURTHER_COLUMNS_FROM: u16 = 50;
-/// From this width on labels are long, and numbers have all their decimals.
+/// Minimum width for long labels and for numbers with all their decimals.
 const LONG_FROM: u16 = 28;
-/// From this width on a column has room for an uncertainty.
+/// Minimum width of a column for an uncertainty.
 const UNCERTAINTY_FROM: usize = 11;
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -31,13 +31,13 @@ pub(super) struct ValueTable<'p, 'a> {
     pub(super) pane: &'p ValuesPane<'a>,
 }
 
-/// Columns of the labels, and of each number, in a table of two numbers on `width` columns.
+/// Returns the columns of the labels, and of each number, in a table of two numbers on `width` columns.
 pub(super) fn narrow_columns(width: u16) -> (u16, u16) {
     let numbers = if width < LONG_FROM { 7 } else { 8 };
     (width.saturating_sub(2 * numbers), numbers)
 }
 
-/// The fewest rows that the table should have, and the most that it can use in a narrow pane.
+/// Returns the minimum rows of the table, and the maximum rows that it can use in a narrow pane.
 pub(super) fn row_counts(pane: &ValuesPane<'_>) -> [u16; 2] {
     let rows = shown_rows(pane.searched());
     let least = rows.iter().filter(|(_, row)| row.rank == 0).count();
@@ -47,7 +47,7 @@ pub(super) fn row_counts(pane: &ValuesPane<'_>) -> [u16; 2] {
     [least as u16, now.count() as u16]
 }
 
-/// The rows that answer the search for `name`: all of them if it is empty.
+/// Returns the rows that match the search for `name`; all rows if it is empty.
 fn shown_rows(name: &str) -> Vec<(&'static Readout, ValueRow)> {
     let rows = [ValueGroup::Now, ValueGroup::SoFar]
         .map(value_rows)
@@ -60,7 +60,7 @@ fn shown_rows(name: &str) -> Vec<(&'static Readout, ValueRow)> {
     answers.collect()
 }
 
-/// The rows for which `height` has room, those of the highest rank left out.
+/// Returns the rows that fit in `height`, without those of the highest ranks.
 fn fitting_rows(name: &str, height: usize) -> Vec<(&'static Readout, ValueRow)> {
     let mut rows = shown_rows(name);
     while rows.len() > height {
@@ -105,7 +105,7 @@ impl ValueTable<'_, '_> {
         }
     }
 
-    /// Writes the heads of the columns on the rule, where the title leaves room.
+    /// Writes the heads of the columns on the rule, if the title leaves room.
     fn heads(
         &self,
         heads: &[Column],
@@ -156,7 +156,7 @@ impl ValueTable<'_, '_> {
         for (index, column) in shown.iter().enumerate() {
             let value = match column {
                 Column::Now | Column::Exact | Column::OffBy => Some(&now),
-                // A measured value is one of the whole run.
+                // A measured value belongs to the whole run, not to a time.
                 Column::AtCursor | Column::ExactAtCursor if is_wide && !row.is_of_moment() => None,
                 Column::AtCursor | Column::ExactAtCursor => at_cursor.as_ref(),
             };
@@ -169,8 +169,9 @@ impl ValueTable<'_, '_> {
         }
     }
 
-    /// The label of `row` in a column of this width: with its unit if there is room for both. The units of times and rates,
-    /// which change, are never left out: the label is cut.
+    /// Returns the label of `row` in a column of this width, with its unit if both fit.
+    ///
+    /// The units of times and rates change, so they are always shown, and the label is cut instead.
     fn label(
         &self,
         row: &ValueRow,
@@ -214,7 +215,7 @@ impl ValueTable<'_, '_> {
         value
     }
 
-    /// The text of a cell on at most `width` columns; `None` if it is empty.
+    /// Returns the text of a cell on at most `width` columns, or `None` if it is empty.
     fn cell(
         &self,
         column: Column,

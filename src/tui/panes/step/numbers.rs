@@ -1,5 +1,7 @@
-//! The numbers of a phase in columns: vectors and matrices of x, y and z, numbers by themselves, each with its unit; and
-//! a table of points, with the sum of the rows up to the chosen one below it. Only the rows that are drawn are read.
+//! The numbers of a phase in columns: vectors and matrices with x, y and z, single numbers, and tables of points, each
+//! with its unit.
+//!
+//! Below a table is the sum of its rows up to the chosen one. Only visible rows are computed.
 
 use super::super::shortened;
 use super::page::{StepPageLine, StepPageSection};
@@ -10,33 +12,36 @@ use crate::tui::theme::Role;
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
-/// Columns of the symbols, and of the units.
+/// Columns of the symbols.
 pub const SYMBOL: usize = 6;
+/// Columns of the units.
 const UNIT_WIDTH: usize = 6;
-/// Columns of a number besides its digits: sign, point, a zero before it, and a space.
+/// Columns of a number besides its digits: sign, decimal point, leading zero, and a space.
 const COLUMNS_BESIDE_DIGITS: usize = 4;
-/// The fewest and the most digits of a number.
+/// Minimum and maximum digits of a number.
 const CELL_DIGITS: std::ops::RangeInclusive<usize> = 3..=9;
-/// A number smaller than this part of the largest beside it is the rounding error of a zero: a few units in the last
-/// place of its terms.
+/// Fraction of the largest number of a group below which a number counts as the rounding error of a zero: a few units
+/// in the last place of its terms.
 const CELL_ROUNDING: f64 = 16.0 * f64::EPSILON;
-/// The text for such a number, which is not exactly zero.
+/// Text for such a number, which is not exactly zero.
 const ALMOST_ZERO: &str = "~0";
-/// A component that would show fewer digits than this is written with an exponent.
+/// Minimum digits of a component. With fewer, it is written with an exponent.
 const LEAST_DIGITS_SEEN: i32 = 3;
 
+/// Digits of a number of turns.
 const DIGITS_OF_TURNS: usize = 5;
 
+/// Format of the numbers in a group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CellFormat {
-    /// Columns of a number, with a space before it.
+    /// Columns of a number, including a space before it.
     pub cell: usize,
     /// Digits of the largest number of a vector, a matrix or a column.
     pub digits: usize,
 }
 
 impl CellFormat {
-    /// For `count` numbers side by side on `width` columns.
+    /// Creates the format for `count` numbers side by side on `width` columns.
     pub fn new(width: usize, count: usize) -> Self {
         let digits = (width / count.max(1))
             .saturating_sub(COLUMNS_BESIDE_DIGITS)
@@ -47,14 +52,16 @@ impl CellFormat {
         }
     }
 
-    /// For vectors between their symbols and their units on `width` columns.
+    /// Creates the format for vectors between their symbols and units on `width` columns.
     pub fn of_vectors(width: usize) -> Self {
         Self::new(width.saturating_sub(SYMBOL + UNIT_WIDTH), 3)
     }
 
-    /// `numbers` with as many decimals as the largest needs, each as wide as a cell, the decimal points in one column.
-    /// A number that is small beside the largest is written with an exponent, so that it does not look like zero; one
-    /// that is its rounding error is written as almost zero.
+    /// Returns `numbers` with the decimals that the largest one needs, each as wide as a cell, with aligned decimal
+    /// points.
+    ///
+    /// A number much smaller than the largest has an exponent, so that it does not look like zero. A number within the
+    /// rounding error is written as [`ALMOST_ZERO`].
     pub fn aligned(self, numbers: &[f64]) -> Vec<String> {
         let sizes = numbers.iter().map(|number| number.abs());
         let largest = sizes.filter(|size| size.is_finite()).fold(0.0, f64::max);
@@ -64,7 +71,7 @@ impl CellFormat {
             .collect()
     }
 
-    /// `number` beside others of which `largest` is the largest.
+    /// Returns the text of `number` in a group whose largest number is `largest`.
     fn one(self, number: f64, largest: f64) -> String {
         if !number.is_finite() {
             return NOT_AVAILABLE.to_owned();
@@ -84,7 +91,7 @@ impl CellFormat {
         if fits && seen >= LEAST_DIGITS_SEEN {
             format!("{number:.*}", decimals.unsigned_abs() as usize)
         } else {
-            // As many digits as leave room for the exponent.
+            // Use as many digits as the exponent leaves room for.
             let text = exponent(number, 0);
             let taken = columns(&text) + 2;
             exponent(number, self.cell.saturating_sub(taken).min(self.digits - 1))
@@ -92,7 +99,7 @@ impl CellFormat {
     }
 }
 
-/// The lines of `quantity`, which is no table; `is_result` says whether the phase was about it.
+/// Returns the lines of `quantity`, which is not a table. `is_result` is true for the result of the phase.
 pub fn lines(quantity: &WorkedQuantity, format: CellFormat, is_result: bool) -> Vec<StepPageLine> {
     let of_vector = role_of(quantity.symbol);
     let role = if is_result { of_vector } else { Role::Text };
@@ -125,7 +132,7 @@ pub fn lines(quantity: &WorkedQuantity, format: CellFormat, is_result: bool) -> 
     lines
 }
 
-/// The color of a quantity: that of its arrow, if it has one.
+/// Returns the role of a quantity: the role of its arrow, if it has one.
 fn role_of(symbol: &str) -> Role {
     match symbol {
         "L" | "new L" => Role::AngularMomentum,
@@ -135,7 +142,7 @@ fn role_of(symbol: &str) -> Role {
     }
 }
 
-/// The unit of `quantity`; after an angle of more than half a turn also how many turns it is.
+/// Returns the unit of `quantity`. For an angle of more than half a turn, it also states the number of turns.
 fn unit_of(quantity: &WorkedQuantity) -> String {
     match quantity.value {
         WorkedValue::Number(angle) if quantity.unit == "rad" && angle.abs() > PI => {
@@ -146,7 +153,7 @@ fn unit_of(quantity: &WorkedQuantity) -> String {
     }
 }
 
-/// The heads of the columns of vectors and matrices.
+/// Returns the heads of the columns of vectors and matrices.
 pub fn heads(rank: u8, format: CellFormat) -> StepPageSection {
     let heads = ["x", "y", "z"].map(|head| format!("{head:>0$}", format.cell));
     StepPageSection::new(
@@ -155,37 +162,38 @@ pub fn heads(rank: u8, format: CellFormat) -> StepPageSection {
     )
 }
 
-/// Columns of the points' names, with a space after them.
+/// Columns of the points' names, including a space.
 const POINT_NAME_WIDTH: usize = 8;
-/// Columns of a mass between the name and the coordinates of its point, where there is room for nothing else.
+/// Columns of a mass between the name and the coordinates of its point, if there is no room for the whole table.
 const MASS: usize = 5;
 const MASS_DIGITS: usize = 3;
-/// The fewest columns of a number that is still of use.
+/// Minimum useful columns of a number.
 const LEAST_CELL: usize = 9;
-/// How many numbers stand side by side where there is no room for all.
+/// Numbers side by side if there is no room for all.
 const FEW: usize = 3;
-/// A longer table is shown without looking for points that have no mass.
+/// Maximum rows of a table in which points without mass are looked for.
 const MOST_SEARCHED: usize = 1000;
-/// Rows of a table that are kept where there is little room.
+/// Minimum rows of a table.
 const LEAST_ROWS: usize = 4;
 
+/// A table of points as the step pane shows it.
 pub struct TableView<'a> {
     pub table: &'a PointTable,
-    /// How many of its rows are added up, and the sum of each column over them; `None`: no sum is wanted.
+    /// Number of rows that are added up, and the sum of each column over them; `None` if no sum is requested.
     pub sum: Option<(usize, Vec<f64>)>,
     pub name: &'a dyn Fn(usize) -> String,
     pub width: usize,
 }
 
 impl TableView<'_> {
-    /// How many lines it keeps where there is little room.
+    /// Returns the minimum number of lines.
     pub fn least(&self) -> usize {
         let groups = self.groups();
         let rows = LEAST_ROWS.min(self.table.points.len()) * groups.len();
         self.heads(&groups).len() + rows + self.sum_lines(&groups).len()
     }
 
-    /// Its lines: the heads, the sum, and the rows for which `room` is left.
+    /// Returns the lines: the heads, the rows that fit in `room`, and the sum.
     pub fn lines(&self, room: usize) -> Vec<StepPageLine> {
         let groups = self.groups();
         let sum = self.sum_lines(&groups);
@@ -193,7 +201,7 @@ impl TableView<'_> {
         let rows = room.saturating_sub(lines.len() + sum.len()) / groups.len();
         let all = self.table.points.len();
         let massless = self.massless();
-        // The points without mass share a row.
+        // Points without mass share a row.
         let entries = massless + usize::from(massless < all);
         let (shown, has_more) = match self.chosen() {
             Some(last) => (
@@ -225,8 +233,9 @@ impl TableView<'_> {
         lines
     }
 
-    /// The first of the last rows that are of points without mass, where there are several and none of them is chosen;
-    /// else the number of rows.
+    /// Returns the index of the first of the last rows, all of points without mass, that share a row.
+    ///
+    /// Returns the number of rows if there are fewer than two such points or one of them is chosen.
     fn massless(&self) -> usize {
         let all = self.table.points.len();
         if !is_summed(self.table) || all > MOST_SEARCHED {
@@ -245,7 +254,7 @@ impl TableView<'_> {
         }
     }
 
-    /// How many rows are added up: the last of them is the chosen one.
+    /// Returns the number of rows that are added up. The last of them is the chosen one.
     fn chosen(&self) -> Option<usize> {
         self.sum.as_ref().map(|(rows, _)| *rows)
     }
@@ -276,14 +285,14 @@ impl TableView<'_> {
         lines
     }
 
-    /// Groups of columns that stand side by side. If there are several groups, a row takes a line for each.
+    /// Returns the groups of columns shown side by side. With several groups, a row has a line for each.
     fn groups(&self) -> Vec<Range<usize>> {
         let count = self.table.columns.len();
         match (count, summed(self.table)) {
             (count, _) if POINT_NAME_WIDTH + count * LEAST_CELL <= self.width => {
                 std::iter::once(0..count).collect()
             }
-            // The coordinates alone. Their products are only shown in the sum.
+            // Only the coordinates: their products are shown only in the sum.
             (10, products) => std::iter::once(1..products.start).collect(),
             _ => (0..count.div_ceil(FEW))
                 .map(|group| group * FEW..((group + 1) * FEW).min(count))
@@ -291,12 +300,12 @@ impl TableView<'_> {
         }
     }
 
-    /// Whether the column of masses stands before the columns of `group`, which it does not belong to.
+    /// Returns true if the masses are shown before the columns of `group`, which do not include them.
     fn has_mass_aside(&self, group: &Range<usize>) -> bool {
         group.start == 1 && self.table.columns.len() == 10
     }
 
-    /// The column of the screen in which the numbers of `group` begin.
+    /// Returns the screen column in which the numbers of `group` begin.
     fn begin(&self, group: &Range<usize>) -> usize {
         if self.has_mass_aside(group) {
             POINT_NAME_WIDTH - 1 + MASS
@@ -309,7 +318,7 @@ impl TableView<'_> {
         CellFormat::new(self.width.saturating_sub(self.begin(group)), group.len())
     }
 
-    /// The numbers of each column of `group` on the rows `shown`.
+    /// Returns the numbers of each column of `group` in the rows `shown`.
     fn texts(&self, group: &Range<usize>, shown: &Range<usize>) -> Vec<Vec<String>> {
         let format = self.format(group);
         group
@@ -321,7 +330,7 @@ impl TableView<'_> {
             .collect()
     }
 
-    /// The symbols over the columns of each group with their unit, or under them their units where these differ.
+    /// Returns the symbols above the columns of each group, with a common unit or with a line of units.
     fn heads(&self, groups: &[Range<usize>]) -> Vec<StepPageLine> {
         let mut lines = Vec::new();
         for group in groups {
@@ -353,7 +362,7 @@ impl TableView<'_> {
         lines
     }
 
-    /// What the chosen row adds, and the sum up to it.
+    /// Returns the contribution of the chosen row, and the sum up to it.
     fn sum_lines(&self, groups: &[Range<usize>]) -> Vec<StepPageLine> {
         let columns = summed(self.table);
         let (Some(rows), Some((_, sums)), false) = (self.chosen(), &self.sum, columns.is_empty())
@@ -385,7 +394,7 @@ impl TableView<'_> {
         lines
     }
 
-    /// What `row` adds to each column of `group`, and their `sums`, with heads of their own.
+    /// Returns the contribution of `row` to each column of `group`, and their `sums`, with heads of their own.
     fn added(&self, group: Range<usize>, row: usize, sums: &[f64]) -> [StepPageLine; 3] {
         let adds = self.table.row(row);
         let format = CellFormat::of_vectors(self.width);
@@ -414,12 +423,12 @@ impl TableView<'_> {
     }
 }
 
-/// The cells of the row `at` of some `columns` of texts.
+/// Returns the cells of the row `at` of `columns`.
 fn side_by_side(columns: &[Vec<String>], at: usize) -> String {
     columns.iter().map(|column| column[at].as_str()).collect()
 }
 
-/// The columns of `table` whose sums mean something.
+/// Returns the columns of `table` whose sums have a meaning.
 fn summed(table: &PointTable) -> Range<usize> {
     match table.columns.first() {
         Some(("m", _)) if table.columns.len() == 10 => 4..10,
@@ -428,7 +437,7 @@ fn summed(table: &PointTable) -> Range<usize> {
     }
 }
 
-/// Whether rows of `table` can be added up.
+/// Returns true if rows of `table` can be added up.
 pub fn is_summed(table: &PointTable) -> bool {
     !summed(table).is_empty()
 }

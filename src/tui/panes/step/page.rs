@@ -1,6 +1,6 @@
-//! A page of text in sections, of which the least important are left out where the screen is too small for all.
+//! A page of text in sections. The least important ones are omitted if the screen is too small for all.
 
-use super::super::{leave_one_out, write};
+use super::super::{remove_least_important, write};
 use crate::engine::text::wrap::wrapped;
 use crate::lab::view::theme::Theme;
 use crate::tui::theme::Role;
@@ -8,20 +8,21 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Modifier;
 
-/// A line: texts with the columns where they begin.
+/// A line: texts, each with its first column.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StepPageLine {
     pub pieces: Vec<(usize, String, Role)>,
     pub is_chosen: bool,
 }
 
+/// A section of a page.
 #[derive(Clone, Debug, Default)]
 pub struct StepPageSection {
-    /// The section of the highest rank is left out first; those of rank 0 never are.
+    /// Importance. The section of the highest rank is omitted first; sections of rank 0 are never omitted.
     pub rank: u8,
-    /// Whether an empty line stands before it where there is room for all such lines.
+    /// True if an empty line precedes the section when there is room for all such lines.
     pub is_apart: bool,
-    /// The index of the quantity that is the table of these lines.
+    /// Index of the quantity whose table these lines show.
     pub table: Option<usize>,
     pub lines: Vec<StepPageLine>,
 }
@@ -50,7 +51,7 @@ impl StepPageSection {
         }
     }
 
-    /// `text` in as many lines of `width` columns as it takes; those after the first begin in the column `indent`.
+    /// Creates a section of `text` on `width` columns. Lines after the first begin in the column `indent`.
     pub fn text(rank: u8, text: &str, width: usize, indent: usize, role: Role) -> Self {
         let lines = wrapped(text, width.saturating_sub(indent)).into_iter();
         let indented = lines.enumerate().map(|(line, words)| {
@@ -60,7 +61,7 @@ impl StepPageSection {
         Self::new(rank, indented.collect())
     }
 
-    /// The same with an empty line before it where there is room.
+    /// Returns the section with an empty line before it, if there is room.
     pub fn apart(self) -> Self {
         Self {
             is_apart: true,
@@ -73,12 +74,12 @@ pub fn height(sections: &[StepPageSection]) -> usize {
     sections.iter().map(|section| section.lines.len()).sum()
 }
 
-/// Leaves sections out, those of the highest rank first, until no more than `room` lines are left, or only those of rank 0.
+/// Removes sections, highest rank first, until at most `room` lines or only those of rank 0 are left.
 pub fn fit(sections: &mut Vec<StepPageSection>, room: usize) {
-    while height(sections) > room && leave_one_out(sections, |section| section.rank) {}
+    while height(sections) > room && remove_least_important(sections, |section| section.rank) {}
 }
 
-/// Puts an empty line before each section that wants one, if `room` holds all of them.
+/// Inserts an empty line before each section with `is_apart`, if `room` is enough for all of them.
 pub fn spread(sections: &mut [StepPageSection], room: usize) {
     let occupied = height(sections);
     let others = sections.iter_mut().skip(1);

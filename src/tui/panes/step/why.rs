@@ -1,4 +1,5 @@
-//! Why the axle goes sideways, not down: torque, dL and L from above, and the first dip magnified.
+//! The page that explains why the axle goes sideways, not down: torque, dL and L from above, and the first dip
+//! magnified.
 
 use super::super::write;
 use super::numbers::{self, CellFormat};
@@ -26,16 +27,16 @@ const FRICTION_TORQUE_TEXT: &str = "The forces make a torque τ = X × F, and fr
                       and the axle goes with L.";
 const NO_TORQUE_TEXT: &str = "No torque acts: L stays as it is, and the axle circles about it.";
 const UPRIGHT_TEXT: [&str; 2] = ["L is upright:", "no side is sideways"];
-/// The fewest lines of a picture.
+/// Minimum lines of a picture.
 const LEAST_PICTURE: u16 = 6;
-/// Lengths in the picture from above, in units of the axle as it is drawn: τ, dL, and L from the pivot.
+/// Lengths in the picture from above, in units of the drawn axle: τ, dL, and L from the pivot.
 const TORQUE_ARROW_LENGTH: f64 = 0.75;
 const CHANGE_ARROW_LENGTH: f64 = 0.45;
 const BEYOND: f64 = 1.45;
-/// Arrows are at least as long as for an axle that is seen at this part of its length: from above an upright axle is a
+/// Minimum length of the arrows' unit, as a fraction of the axle's true length. Seen from above, an upright axle is a
 /// point.
 const LEAST_AXLE_SEEN: f64 = 0.25;
-/// A displacement shorter than this part of the arm is rounding error.
+/// Displacements shorter than this fraction of the arm are rounding errors.
 const DISPLACEMENT_ROUNDING: f64 = 1e-12;
 
 pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
@@ -84,7 +85,7 @@ fn reason(explained: &StepWorkings) -> &'static str {
     }
 }
 
-/// The last quantity of the step that has this symbol, if it is a vector.
+/// Returns the last vector quantity of the step with one of these symbols.
 fn last<'a>(explained: &'a StepWorkings, symbols: &[&str]) -> Option<&'a WorkedQuantity> {
     let quantities = explained
         .workings
@@ -95,7 +96,7 @@ fn last<'a>(explained: &'a StepWorkings, symbols: &[&str]) -> Option<&'a WorkedQ
     })
 }
 
-/// The numbers of the step that the pictures draw.
+/// Returns the numbers of the step that the pictures draw.
 fn vectors(explained: &StepWorkings, width: usize) -> Vec<StepPageSection> {
     let format = CellFormat::of_vectors(width);
     let before = WorkedQuantity::new("L", "J s", explained.states.0.momentum);
@@ -116,7 +117,7 @@ fn vectors(explained: &StepWorkings, width: usize) -> Vec<StepPageSection> {
 /// Length of an arrow's head, fine dots.
 const HEAD_DOTS: f64 = 5.0;
 
-/// A picture of level directions, x to the right and y up, with arrows.
+/// A picture of horizontal directions with arrows, x to the right and y up.
 struct ArrowDiagram {
     plane: Plane,
     dots: LayeredDots,
@@ -124,7 +125,7 @@ struct ArrowDiagram {
 }
 
 impl ArrowDiagram {
-    /// Of all between `least` and `most`; `margin` says how far it is to be seen, m, from half of that.
+    /// Creates a diagram of everything between `least` and `most`. `margin` enlarges the half size, m.
     fn new(
         area: Rect,
         view: &View,
@@ -161,7 +162,7 @@ impl ArrowDiagram {
         self.signs.push((self.plane.cell((at.x, at.y)), sign, role));
     }
 
-    /// A line from one place along another, with its name at its tip.
+    /// Draws an arrow from a point, with its name at its tip.
     fn arrow(&mut self, from: Vector2<f64>, along: Vector2<f64>, name: &'static str, role: Role) {
         let tip = from + along;
         let (begin, end) = (self.dot(from), self.dot(tip));
@@ -194,8 +195,9 @@ fn text(text: &str, role: Role, view: &View, area: Rect, buf: &mut Buffer) {
     }
 }
 
-/// The directions of the torque and of the change of L that the picture from above shows, where there are any. Of a scheme
-/// that gives no torque it is the change of L in the step. Under friction that is not along the torque.
+/// Returns the directions of the torque and of the change of L in the picture from above, if any.
+///
+/// For a scheme that computes no torque, both are the change of L in the step. With friction, the two differ.
 fn torque_and_change(explained: &StepWorkings) -> [Option<Vector2<f64>>; 2] {
     let (before, after) = &explained.states;
     let changed = after.momentum - before.momentum;
@@ -213,7 +215,7 @@ fn torque_and_change(explained: &StepWorkings) -> [Option<Vector2<f64>>; 2] {
     both.map(|vector| vector.xy().try_normalize(f64::MIN_POSITIVE))
 }
 
-/// The axle from above with L, and at its tip the weight, τ and dL.
+/// Draws the axle and L from above, with τ at the tip of the axle and dL at the tip of L.
 fn from_above(explained: &StepWorkings, view: &View, area: Rect, buf: &mut Buffer) {
     let area = headed("from above, o: top", view, area, buf);
     let (_, after) = &explained.states;
@@ -263,7 +265,7 @@ fn from_above(explained: &StepWorkings, view: &View, area: Rect, buf: &mut Buffe
     picture.draw(area, view, buf);
 }
 
-/// The path of the axle's tip in its first dip, magnified to fill the picture.
+/// Draws the path of the axle's tip in its first dip, magnified to fill the picture.
 fn dip(explained: &StepWorkings, is_seen: bool, view: &View, area: Rect, buf: &mut Buffer) {
     let area = headed("first dip, magnified", view, area, buf);
     let Some(dip) = &explained.dip else {
@@ -293,7 +295,7 @@ fn dip(explained: &StepWorkings, is_seen: bool, view: &View, area: Rect, buf: &m
     let [place, below] = split_rows(area, area.height.saturating_sub(1 + notes.len() as u16));
     let mut picture = ArrowDiagram::new(place, view, around(&way), |half| 1.15 * half + 0.1 * far);
     for pair in way.windows(2) {
-        // Steps that are too long for the true dip are not joined.
+        // Steps too long for the true dip are not joined.
         let from = if is_seen { pair[0] } else { pair[1] };
         picture.line(from, pair[1], Role::Run);
     }
@@ -305,7 +307,7 @@ fn dip(explained: &StepWorkings, is_seen: bool, view: &View, area: Rect, buf: &m
     text(note, Role::Off, view, below, buf);
 }
 
-/// The corners of a rectangle around `places` and the origin.
+/// Returns the corners of a rectangle around `places` and the origin.
 fn around(places: &[Vector2<f64>]) -> (Vector2<f64>, Vector2<f64>) {
     let origin = Vector2::zeros();
     let least = places.iter().fold(origin, |least, at| least.inf(at));

@@ -1,5 +1,5 @@
-//! The arrows of the scene, their letters, and the line that says what the letters mean. If the step pane is shown, only the
-//! arrows that its phase is about.
+//! The arrows of the 3-D view, their letters, and the legend. While the step pane is visible, only the arrows of its
+//! phase are drawn.
 
 use super::super::{MOST_SHOWN_PUSHES, write};
 use super::body::normal;
@@ -16,28 +16,31 @@ use nalgebra::Vector3;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-/// Lengths of the arrows, in lengths of the axle. Only their directions have a meaning. The head of the angular velocity is
-/// away from the axle's top, where L and the path are.
+/// Lengths of the arrows, in lengths of the axle.
+///
+/// Only their directions have a meaning. The angular velocity is shorter, so that its head is away from the axle's top,
+/// where L and the path are.
 pub const MOMENTUM_ARROW_LENGTH: f64 = 1.12;
 pub const TORQUE_ARROW_LENGTH: f64 = 0.42;
 const OMEGA_ARROW_LENGTH: f64 = 0.62;
 const WEIGHT_ARROW_LENGTH: f64 = 0.5;
 const PUSH_ARROW_LENGTH: f64 = 0.42;
-/// The shortest torque that is drawn, in lengths of the axle.
+/// Minimum length of a torque that is drawn, in lengths of the axle.
 const LEAST_TORQUE_ARROW: f64 = 0.05;
 
-/// Fine dots between the axle and an arrow beside it, and in a large picture.
+/// Fine dots between the axle and an arrow next to it: in small and in large pictures.
 const SHIFT_DOTS: f64 = 5.0;
 const LARGE_SHIFT_DOTS: f64 = 6.0;
-/// L is so many times as far from the axle if both arrows are on one side.
+/// Factor of L's distance from the axle if both arrows are on one side.
 const OUTER_SHIFT: f64 = 1.9;
-/// An arrow that differs from the axle by a smaller angle than this on the screen, rad, is on neither of its sides.
+/// Minimum angle on the screen between an arrow and the axle for the arrow to be on a side of it, rad.
 const SIDE_RAD: f64 = 0.06;
 const HEAD_DOTS: f64 = 5.0;
 const LARGE_HEAD_DOTS: f64 = 7.0;
-/// Distances of a letter from the tip of its arrow, fine dots, the best first.
+/// Distances of a letter from the tip of its arrow, fine dots, best first.
 const LETTER_DOTS: [f64; 6] = [4.0, 5.0, 6.0, 3.0, 7.0, 8.0];
 
+/// Kind of an arrow in the 3-D view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArrowKind {
     Momentum,
@@ -52,7 +55,7 @@ pub enum ArrowKind {
 }
 
 impl ArrowKind {
-    /// The arrows that are drawn without the step pane.
+    /// Arrows that are drawn without the step pane.
     pub const USUAL: &[Self] = &[
         Self::Momentum,
         Self::AngularVelocity,
@@ -60,7 +63,7 @@ impl ArrowKind {
         Self::Push,
     ];
 
-    /// The arrows of forces.
+    /// Arrows of forces.
     pub const FORCES: &[Self] = &[Self::Weight, Self::Floor, Self::Push];
 
     pub fn label(self) -> &'static str {
@@ -87,12 +90,12 @@ impl ArrowKind {
     }
 }
 
-/// A label of the scene, and the place that it belongs to.
+/// A label of the 3-D view with its position.
 pub struct SpaceLabel {
     text: String,
     role: Role,
     at: FineDot,
-    /// The direction on the sheet in which an arrow points there.
+    /// Direction of the arrow that ends at `at`, on the sheet; `None` if the label belongs to no arrow.
     along: Option<FineDot>,
 }
 
@@ -106,7 +109,7 @@ impl SpaceLabel {
         }
     }
 
-    /// Belongs beside a head of so many dots: another arrow begins in front of it.
+    /// Moves the label next to an arrowhead of `head_dots` fine dots, because another arrow begins at its tip.
     fn beside_head(self, head_dots: f64) -> Self {
         let (x, y) = self.along.unwrap_or((0.0, 0.0));
         let half = 0.5 * head_dots;
@@ -117,7 +120,7 @@ impl SpaceLabel {
         }
     }
 
-    /// Writes it in front of the arrow's head, or else at a free place beside it.
+    /// Writes the label in front of the arrow's head, or else at a free position near it.
     pub fn place(&self, labels: &mut Labels<'_>, theme: &Theme) {
         let style = theme.style(self.role).bold();
         let Some(along) = self.along else {
@@ -140,8 +143,8 @@ impl SpaceLabel {
     }
 }
 
-/// How far the arrows of L and of the angular velocity are drawn beside the axle, fine dots. Positive: to the side to which
-/// the axle's normal points.
+/// Distances of the arrows of L and of the angular velocity from the axle, fine dots. Positive: on the side of the
+/// axle's normal.
 struct ArrowShifts {
     axle_normal: FineDot,
     momentum: f64,
@@ -149,7 +152,7 @@ struct ArrowShifts {
 }
 
 impl Scene<'_> {
-    /// Draws the arrows; returns their letters, the most important first.
+    /// Draws the arrows. Returns their letters, the most important first.
     pub(super) fn draw_arrows(&self, dots: &mut LayeredDots) -> Vec<SpaceLabel> {
         let shifts = self.shifts();
         let pivot = Vector3::zeros();
@@ -190,7 +193,7 @@ impl Scene<'_> {
         labels
     }
 
-    /// The arrows that begin at the tip of L, in lengths of the axle: the torque, and the change of L.
+    /// Returns the arrows that begin at the tip of L, in lengths of the axle: the torque, and the change of L.
     fn arrows_at_momentum(&self) -> Vec<(ArrowKind, Vector3<f64>)> {
         let torque = self.along(ArrowKind::Torque);
         let torque = torque.map(|share| share * TORQUE_ARROW_LENGTH);
@@ -224,15 +227,17 @@ impl Scene<'_> {
         }
     }
 
-    /// The vertical force of the floor on the foot, N.
+    /// Returns the vertical force of the floor on the foot, N.
     fn floor_force(&self) -> f64 {
         let simulation = self.seen.run.simulation();
         let body = &self.seen.run.scenario().body.mechanics;
         observables::pivot_force_z(body, self.state, simulation.loads())
     }
 
-    /// The weight at the center of mass, the force of the floor, and the pushes that act: each with its origin and its length
-    /// in lengths of the axle. Beside the force of the floor, lengths are in proportion to the weight's.
+    /// Returns the weight at the center of mass, the force of the floor, and the acting pushes, each with its origin
+    /// (m) and its vector in lengths of the axle.
+    ///
+    /// If the force of the floor is drawn, lengths are proportional to forces.
     fn forces(&self) -> Vec<(ArrowKind, Vector3<f64>, Vector3<f64>)> {
         let loads = self.seen.run.simulation().loads();
         let body = &self.seen.run.scenario().body.mechanics;
@@ -265,7 +270,7 @@ impl Scene<'_> {
         forces
     }
 
-    /// The direction of an arrow, or for the torque its share of the full length, if the arrow is drawn.
+    /// Returns the direction of an arrow, or for the torque its fraction of the full length; `None` if it is not drawn.
     fn along(&self, kind: ArrowKind) -> Option<Vector3<f64>> {
         if !self.draws(kind) {
             return None;
@@ -295,7 +300,7 @@ impl Scene<'_> {
         let pivot = self.dot(&Vector3::zeros());
         let top = self.dot(&(self.state.axle() * self.arm));
         let axle_normal = normal(pivot, top);
-        // The sine of the angle on the sheet from the axle to a direction.
+        // Sine of the angle from the axle to a direction, on the sheet.
         let aside = |along: Option<Vector3<f64>>| {
             let (x, y) = self.dot(&(along? * self.arm));
             let (dx, dy) = (x - pivot.0, y - pivot.1);
@@ -322,7 +327,7 @@ impl Scene<'_> {
         }
     }
 
-    /// The ends of an arrow on the sheet, moved by `shift` across itself, to a side of the axle.
+    /// Returns the ends of an arrow on the sheet, shifted sideways by `shift` to a side of the axle.
     fn shifted(
         &self,
         from: &Vector3<f64>,
@@ -337,7 +342,7 @@ impl Scene<'_> {
         ends.map(|end| (end.0 + x * shift, end.1 + y * shift))
     }
 
-    /// What the letters mean, as many as there is room for.
+    /// Draws the legend with as many words as fit.
     pub(super) fn legend(&self, area: Rect, buf: &mut Buffer) {
         let theme = &self.seen.view.theme;
         let mut words = self.legend_words();
@@ -353,7 +358,7 @@ impl Scene<'_> {
         }
     }
 
-    /// Each letter with its meaning and its role.
+    /// Returns each letter with its meaning and its role.
     fn legend_words(&self) -> Vec<(&'static str, String, Role)> {
         let loads = self.seen.run.simulation().loads();
         let kinds = [
@@ -399,7 +404,7 @@ impl Scene<'_> {
     }
 }
 
-/// The columns of a legend of these letters, meanings and roles.
+/// Returns the columns of a legend of these letters and meanings.
 fn legend_columns(words: &[(&str, String, Role)]) -> usize {
     let gap = usize::from(LEGEND_WORD_GAP);
     let each = words

@@ -1,4 +1,4 @@
-//! The body in the scene: axle, hub, rim, masses and solid parts. Near parts look heavier than far ones.
+//! The body in the 3-D view: axle, hub, rim, masses and solid parts. Near parts are drawn heavier than far ones.
 
 use super::{CIRCLE_PARTS, Scene, ink};
 use crate::engine::scenario::file::RimFile;
@@ -11,26 +11,26 @@ use crate::tui::theme::Role;
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 
-/// The most free points and parts that are drawn.
+/// Maximum number of free points and parts that are drawn.
 const MOST_FREE: usize = 60;
 const MOST_PARTS: usize = 60;
-/// A line of a part is far if it is farther than the part's middle by this share of the part's size.
+/// A line of a part is far if it is behind the part's center by more than this fraction of the part's size.
 const FAR_SHARE: f64 = 0.33;
-/// A center that is off the axle by less than this share of the body's size needs no line to it.
+/// Maximum distance of a center from the axle without a line to it, as a fraction of the body's size.
 const CENTER_ON_AXLE: f64 = 1e-3;
-/// Masses on a rim are drawn if they are at least this far apart, fine dots.
+/// Minimum distance between the masses on a rim for them to be drawn, fine dots.
 const CLOSEST_MASSES: f64 = 5.0;
-/// Lines from the axle to what is off it, far lines of parts, and lines of the body before a step.
+/// Dashes of lines from the axle to off-axle parts, of far lines, and of the body before a step.
 const STRUT_DASHES: Dashes = (1, 2);
 
-/// The body as it is drawn, upright: distances from the axle and heights.
+/// The drawn parts of the body in the body frame, where the axle is vertical.
 pub struct DrawnBody {
     pub rim: Option<RimFile>,
-    /// Heights between which there is an axle.
+    /// Heights of the axle's ends, m.
     pub axle: (f64, f64),
-    /// Distance from the axle and height of the rim and of each free point that is drawn.
+    /// Distance from the axle and height of the rim, of each drawn free point and of the ends of solid parts, m.
     pub corners: Vec<(f64, f64)>,
-    /// The free points that have a mass.
+    /// Free points that have a mass.
     free: Vec<Vector3<f64>>,
     solids: Vec<Solid>,
 }
@@ -66,12 +66,12 @@ impl DrawnBody {
         }
     }
 
-    /// The distance of the farther end of the axle from the pivot, m.
+    /// Returns the distance from the pivot to the farther end of the axle, m.
     pub fn arm(&self) -> f64 {
         self.axle.0.abs().max(self.axle.1.abs())
     }
 
-    /// The size of the body, m.
+    /// Returns the size of the body, m.
     pub fn reach(&self) -> f64 {
         let corners = self.corners.iter().copied();
         let reaches = corners.map(|(across, height)| libm::hypot(across, height));
@@ -79,7 +79,7 @@ impl DrawnBody {
     }
 }
 
-/// The point `index` of `points` that divide the rim.
+/// Returns the point `index` of `points` equally spaced points on the rim, in the world frame.
 fn rim_point(rim: &RimFile, state: &State, index: usize, points: usize) -> Vector3<f64> {
     let (sin, cos) = libm::sincos(TAU * index as f64 / points as f64);
     let (x, y) = (rim.radius_m * cos, rim.radius_m * sin);
@@ -96,10 +96,10 @@ fn rim_masses(rim: &RimFile, state: &State) -> impl Iterator<Item = Vector3<f64>
     (0..rim.points).map(|point| rim_point(rim, state, point, rim.points))
 }
 
-/// A part as it is drawn, upright.
+/// The lines of a solid part in the body frame.
 struct Solid {
     centre: Vector3<f64>,
-    /// The greatest distance of a line from the centre, m.
+    /// Maximum distance of a line from the center, m.
     size: f64,
     lines: Vec<Polyline>,
 }
@@ -116,7 +116,8 @@ impl Solid {
         }
     }
 
-    /// Distance from the axle and height of the two ends of the cylinder about the axle in which it lies.
+    /// Returns distance from the axle and height of both ends of the smallest cylinder about the axle that contains the
+    /// part, m.
     fn corners(&self) -> [(f64, f64); 2] {
         let (mut across, mut lowest, mut highest) = (0.0_f64, f64::INFINITY, f64::NEG_INFINITY);
         for at in self.lines.iter().flat_map(|line| &line.points) {
@@ -128,7 +129,7 @@ impl Solid {
 }
 
 impl Scene<'_> {
-    /// Rim, axle, hub, masses, and the solid parts.
+    /// Draws rim, axle, hub, masses, and the solid parts.
     pub(super) fn body(&self, dots: &mut LayeredDots) {
         let state = self.state;
         for at in &self.shape.free {
@@ -146,7 +147,7 @@ impl Scene<'_> {
         self.masses(dots);
     }
 
-    /// A line two dots thick: the axle, a marked edge.
+    /// Draws a line two dots thick: the axle, or a marked edge.
     fn thick(&self, from: &Vector3<f64>, to: &Vector3<f64>, dots: &mut LayeredDots) {
         let of_axle = ink(Role::Text, Layer::Axle);
         let ends = (self.dot(from), self.dot(to));
@@ -171,7 +172,8 @@ impl Scene<'_> {
         }
     }
 
-    /// The far lines of a part are dashed, and so are the hidden edges of a block. A dashed line leads from the axle to what is off it.
+    /// Draws a part. Its far lines and the hidden edges of a block are dashed. A dashed line connects an off-axle part
+    /// to the axle.
     fn solid(&self, solid: &Solid, dots: &mut LayeredDots) {
         let center = self.state.orientation * solid.centre;
         let middle = self.camera.depth(&center);
@@ -199,7 +201,7 @@ impl Scene<'_> {
         }
     }
 
-    /// Whether faces of the body with these directions out of them (body frame) are turned away from the eye.
+    /// Returns true if all faces of the body with these outward normals (body frame) face away from the viewer.
     fn face_away(&self, normals: &[Vector3<f64>]) -> bool {
         let turn = self.state.orientation;
         normals
@@ -217,7 +219,7 @@ impl Scene<'_> {
         );
     }
 
-    /// The wheel, the axle and the solid parts as they were at `state`, dotted.
+    /// Draws the wheel, the axle and the solid parts at `state`, dotted.
     pub(super) fn body_before(&self, state: &State, dots: &mut LayeredDots) {
         let axle = state.axle();
         let (foot, top) = self.shape.axle;
@@ -248,7 +250,7 @@ impl Scene<'_> {
         }
     }
 
-    /// The masses and the hub: what is near is larger.
+    /// Draws the masses and the hub. Near ones are larger.
     fn masses(&self, dots: &mut LayeredDots) {
         let hub = self.wheel();
         let middle = self.camera.depth(&hub);
@@ -269,7 +271,8 @@ impl Scene<'_> {
         }
     }
 
-    /// The places of the masses at `state`; those of the rim only if they can be told apart.
+    /// Returns the positions of the masses at `state`. Masses of the rim are included only if they are far enough
+    /// apart.
     fn places_of_masses(&self, state: &State) -> Vec<Vector3<f64>> {
         let apart = |rim: &RimFile| {
             TAU * rim.radius_m * self.plane.scale.1 / rim.points as f64 >= CLOSEST_MASSES
@@ -281,14 +284,14 @@ impl Scene<'_> {
             .collect()
     }
 
-    /// The middle of the wheel, or the axle's top where there is none.
+    /// Returns the middle of the wheel, or the axle's top if there is no wheel.
     fn wheel(&self) -> Vector3<f64> {
         let rim = self.shape.rim.as_ref();
         self.state.axle() * rim.map_or(self.shape.axle.1, |rim| rim.height_m)
     }
 }
 
-/// The direction across the line from one dot to another, a unit vector on the sheet.
+/// Returns the unit vector perpendicular to the line from one dot to another, on the sheet.
 pub fn normal(from: FineDot, to: FineDot) -> FineDot {
     let (dx, dy) = (to.0 - from.0, to.1 - from.1);
     let length = libm::hypot(dx, dy);
@@ -299,7 +302,7 @@ pub fn normal(from: FineDot, to: FineDot) -> FineDot {
     }
 }
 
-/// The straight pieces of a line, in the world at `state`.
+/// Returns the straight segments of a line, in the world frame at `state`.
 fn pieces(line: &Polyline, state: &State) -> Vec<(Vector3<f64>, Vector3<f64>)> {
     let points = line.points.iter();
     let turned: Vec<_> = points.map(|at| state.orientation * at).collect();

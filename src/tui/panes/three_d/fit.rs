@@ -1,5 +1,5 @@
-//! The size of the scene: the solid that the body sweeps as it precesses at all its tilts, so that the picture stands still
-//! while the body moves.
+//! The scale of the 3-D view: it shows the solid that the body sweeps as it precesses at all its tilts. The picture
+//! thus does not move while the body does.
 
 use super::super::PlotInputs;
 use super::super::gravity_motion::predicted_tilts_deg;
@@ -14,19 +14,19 @@ use crate::tui::plane::Plane;
 use nalgebra::Vector3;
 use ratatui::layout::Rect;
 
-/// Tilts are rounded to multiples of this, degrees, so that the scale does not change all the time.
+/// Tilts are rounded to multiples of this angle, degrees, so that the scale does not change all the time.
 const TILT_DEG: f64 = 2.5;
-/// A tilt this near to such a multiple, degrees, may cross it: then the next one is shown too.
+/// Maximum distance of a tilt from such a multiple, degrees, at which the next one is shown too.
 const TILT_SLACK_DEG: f64 = 0.75;
-/// The floor is this far below everything, and the circle on it at least this large, in lengths of the axle.
+/// Distance of the floor below everything, and minimum radius of the circle on it, in lengths of the axle.
 const FLOOR_GAP: f64 = 0.16;
 const LEAST_FLOOR: f64 = 0.35;
-/// Fine dots that stay free at the sides, there in a small pane, and above, for labels.
+/// Fine dots kept free for labels: at the sides, at the sides of a small pane, and above.
 const SIDE_DOTS: f64 = 4.0;
 const SMALL_SIDE_DOTS: f64 = 3.0;
 const TOP_DOTS: f64 = 5.0;
 
-/// Everything that the scene may show: circles about the vertical.
+/// Everything that the view may show, as circles about the vertical.
 pub struct Swept {
     /// Radius and height of each circle, m.
     circles: Vec<(f64, f64)>,
@@ -74,7 +74,8 @@ impl Swept {
         }
     }
 
-    /// The plane of the picture in which all of it is seen; magnified, it is about `wheel` (world frame, m).
+    /// Returns the plane of the picture that shows everything. If magnified, it is centered on `wheel` (world frame, m)
+    /// as far as possible.
     pub fn plane(&self, picture: Rect, view: &View, wheel: &Vector3<f64>) -> Plane {
         let (sin, cos) = libm::sincos(view.camera.pitch_deg.to_radians());
         let end = |side: f64| move |&(radius, z): &(f64, f64)| z * cos + side * radius * sin.abs();
@@ -111,7 +112,7 @@ impl Swept {
     }
 }
 
-/// The tilts that the body has had or will have under gravity, degrees, in steps.
+/// Returns the tilts that the body has had, or will have under gravity, in steps, degrees.
 fn tilts_deg(seen: &PlotInputs<'_>) -> Vec<f64> {
     let (recording, _) = seen.run.pictures();
     let recorded = recording.whole().map(|whole| {
@@ -132,7 +133,7 @@ fn tilts_deg(seen: &PlotInputs<'_>) -> Vec<f64> {
         .collect()
 }
 
-/// The circles of the tip of L, and of the torque beyond it.
+/// Returns the circles of the tip of L and of the torque at it: radius and height, m.
 fn momentum_circles(seen: &PlotInputs<'_>, arm: f64) -> Vec<(f64, f64)> {
     let momentum = match seen.reading {
         Some(reading) => reading.state.momentum,

@@ -1,5 +1,5 @@
-//! What the scene shows of the phase that is on the page of the step pane: its arrows, the axis of its turn, the body before
-//! the step, and the point that is added to a sum.
+//! The parts of the 3-D view that belong to the phase on the page of the step pane: its arrows, the axis of its
+//! rotation, the body before the step, and the point that is added to a sum.
 
 use super::super::step::name_of;
 use super::arrows::{ArrowKind, MOMENTUM_ARROW_LENGTH, SpaceLabel, TORQUE_ARROW_LENGTH};
@@ -15,23 +15,23 @@ use crate::tui::layered_dots::{Layer, LayeredDots, Spot};
 use crate::tui::theme::Role;
 use nalgebra::Vector3;
 
-/// How far the axis of a turn goes on both sides of the pivot, in lengths of the axle.
+/// Length of the axis of a rotation on both sides of the pivot, in lengths of the axle.
 const TURN_AXIS_LENGTH: f64 = 1.2;
-/// Directions that differ by less than this, rad, are drawn as one.
+/// Minimum angle between two directions that are drawn separately, rad.
 const DISTINCT_DIRECTIONS_RAD: f64 = 0.03;
 const POINT_DASHES: Dashes = (2, 4);
 
-/// The phase of a step, and what of it the arrows show.
+/// The phase of a step, and its arrows.
 #[derive(Clone, Copy)]
 pub struct StepArrows<'a> {
     explained: &'a StepWorkings,
     phase: &'a Phase,
-    /// The point that was added last to the sum of the table, or chosen in it.
+    /// Point that was added last to the sum of the table, or chosen in it.
     point: Option<usize>,
 }
 
 impl<'a> StepArrows<'a> {
-    /// The phase on the page of the step pane of `view`, if that is on the screen.
+    /// Returns the phase on the page of the step pane, if that pane is visible in `view`.
     pub fn of_shown_phase(explained: Option<&'a StepWorkings>, view: &View) -> Option<Self> {
         let shown = explained.filter(|_| view.shows(Pane::Step))?;
         let (phase, ..) = shown.phase(view.look.phase)?;
@@ -46,7 +46,7 @@ impl<'a> StepArrows<'a> {
         })
     }
 
-    /// The arrows that the phase is about.
+    /// Returns the arrows of the phase.
     fn kinds(&self) -> &'static [ArrowKind] {
         use ArrowKind::*;
         match self.phase.name {
@@ -62,7 +62,7 @@ impl<'a> StepArrows<'a> {
         }
     }
 
-    /// Whether the body is drawn as it was before the step too.
+    /// Returns true if the body before the step is drawn too.
     pub fn has_before(&self) -> bool {
         match self.phase.name {
             PhaseName::AngularVelocity
@@ -75,7 +75,7 @@ impl<'a> StepArrows<'a> {
         }
     }
 
-    /// The last vector of this `symbol` in the step up to this phase.
+    /// Returns the last vector with this `symbol` in the step up to this phase.
     fn vector(&self, symbol: &str) -> Option<Vector3<f64>> {
         let phases = self
             .explained
@@ -101,8 +101,10 @@ impl<'a> StepArrows<'a> {
 }
 
 impl Scene<'_> {
-    /// Whether arrows of this kind are drawn. If the step pane is shown, only those that its phase is about; while a strip
-    /// shows the force of the floor, only forces.
+    /// Returns true if arrows of this kind are drawn.
+    ///
+    /// While the step pane is visible, these are the arrows of its phase. While a strip shows the force of the floor,
+    /// these are the forces.
     pub(super) fn draws(&self, kind: ArrowKind) -> bool {
         let kinds = match &self.phase {
             Some(shown) => shown.kinds(),
@@ -113,12 +115,12 @@ impl Scene<'_> {
         kinds.contains(&kind)
     }
 
-    /// Whether a strip shows the force of the floor on the foot.
+    /// Returns true if a strip shows the force of the floor on the foot.
     pub(super) fn shows_floor_force(&self) -> bool {
         self.seen.view.look.detail_of == FourthStrip::Column("foot_force_N")
     }
 
-    /// The axis of the turn, the body before it, and the chosen point.
+    /// Draws the axis of the rotation, the body before it, and the chosen point. Returns their labels.
     pub(super) fn phase_marks(&self, dots: &mut LayeredDots) -> Vec<SpaceLabel> {
         let mut labels = Vec::new();
         let Some(shown) = &self.phase else {
@@ -165,14 +167,14 @@ impl Scene<'_> {
         labels
     }
 
-    /// The direction of the new L, if the phase computes one that is seen to differ from the old.
+    /// Returns the direction of the new L, if the phase computes one that visibly differs from the old one.
     pub(super) fn new_momentum(&self) -> Option<Vector3<f64>> {
         let shown = self.phase.as_ref()?;
         let (old, new) = (shown.direction("L")?, shown.direction("new L")?);
         Some(new).filter(|new| (new - old).norm() > DISTINCT_DIRECTIONS_RAD)
     }
 
-    /// dL as it is drawn beside L, in lengths of the axle, and how much longer than L it is drawn.
+    /// Returns the drawn dL, in lengths of the axle, and its stretch relative to L.
     fn stretched_change(&self) -> Option<(Vector3<f64>, f64)> {
         let shown = self
             .phase
@@ -185,7 +187,8 @@ impl Scene<'_> {
         (share.norm() > 0.0 && stretch.is_finite()).then(|| (share * stretch, stretch))
     }
 
-    /// The change of L that is drawn, in lengths of the axle. If the phase does not give it, its direction alone.
+    /// Returns the drawn change of L, in lengths of the axle. If the phase does not compute it, only its direction is
+    /// right.
     pub(super) fn drawn_change(&self) -> Option<Vector3<f64>> {
         if !self.draws(ArrowKind::ChangeOfMomentum) {
             return None;
@@ -194,7 +197,7 @@ impl Scene<'_> {
         stretched.or(self.change.map(|change| change * TORQUE_ARROW_LENGTH))
     }
 
-    /// Says how much longer than L dL is drawn.
+    /// Returns the text that states by which factor dL is stretched relative to L.
     pub(super) fn change_stretch_text(&self) -> Option<String> {
         let (_, stretch) = self.stretched_change()?;
         (stretch != 1.0).then(|| format!("dL {} × as long", decimal(stretch)))

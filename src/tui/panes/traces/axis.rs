@@ -1,4 +1,4 @@
-//! The axis of time under the strips, and the axis of values beside them.
+//! The time axis under the strips, and the value axes next to them.
 
 use crate::engine::text::number::{decimal, exponent, fixed, significant};
 use crate::engine::text::wrap::columns;
@@ -11,30 +11,32 @@ use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-/// Times from this on, s, have more digits than a tick has room for.
+/// Time from which times have more digits than a tick has room for, s.
 const LONG_TIME_S: f64 = 1e6;
-/// From this time on (s) it has more digits than anyone reads.
+/// Time from which times are written with an exponent, s.
 const MOST_TIME_S: f64 = 1e15;
-/// Rows of a strip from which round values are between its ends, and from which there may be three of them.
+/// Minimum rows of a strip for round values between its ends, and for three of them.
 const ROWS_FOR_BETWEEN: usize = 7;
 const MANY_ROWS: usize = 9;
-/// Rows that are left free beside the ends.
+/// Rows kept free next to the ends.
 const ROWS_FROM_ENDS: usize = 2;
-/// With more digits after the point than this, a value has an exponent and so many significant digits.
+/// Maximum decimals of a value, and the significant digits of values that would need more.
 const MOST_DECIMALS: usize = 7;
 const EXPONENT_DIGITS: usize = 3;
-/// Columns for each label of the axis of time.
+/// Columns per label of the time axis.
 const COLUMNS_PER_TIME: usize = 11;
-/// As many labels are tried where there are fewer columns.
+/// Minimum number of labels that are tried.
 const FEW_TIMES: usize = 3;
-/// Columns from one label to the next, at least.
+/// Minimum columns between two labels.
 const TICK_LABEL_COLUMNS: usize = 2;
-/// What follows the first label, or the last of two.
+/// Unit after the first label, or after the last of two.
 const SECONDS_SUFFIX: &str = " s";
 
+///  First column and text of a label.
 pub type PlacedTick = (usize, String);
 
-/// The labels of the time axis of `strip` on `width` cells, in order: round times, each in the middle under its own.
+/// Returns the labels of the time axis of `strip` on `width` cells, in order: round times, each centered under its
+/// time.
 pub fn times(strip: &Strip, width: usize) -> Vec<PlacedTick> {
     if strip.end_s() >= LONG_TIME_S {
         return both_ends(strip, width);
@@ -45,14 +47,14 @@ pub fn times(strip: &Strip, width: usize) -> Vec<PlacedTick> {
         let count = ticks.len();
         match round_times(strip, width, &ticks) {
             Some(placed) => return placed,
-            // As many times or more would be the same again.
+            // As many times or more would give the same labels again.
             None if count > 1 => most = count - 1,
             None => return Vec::new(),
         }
     }
 }
 
-/// The labels of `ticks` (s), if there is room for them all.
+/// Returns the labels of `ticks` (s), if there is room for them all.
 fn round_times(strip: &Strip, width: usize, ticks: &[f64]) -> Option<Vec<PlacedTick>> {
     let apart = match ticks {
         [first, second, ..] => second - first,
@@ -82,7 +84,8 @@ fn round_times(strip: &Strip, width: usize, ticks: &[f64]) -> Option<Vec<PlacedT
     Some(placed)
 }
 
-/// Both ends of a window of times with many digits, or how much later the right one is where there is no room.
+/// Returns labels at both ends of a window of times with many digits. If there is no room, the right one states the
+/// difference.
 fn both_ends(strip: &Strip, width: usize) -> Vec<PlacedTick> {
     let (begin, end) = ends(strip, width);
     if begin.len() + end.len() >= width {
@@ -93,7 +96,7 @@ fn both_ends(strip: &Strip, width: usize) -> Vec<PlacedTick> {
 
 fn ends(strip: &Strip, width: usize) -> (String, String) {
     let digits = scale::decimals(strip.window_s / 10.0).min(6);
-    // Whole numbers that tell the two ends apart, up to where they have more digits than anyone reads.
+    // Whole numbers that distinguish the two ends, up to [`MOST_TIME_S`].
     let [begin, end] = [strip.begin_s, strip.end_s()].map(|time_s| {
         if time_s < MOST_TIME_S {
             format!("{time_s:.digits$}")
@@ -113,15 +116,15 @@ fn ends(strip: &Strip, width: usize) -> (String, String) {
     (exponent(strip.begin_s, 3) + SECONDS_SUFFIX, later)
 }
 
-/// A value beside a strip.
+/// A value next to a strip.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ValueTick {
-    /// The row of the strip.
+    /// Row of the strip.
     pub row: usize,
     pub label: String,
 }
 
-/// Returns the values beside a strip of `rows`: its greatest and its least value, and round values between where there is
+/// Returns the values next to a strip of `rows`: its maximum and minimum, and round values between them if there is
 /// room.
 pub fn values(scale: &StripScale, rows: usize) -> Vec<ValueTick> {
     let digits = scale.decimals();
@@ -151,7 +154,7 @@ pub fn values(scale: &StripScale, rows: usize) -> Vec<ValueTick> {
     placed
 }
 
-/// Returns a value of a strip with `digits` after the point, or with an exponent where these are too many to be counted.
+/// Returns a value of a strip with `digits` decimals, or with an exponent if these are too many to count.
 pub fn value_text(value: f64, digits: usize) -> String {
     with_minus_sign(&if digits <= MOST_DECIMALS {
         fixed(value, digits)
@@ -165,13 +168,14 @@ pub fn with_minus_sign(number: &str) -> String {
     number.replace('-', "−")
 }
 
-/// The columns of ticks beside the strips, as wide as the widest of them needs.
+/// Columns of ticks next to the strips, as wide as the widest tick.
 pub struct Gutter {
     pub width: u16,
 }
 
 impl Gutter {
-    /// Returns the gutter for `scales` in strips of `rows` on a pane of `width` columns; it has at most half of them.
+    /// Returns the gutter for `scales` in strips of `rows` on a pane of `width` columns. It is empty if it would need
+    /// more than half of them.
     pub fn new(scales: &[StripScale], rows: usize, width: u16) -> Self {
         let ticks = scales.iter().flat_map(|scale| values(scale, rows));
         let widest = ticks.map(|tick| columns(&tick.label) as u16).max();
@@ -181,7 +185,7 @@ impl Gutter {
         }
     }
 
-    /// Writes the values of `scale` beside `sheet`.
+    /// Writes the values of `scale` to the left of `sheet`.
     pub fn write(&self, scale: &StripScale, sheet: Rect, theme: &Theme, buf: &mut Buffer) {
         let Some(x) = sheet.x.checked_sub(self.width).filter(|_| self.width > 0) else {
             return;

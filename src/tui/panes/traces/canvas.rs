@@ -1,4 +1,4 @@
-//! A canvas on which curves of different kinds share cells: the uppermost of a cell gives it its role.
+//! A canvas on which curves of different kinds share cells. The top layer of a cell determines its role.
 
 use crate::lab::view::theme::{Marker, Theme};
 use crate::tui::dots::on_sheet;
@@ -6,7 +6,7 @@ use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-/// What a dot belongs to, the lowest first.
+/// Layer of a dot, lowest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Layer {
     /// Between the edges of an envelope.
@@ -16,7 +16,7 @@ pub enum Layer {
     /// The run before the window of the traces.
     Earlier,
     Run,
-    /// The shown moment.
+    /// The displayed time.
     Now,
 }
 
@@ -41,7 +41,7 @@ impl Layer {
         }
     }
 
-    /// The layers whose dots are shown in a cell of which this layer is the uppermost.
+    /// Returns the layers whose dots are shown in a cell with this top layer.
     fn shown_with(self) -> &'static [Self] {
         match self {
             Self::Now => &[Self::Now, Self::Run, Self::Earlier],
@@ -53,7 +53,7 @@ impl Layer {
         }
     }
 
-    /// Where markers are as large as a cell, layers differ by their signs.
+    /// Returns the index of the layer's sign. If dots are as large as a cell, layers differ by their signs.
     fn sign_layer(self) -> usize {
         match self {
             Self::Now | Self::Run | Self::Earlier => 0,
@@ -66,6 +66,7 @@ impl Layer {
 
 type CanvasCell = [u8; LAYERS.len()];
 
+/// Dots of curves on an area of the screen, by layer.
 pub struct Canvas {
     area: Rect,
     marker: Marker,
@@ -82,22 +83,22 @@ impl Canvas {
         }
     }
 
-    /// Columns of dots.
+    /// Returns the columns of dots.
     pub fn width(&self) -> usize {
         self.area.width as usize * self.marker.dots().0
     }
 
-    /// Rows of dots.
+    /// Returns the rows of dots.
     pub fn height(&self) -> usize {
         self.area.height as usize * self.marker.dots().1
     }
 
-    /// Dots in a cell, across and down.
+    /// Returns the dots per cell, across and down.
     pub fn in_a_cell(&self) -> (usize, usize) {
         self.marker.dots()
     }
 
-    /// Sets the dot at column `x`, row `y`; outside the canvas nothing happens.
+    /// Sets the dot at column `x`, row `y`. Does nothing outside the canvas.
     pub fn set(&mut self, x: usize, y: f64, layer: Layer) {
         let Some((x, y)) = on_sheet((x as f64, y), (self.width(), self.height())) else {
             return;
@@ -111,7 +112,7 @@ impl Canvas {
     pub fn upright(&mut self, x: usize, (upper, lower): (f64, f64), layer: Layer) {
         let last = self.height() as f64 - 1.0;
         if !(upper <= last && lower >= 0.0) {
-            return; // outside, or no number
+            return; // outside, or NaN
         }
         let rows = upper.max(0.0) as usize..=lower.min(last) as usize;
         rows.for_each(|y| self.set(x, y as f64, layer));
@@ -129,7 +130,7 @@ impl Canvas {
             let shown = top.shown_with().iter();
             let mut bits = shown.fold(0, |bits, layer| bits | cell[*layer as usize]);
             if top >= Layer::Earlier {
-                // The band has no gap below its edge, and the edge is still seen.
+                // Fill the envelope up to its edge, with every second dot, so that the edge remains visible.
                 bits |= cell[Layer::Fill as usize] & self.checkered();
             }
             let sign = self.marker.sign(top.sign_layer(), bits);
@@ -137,7 +138,7 @@ impl Canvas {
         }
     }
 
-    /// The bits of every second dot of a cell.
+    /// Returns the bits of every second dot of a cell.
     fn checkered(&self) -> u8 {
         let (across, down) = self.marker.dots();
         let mut bits = 0;

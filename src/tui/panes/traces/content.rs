@@ -1,4 +1,4 @@
-//! Which strips there are, and the range of values of each.
+//! The contents of the strips, and the range of values of each.
 
 use super::Traces;
 use crate::engine::data::compared::ComparedPoint;
@@ -7,32 +7,34 @@ use crate::lab::comparison::DataComparison;
 use crate::lab::playback::scale::StripScale;
 use crate::lab::view::FourthStrip;
 
-/// The fewest rows of a strip, with its rule, and the fewest with which a fourth strip joins the others by itself.
+/// Minimum rows of a strip, including its rule.
 const LEAST_ROWS: u16 = 4;
-/// Beside a page, x and y join the others from this many rows on.
+/// Minimum rows for x and y next to a lesson's page.
 const ROWS_BESIDE_PAGE: u16 = 16;
+/// Minimum rows per strip for a fourth strip that was not chosen.
 const ROWS_OF_FOURTH: u16 = 9;
-/// The least range of measured quantities, as a share of their size.
+/// Minimum range of measured quantities, as a fraction of their size.
 const SHARE_LEAST: f64 = 1e-3;
-/// The least range of the distance from the exact motion, as a share of the distance between pivot and traced point.
+/// Minimum range of the distance from the exact motion, as a fraction of the distance between pivot and traced point.
 const DISTANCE_LEAST: f64 = 1e-9;
-/// The least range of residuals, where nothing has been compared yet.
+/// Minimum range of residuals before any point has been compared.
 const RESIDUAL_LEAST: f64 = 1e-9;
 
+/// Quantity shown by a strip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum StripContent {
     Curve(RecordedCurve),
-    /// The quantity of this index among the measured ones, if it is none of those curves.
+    /// The measured quantity with this index, if it is not one of those curves.
     Measured(usize),
-    /// The distance from the exact motion.
+    /// Distance from the exact motion.
     Distance,
-    /// The column of the CSV that is recorded beside the run.
+    /// The CSV column that is recorded with the run.
     Column,
 }
 
 impl Traces<'_> {
-    /// Returns the strips that fit into `height` rows, from the top, and whether each shows residuals. Measured quantities
-    /// go before the others.
+    /// Returns the strips that fit into `height` rows, from the top, each with true if it shows residuals. If there are
+    /// measured quantities, only these are shown.
     pub(super) fn contents(&self, height: u16) -> Vec<(StripContent, bool)> {
         let measured = self.measured_contents();
         let mut contents: Vec<_> = if measured.is_empty() {
@@ -51,8 +53,9 @@ impl Traces<'_> {
         contents
     }
 
-    /// Returns x, y and z, and a fourth strip if there is room. If there is not, a chosen one takes the place of y. On few
-    /// rows z is alone, or below the chosen one.
+    /// Returns x, y and z, and a fourth strip if there is room.
+    ///
+    /// Without room, a chosen fourth strip replaces y. On few rows, only z and a chosen strip are shown.
     fn curves(&self, height: u16) -> Vec<StripContent> {
         let [x, y, z, tilt] = RecordedCurve::ALL.map(StripContent::Curve);
         let (fourth, is_chosen) = match self.0.view.look.detail_of {
@@ -83,7 +86,7 @@ impl Traces<'_> {
         }
     }
 
-    /// Returns what was measured, the curves that every run has before the others.
+    /// Returns the measured quantities, beginning with the curves that every run has.
     fn measured_contents(&self) -> Vec<StripContent> {
         let Some(measured) = self.0.measured else {
             return Vec::new();
@@ -110,7 +113,7 @@ impl Traces<'_> {
         }
     }
 
-    /// Returns the measured values of `content`; `None` if it was not measured.
+    /// Returns the measured values of `content`, or `None` if it was not measured.
     pub(super) fn points(&self, content: StripContent) -> Option<&[ComparedPoint]> {
         let index = self.index(content)?;
         let curves = &self.0.measured?.compared.curves;
@@ -136,7 +139,8 @@ impl Traces<'_> {
         }
     }
 
-    /// Returns the range of values of a strip, magnified about the value at the cursor or else the run's present one.
+    /// Returns the range of values of a strip, magnified about the value at the cursor or else about the run's present
+    /// value.
     pub(super) fn scale(&self, content: StripContent, is_residual: bool) -> StripScale {
         let magnified = self.0.view.magnified;
         let (whole, about) = if is_residual {
@@ -213,7 +217,7 @@ impl Traces<'_> {
     }
 }
 
-/// Returns the scale of the residuals of `points`, with their uncertainties.
+/// Returns the scale of the residuals of `points`, including their uncertainties.
 fn residual_scale(points: Option<&[ComparedPoint]>) -> StripScale {
     let residuals = points.unwrap_or_default().iter().filter_map(|point| {
         let residual = point.residual()?;

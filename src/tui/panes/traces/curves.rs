@@ -1,4 +1,4 @@
-//! The curves of a strip: which recordings they come from, and how they are drawn.
+//! The curves of a strip: their recordings, and how they are drawn.
 
 use super::canvas::{Canvas, Layer};
 use super::content::StripContent;
@@ -9,17 +9,19 @@ use crate::lab::playback::envelope::{Rows, envelope};
 use crate::lab::playback::scale::StripScale;
 use std::ops::Range;
 
-/// Columns of cells after which the dashes of the exact motion repeat, and how many of them are drawn.
+/// Period of the exact motion's dashes, and length of a dash, in columns of cells.
 const EXACT_CELLS: (usize, usize) = (3, 2);
-/// The same of the pinned run.
+/// The same for the pinned run.
 const PINNED_CELLS: (usize, usize) = (7, 5);
-/// Columns of dots after which the dots of the previous run repeat.
+/// Period of the previous run's dots, in columns of dots.
 const PREVIOUS_DOTS: usize = 3;
 
-/// A value on the edge between two dots counts as below it: a constant would else go up and down with its rounding.
+/// Tolerance, in rows of dots, by which a value on the edge between two dots counts as below it.
+///
+/// Otherwise a constant would move up and down with its rounding.
 const DOT_ROUNDING: f64 = 1e-4;
 
-/// Whose curve it is, in the order in which they are drawn.
+/// Motion that a curve shows, in drawing order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum CurveOwner {
     Previous,
@@ -52,7 +54,7 @@ impl Traces<'_> {
             .bins(recording)
             .columns(curve, self.cuts(owner, marks));
         if owner == CurveOwner::Run {
-            // What follows the run may have been further.
+            // The run may have been ahead of its present time; that part is not drawn.
             let now_s = self.0.run.now().time_s;
             let shown = plot.strip.shown(plot.strip.begin_s, now_s);
             extents[shown.end..].fill(None);
@@ -76,7 +78,7 @@ impl Traces<'_> {
         }
     }
 
-    /// Returns the stretches of columns of cells in which the exact motion is above the strip, and below it.
+    /// Returns the ranges of cells in which the exact motion is above the strip, and those in which it is below.
     pub(super) fn exact_outside(&self, plot: &Plot, height: usize) -> [Vec<Range<usize>>; 2] {
         let Some((recording, curve)) = self.recorded(CurveOwner::Exact, plot.content) else {
             return [Vec::new(), Vec::new()];
@@ -91,8 +93,7 @@ impl Traces<'_> {
         ]
     }
 
-    /// Returns the recording that has what `content` shows of the motion of `owner`, and which of its curves it is; `None`
-    /// if it is not shown.
+    /// Returns the recording of `content` for the motion of `owner`, and the curve in it, or `None` if it is not shown.
     pub(super) fn recorded(
         &self,
         owner: CurveOwner,
@@ -130,7 +131,7 @@ impl Traces<'_> {
         }
     }
 
-    /// Returns the times that no line of a curve crosses, s.
+    /// Returns the times at which a curve is interrupted, s.
     fn cuts<'s>(&'s self, owner: CurveOwner, marks: &'s Marks) -> &'s [f64] {
         let ghost = match owner {
             CurveOwner::Run => return &marks.edits,
@@ -141,7 +142,7 @@ impl Traces<'_> {
         ghost.map_or(&[], |ghost| &ghost.marks.edits)
     }
 
-    /// Returns the extremes in the window of a quantity that is recorded beside the run.
+    /// Returns the extremes of a recorded quantity in the window.
     pub(super) fn recorded_extent(&self, content: StripContent) -> Option<Extent> {
         let window = &self.0.view.window;
         CURVE_OWNERS
@@ -153,7 +154,7 @@ impl Traces<'_> {
             .reduce(Extent::and)
     }
 
-    /// Returns what was recorded of `content` at a step at `time_s`.
+    /// Returns the recorded value of `content` for the step at `time_s`.
     pub(super) fn value_at(&self, content: StripContent, time_s: f64) -> Option<f64> {
         let (recording, curve) = self.recorded(CurveOwner::Run, content)?;
         let bin = recording.between(time_s, time_s).last()?;
@@ -161,7 +162,7 @@ impl Traces<'_> {
     }
 }
 
-/// Returns the rows of `extents` on a canvas of `height` rows of dots, in each column. They may be outside of it.
+/// Returns the rows of `extents` on a canvas of `height` rows of dots, for each column. They may be outside the canvas.
 pub fn rows(extents: &[Option<Extent>], scale: &StripScale, height: usize) -> Vec<Option<Rows>> {
     let last = height.saturating_sub(1) as f64;
     let row = |value: f64| (scale.from_top(value) * last + DOT_ROUNDING).round();
@@ -169,7 +170,7 @@ pub fn rows(extents: &[Option<Extent>], scale: &StripScale, height: usize) -> Ve
     extents.iter().map(|extent| extent.map(rows)).collect()
 }
 
-/// Draws a run as a line, or as an envelope where its swings are unresolved; `layer` is that of a column.
+/// Draws a run as a line, or as an envelope where its swings are unresolved. `layer` returns the layer of a column.
 pub fn draw_run(columns: &[Option<Rows>], layer: impl Fn(usize) -> Layer, canvas: &mut Canvas) {
     let envelope = envelope(columns);
     let mut before: Option<Rows> = None;
@@ -198,7 +199,7 @@ fn toward(row: f64, before: f64) -> Rows {
     }
 }
 
-/// Returns the stretches of cells, `across` columns each, in all columns of which `is_outside`.
+/// Returns the ranges of cells, `across` columns each, in which `is_outside` holds for every column.
 fn stretches(
     columns: &[Option<Rows>],
     across: usize,

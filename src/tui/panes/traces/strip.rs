@@ -1,4 +1,4 @@
-//! A strip as it is drawn: its rule with what happens in its time, its curves, and the cursor.
+//! A strip: its rule with pushes and edits, its curves, and the cursor.
 
 use super::axis::{Gutter, value_text};
 use super::canvas::{Canvas, Layer};
@@ -15,21 +15,23 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 
-/// On the first strip's rule while the window is held.
+/// Text on the first strip's rule while the window is held.
 const HELD_TEXT: &str = "every 1 s";
 const EXACT_WORD: &str = "exact";
-/// What the last strip's rule says of curves beside the run.
+/// Legend of the exact motion.
 const EXACT_LEGEND: &str = "╌╌ exact";
-/// The legend where the run covers it everywhere.
+/// Legend of the exact motion if the run covers it everywhere.
 const COVERED_EXACT_LEGEND: &str = "exact under run";
 const PREVIOUS_LEGEND: &str = "··· previous run";
 const PINNED_LEGEND: &str = "-- pinned run";
-/// What the rule says of a strip with measured values.
+/// Suffix of a strip's title for residuals.
 const RESIDUAL_SUFFIX: &str = "data - run";
+/// Mark of a push on the rule.
 pub const PUSH_BAR: &str = "━";
+/// Mark of an edit on the rule.
 pub const EDIT_MARK: &str = "┴";
 const CURSOR_LINE: char = '│';
-/// The dots of the cursor's line in a cell of small dots.
+/// Dots of the cursor's line in a cell of small dots.
 const CURSOR_BITS: u32 = 0x47;
 
 impl Traces<'_> {
@@ -77,7 +79,7 @@ impl Traces<'_> {
         self.draw_cursor(plot, buf);
     }
 
-    /// Marks on the rule of `plot`, beside its title of so many columns, where pushes act and where the run was edited.
+    /// Marks pushes and edits on the rule of `plot`, to the right of its title of `title_columns`.
     fn mark_rule(&self, plot: &Plot, title_columns: u16, marks: &Marks, buf: &mut Buffer) {
         let across = self.0.view.marker.dots().0;
         let line = self.rule_line(plot);
@@ -96,7 +98,7 @@ impl Traces<'_> {
         }
     }
 
-    /// The part of the rule that is above the curves.
+    /// Returns the part of the rule above the curves.
     fn rule_line(&self, plot: &Plot) -> Rect {
         Rect {
             y: plot.area.y,
@@ -105,7 +107,7 @@ impl Traces<'_> {
         }
     }
 
-    /// Draws the dots of the shown moment, where the run's curve ends.
+    /// Draws the dots of the displayed time at the end of the run's curve.
     fn draw_now(&self, plot: &Plot, canvas: &mut Canvas) {
         let now = self.0.run.now();
         let value = match plot.content {
@@ -133,7 +135,7 @@ impl Traces<'_> {
         }
     }
 
-    /// Draws the measured points of `plot`: those that the run has not reached are faint; as residuals they do not show.
+    /// Draws the measured points of `plot`. Points that the run has not reached are faint, and have no residual.
     fn draw_points(&self, plot: &Plot, buf: &mut Buffer) {
         let (strip, sheet) = (&plot.strip, plot.sheet);
         let all = self.points(plot.content).unwrap_or_default();
@@ -156,7 +158,7 @@ impl Traces<'_> {
             } else {
                 Role::Label
             };
-            // The lowest value is on the last row.
+            // The minimum value is on the last row.
             let row = |number: f64| plot.scale.from_top(number) * height;
             let at = if row(value) == height {
                 height - 1.0
@@ -184,7 +186,8 @@ impl Traces<'_> {
         }
     }
 
-    /// Names the curves beside the run: the exact motion at the end of its line where there is room, the others on the rule.
+    /// Names the curves next to the run: the exact motion at the end of its line if there is room, the others on the
+    /// rule.
     fn legend(&self, plot: &Plot, buf: &mut Buffer) {
         let theme = &self.0.view.theme;
         let is_named = self.name_exact(plot, buf);
@@ -216,7 +219,7 @@ impl Traces<'_> {
         }
     }
 
-    /// Returns whether the run has been so near the exact motion that its dots cover it.
+    /// Returns true if the run is so near the exact motion that its dots cover it.
     fn covers_exact(&self, plot: &Plot) -> bool {
         let readouts = self.0.reading.map(|reading| &reading.readouts);
         let most_m = readouts.and_then(|readouts| readouts.health.most_distance_m);
@@ -226,7 +229,7 @@ impl Traces<'_> {
         })
     }
 
-    /// Writes the name of the exact motion beside the end of its line, if those cells are free.
+    /// Writes the name of the exact motion at the end of its line. Returns false if those cells are not free.
     fn name_exact(&self, plot: &Plot, buf: &mut Buffer) -> bool {
         let StripContent::Curve(curve) = plot.content else {
             return false;
@@ -291,7 +294,7 @@ impl Traces<'_> {
         );
     }
 
-    /// Returns the value that was measured at the step at `time_s`.
+    /// Returns the value measured within half a time step of `time_s`.
     fn measured_at(&self, content: StripContent, time_s: f64) -> Option<f64> {
         let half_s = 0.5 * self.0.run.simulation().motion().time_step_s;
         let points = self.points(content)?;
@@ -301,17 +304,17 @@ impl Traces<'_> {
     }
 }
 
-/// Columns of a rule that its title may take.
+/// Columns of a rule reserved for its title.
 const USUAL_TITLE: u16 = 8;
 
-/// Returns the number of the strip, from 1, that names the curves beside the run: that of z, or else the last.
+/// Returns the number, from 1, of the strip that names the curves: the strip of z, or else the last.
 fn legend_index(plots: &[Plot]) -> usize {
     let z = StripContent::Curve(RecordedCurve::Z);
     let index = plots.iter().position(|plot| plot.content == z);
     index.map_or(plots.len(), |index| index + 1)
 }
 
-/// Draws a line from top to bottom at column `x` of `area`, through whatever is there.
+/// Draws a vertical line at column `x` of `area`, over its content.
 pub fn cursor_line(x: u16, area: Rect, style: Style, buf: &mut Buffer) {
     if x >= area.width {
         return;
