@@ -1,4 +1,5 @@
-//! The advice about doubtful numbers: the search for it in the background, what is offered, and the run that follows it.
+//! Advice about unreliable numbers: the background search for it, the offer to the user, and the run that follows the
+//! offer.
 
 use super::command::Command;
 use super::player::Player;
@@ -11,19 +12,19 @@ use crate::lab::playback::background::{self, BackgroundJob};
 use std::sync::Arc;
 use toml::Table;
 
-/// What would mend the present run, and can be done to it.
+/// A change that would make the present run reliable.
 pub(super) struct Offer {
-    /// In words: a scheme and a time step.
+    /// The scheme and the time step, in words.
     pub(super) what: String,
-    /// " from the start" where the run has it already from an edit on; otherwise empty.
+    /// " from the start" if the run already has them since an edit; otherwise empty.
     since: &'static str,
-    /// The run from its start, as advised.
+    /// The run from its start, with the advised scheme and time step.
     pub(super) scenario: Arc<Scenario>,
 }
 
 #[derive(Default)]
 pub struct Adviser {
-    /// Whether to look for a scheme or time step that would make doubtful numbers right.
+    /// True to search for a scheme or time step whenever numbers are unreliable.
     pub(super) is_on: bool,
     search: Option<BackgroundJob<Advice>>,
     offer: Option<Offer>,
@@ -34,9 +35,9 @@ impl Adviser {
         (self.search, self.offer) = (None, None);
     }
 
-    /// Begins to look for advice if the numbers are doubtful.
+    /// Starts the search if the numbers are unreliable.
     pub(super) fn look(&mut self, player: &Player) {
-        // Not while the user waits for a step to be reached: the search would take a processor from the stepping.
+        // Not during a seek: the search would take a processor from the stepping.
         if self.is_on
             && self.search.is_none()
             && player.steps_to_go().is_none()
@@ -46,14 +47,14 @@ impl Adviser {
         }
     }
 
-    /// Looks for advice if the numbers are doubtful, and waits for it.
+    /// Searches for advice if the numbers are unreliable, and waits for the result.
     pub(super) fn look_now(&mut self, player: &Player) {
         if is_believed(player) == Some(false) {
             self.offer = offered(&advise(&to_be_mended(player)), player);
         }
     }
 
-    /// Takes the answer of the search, if it has just come. Returns whether it has.
+    /// Takes the result of the search if it has just ended. Returns true if it has.
     pub(super) fn advance(&mut self, player: &Player) -> bool {
         let has_come = self.search.as_mut().is_some_and(BackgroundJob::take_news);
         if has_come {
@@ -62,7 +63,7 @@ impl Adviser {
         has_come
     }
 
-    /// What was found that would make doubtful numbers right.
+    /// Returns the result of the search.
     pub fn advice(&self) -> Option<&Advice> {
         self.search.as_ref()?.answer()
     }
@@ -71,15 +72,18 @@ impl Adviser {
         self.search.is_some() && self.advice().is_none()
     }
 
-    /// The scheme and the time step with which the run would be reliable, in words; `None` if none is known, or if this run
-    /// cannot be changed so.
+    /// Returns the scheme and the time step that would make the run reliable, in words; `None` if none are known or the
+    /// run cannot use them.
     pub fn offer(&self, player: &Player) -> Option<String> {
         let is_doubted = is_believed(player) == Some(false);
         let Offer { what, since, .. } = self.offer.as_ref().filter(|_| is_doubted)?;
         Some(format!("{what}{since}"))
     }
 
-    /// The command that follows the advice, or why there is none to follow now.
+    /// Returns the command that follows the advice.
+    ///
+    /// # Errors
+    /// Returns an error if there is no advice now, with the reason.
     pub fn followed(&self, player: &Player) -> Result<Command, String> {
         match self.why_none(player) {
             Some(reason) => Err(reason.to_owned()),
@@ -98,7 +102,10 @@ impl Adviser {
         }
     }
 
-    /// The run that follows the advice. Where no advice has come yet, it is looked for at once.
+    /// Takes the offer. If the search has not ended, searches at once and waits.
+    ///
+    /// # Errors
+    /// Returns an error if there is nothing to fix or nothing was found.
     pub(super) fn take_offer(&mut self, player: &Player) -> Result<Offer, String> {
         if let Some(reason) = self.why_none(player).filter(|_| !self.is_seeking()) {
             return Err(reason.to_owned());
@@ -116,8 +123,10 @@ fn is_believed(player: &Player) -> Option<bool> {
     player.reading.readouts.health.is_believed()
 }
 
-/// The run for which advice is sought, up to the later of its end and the step that it has reached. After an edit
-/// of the time step at step 0 the scenario has as many steps as before, but the lab plays as many seconds.
+/// Returns the run for which advice is sought, up to its end or to the present step, whichever is later.
+///
+/// After an edit of the time step at step 0 the scenario has as many steps as before, but the lab plays as many
+/// seconds.
 fn to_be_mended(player: &Player) -> Arc<Scenario> {
     let scenario = player.run().scenario();
     let end_s = player.end_s.max(player.run().now().time_s);
@@ -131,7 +140,7 @@ fn to_be_mended(player: &Player) -> Arc<Scenario> {
     })
 }
 
-/// The offer that `advice` makes; `None` where nothing is to be done, or where this run cannot be changed so.
+/// Returns the offer that `advice` makes; `None` if there is nothing to change or this run cannot be changed that way.
 fn offered(advice: &Advice, player: &Player) -> Option<Offer> {
     let (time_step_s, scheme) = match *advice {
         Advice::TimeStep(time_step_s) => (time_step_s, None),

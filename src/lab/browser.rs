@@ -1,4 +1,4 @@
-//! The browser: the list of presets and files, the filter, the selected entry and its preview.
+//! The browser: the list of presets and files, its filter, the selected entry, and a preview of the entry.
 
 use crate::engine::scenario::presets::PRESETS;
 use crate::engine::scenario::{Document, Scenario};
@@ -6,13 +6,14 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-/// The name of the entry that leads to the folder above.
+/// The name of the entry for the parent folder.
 const PARENT_FOLDER: &str = "../";
 
-/// A preset or file that can be opened, or a folder of them.
+/// A preset or file that can be opened, or a folder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BrowserEntry {
-    /// The name of the preset or the path of the file, as SCENARIO on the command line; that of a folder ends in `/`.
+    /// The name of the preset or the path of the file, as SCENARIO on the command line. The path of a folder ends in
+    /// `/`.
     pub name: String,
     pub is_file: bool,
     pub is_folder: bool,
@@ -21,13 +22,14 @@ pub struct BrowserEntry {
 #[derive(Debug, Default)]
 pub struct Browser {
     entries: Vec<BrowserEntry>,
-    /// The folder whose files are listed, the one whose files were listed first, and those through which the way led down.
+    /// The listed folder. `first` is the folder listed first, and `passed` contains the folders on the way down from
+    /// it.
     folder: PathBuf,
     first: PathBuf,
     passed: Vec<PathBuf>,
-    /// Another folder, whose files are listed before those of the first.
+    /// Another folder, whose files are listed before those of `first`.
     pub also: Option<PathBuf>,
-    /// How many files of the folder are left out because they hold no run.
+    /// Number of files in the folder that are not listed because they contain no run.
     pub others: usize,
     /// The name of the entry that is open in the lab.
     open: String,
@@ -36,11 +38,11 @@ pub struct Browser {
     preview: Option<(BrowserEntry, Preview)>,
 }
 
-/// The scenario of an entry, or why it cannot be opened.
+/// The scenario of an entry, or the reason why it cannot be opened.
 pub type Preview = Result<Scenario, String>;
 
 impl Browser {
-    /// Lists presets, and the scenario, run and CSV files in `folder` for which `may_be_read` is true, with `name` selected.
+    /// Lists presets, and the scenario, run and CSV files in `folder` that `may_be_read` admits. Selects `name`.
     pub fn begin(&mut self, folder: &Path, name: &str, may_be_read: impl Fn(&Path) -> bool) {
         self.passed.clear();
         self.first = folder.to_owned();
@@ -50,8 +52,10 @@ impl Browser {
         self.refilter();
     }
 
-    /// Lists the files of the selected folder instead; where that is the one above, the folder from which the way led up is
-    /// selected. Returns whether a folder was selected.
+    /// Lists the files of the selected folder instead. Returns false if no folder is selected or the parent cannot be
+    /// found.
+    ///
+    /// If the selected folder is the parent, the folder that was left is selected in it.
     pub fn enter(&mut self, may_be_read: impl Fn(&Path) -> bool) -> bool {
         let chosen = self.choice().filter(|entry| entry.is_folder);
         let Some(name) = chosen.map(|entry| entry.name.clone()) else {
@@ -84,7 +88,7 @@ impl Browser {
         true
     }
 
-    /// Lists presets, and of `folder` the way up, folders and files, as far as `may_be_read` is true for them.
+    /// Lists presets, the parent of `folder`, and its subfolders and files, as far as `may_be_read` admits them.
     fn list(&mut self, folder: &Path, may_be_read: impl Fn(&Path) -> bool) {
         let mut folders = names_in(folder, Path::is_dir, |name| !name.starts_with('.'));
         folders.retain(|name| may_be_read(Path::new(name)));
@@ -128,12 +132,12 @@ impl Browser {
         shown
     }
 
-    /// Returns the folder whose files are listed, where that is not the first one.
+    /// Returns the listed folder; `None` if it is the first one.
     pub fn folder(&self) -> Option<&Path> {
         (self.folder != self.first).then_some(&self.folder)
     }
 
-    /// Returns how many of all entries are files.
+    /// Returns the number of files among all entries.
     pub fn files(&self) -> usize {
         self.entries.iter().filter(|entry| entry.is_file).count()
     }
@@ -146,27 +150,27 @@ impl Browser {
         self.preview.as_ref().map(|(_, preview)| preview)
     }
 
-    /// Selects the entry of this number among those that are shown.
+    /// Selects the listed entry with the index `row`.
     pub fn select(&mut self, row: usize) {
         self.shift(row as isize - self.selected as isize);
     }
 
-    /// Moves the selection by `rows`; it stops at both ends.
+    /// Moves the selection by `rows`. It stops at both ends.
     pub fn shift(&mut self, rows: isize) {
         let last = self.shown().len().saturating_sub(1);
         self.selected = self.selected.saturating_add_signed(rows).min(last);
         self.load_preview();
     }
 
-    /// Changes the filter, and selects the first entry that is then shown. `/` begins a search in other panes: at the
-    /// beginning it means nothing here.
+    /// Changes the filter, and selects the first entry that matches. A leading `/` is ignored, because it starts a
+    /// search in other panes.
     pub fn filter_by(&mut self, change: impl FnOnce(&mut String)) {
         change(&mut self.filter);
         self.filter = self.filter.trim_start_matches('/').to_owned();
         self.refilter();
     }
 
-    /// Selects the first entry that is shown; without a filter, the one that is open.
+    /// Selects the first listed entry, or without a filter the entry that is open in the lab.
     fn refilter(&mut self) {
         let open = self
             .entries
@@ -188,19 +192,19 @@ impl Browser {
     }
 }
 
-/// Files beyond this many are not listed, nor are folders.
+/// Maximum number of files that are listed, and of folders.
 const MOST_FILES: usize = 1000;
-/// How many bytes of a file are searched for its `[motion]`.
+/// Number of bytes at the start of a file that are searched for `[motion]`.
 const PREVIEW_BYTES: u64 = 1 << 16;
 
-/// Returns the paths of the entries of `folder` that are of a kind and have a name that is wanted, in the order of names.
+/// Returns the sorted paths of the entries of `folder` for which `is_kind` and `is_wanted` (of the name) are true.
 fn names_in(
     folder: &Path,
     is_kind: fn(&Path) -> bool,
     is_wanted: impl Fn(&str) -> bool,
 ) -> Vec<String> {
     let Ok(entries) = std::fs::read_dir(folder) else {
-        return Vec::new(); // a folder that cannot be read has nothing to offer
+        return Vec::new(); // an unreadable folder is shown as empty
     };
     let mut names: Vec<_> = entries
         .flatten()
@@ -225,9 +229,11 @@ fn above(folder: &Path) -> Option<PathBuf> {
     full.parent().map(Path::to_owned)
 }
 
-/// Returns whether the file `name` may hold a run: its beginning names `motion`, as a table or key of a scenario or in
-/// the header of an exported CSV. A file that cannot be read counts too, the preview says why; and so does a long
-/// scenario, in which a body of many points may stand before it.
+/// Returns true if the file `name` may contain a run.
+///
+/// This is so if its beginning names `motion`, as a table or key of a scenario or in the header of an exported CSV. A
+/// file that cannot be read counts too: its preview says why. A long scenario also counts, because a body of many
+/// points may come before `motion`.
 fn may_hold_run(name: &str) -> bool {
     let mut head = Vec::new();
     let read = File::open(name).and_then(|file| file.take(PREVIEW_BYTES).read_to_end(&mut head));

@@ -1,4 +1,4 @@
-//! A dialog: the form that the user fills in, and what the answer is for.
+//! A dialog: the form that the user fills in, and its purpose.
 
 use super::action::{Ask, FieldEdit};
 use super::answer::Refusal;
@@ -27,50 +27,50 @@ const DIALOG_KEYS: &str = "Enter: apply   Esc: cancel";
 const KEYS_OF_TWO: &str = "Enter: write the file   Tab: next field   Esc: cancel";
 const KEYS_OF_SETTINGS: &str = "Left, Right or Enter: change   Esc: close";
 
-/// A form on top of the panes, and the question that it asks.
+/// A form on top of the panes, and its purpose.
 #[derive(Clone, Debug)]
 pub struct Dialog {
     pub(super) question: DialogKind,
     pub form: InputForm,
-    /// The existing file that the user was last asked about: the next Enter replaces it.
+    /// The existing file that the next Enter replaces, after the user was asked.
     asked_to_replace: Option<PathBuf>,
 }
 
 #[derive(Clone, Debug)]
 pub(super) enum DialogKind {
-    /// The value of the selected line of the parameters pane.
+    /// A value of the selected row of the values pane.
     Value(ValueEffect),
     GoTo,
-    /// The CSV file for the rows of this run, and how many of the rows to write.
+    /// The CSV file for the rows of this run, and the interval of the rows.
     Export(Arc<Scenario>),
-    /// The file for a figure of the run up to this step, and its kind.
+    /// The file of a figure of the run up to this step, and its kind.
     Figure(u64),
-    /// The run file for the run up to this step.
+    /// The run file of the run up to this step.
     SaveRun(u64),
-    /// The file for this text, a scenario that starts from the present state. The text was made when the dialog was
-    /// opened, since the run may go on while the user types.
+    /// The file for this text, a scenario that starts from the present state. The text was created when the dialog was
+    /// opened, because the run may continue while the user types.
     SavePresent(String),
-    /// A number in this unit that a room above the lab asks for.
+    /// A number in this unit, requested by a module above the lab.
     Number(String),
-    /// Other values of the settings.
+    /// New values of the settings.
     Settings {
-        /// What is typed: only settings that have it in their labels are listed.
+        /// The typed text. Only settings whose labels match it are listed.
         filter: String,
         /// The rows of all settings.
         all: Vec<InputField>,
     },
 }
 
-/// When a value that is typed takes effect.
+/// The time at which a typed value takes effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ValueEffect {
-    /// It changes no motion: it is applied at once.
+    /// At once, because it does not change the motion.
     AtOnce,
-    /// In a new run, from its start.
+    /// From the start of a new run.
     Rerun,
-    /// As `Rerun`; Tab chooses `FromNowOn`.
+    /// The same as `Rerun`, but Tab switches to `FromNowOn`.
     RerunByChoice,
-    /// From the next step on; Tab chooses `RerunByChoice`.
+    /// From the next step on. Tab switches to `RerunByChoice`.
     FromNowOn,
 }
 
@@ -102,13 +102,13 @@ impl ValueEffect {
 }
 
 impl Dialog {
-    /// Asks for a step or a time to go to.
+    /// Creates a dialog that asks for a step or a time to go to.
     pub(super) fn go_to() -> Self {
         let fields = [("to", String::new())];
         Self::new(DialogKind::GoTo, "go to a step or a time", &fields, [WHERE])
     }
 
-    /// Asks for the selected one of `values`; `None` if none is shown.
+    /// Creates a dialog that asks for the selected value; `None` if no value is shown.
     pub(super) fn value(values: &Values) -> Option<Self> {
         let value = values.list.selected()?;
         let title = match &value.key {
@@ -134,10 +134,10 @@ impl Dialog {
         Some(dialog)
     }
 
-    /// Opens the dialog that asks for what `ask` says.
+    /// Creates the dialog for the purpose `ask`.
     ///
     /// # Errors
-    /// Why there is nothing to ask for now.
+    /// Returns an error if there is nothing to ask for now.
     pub(super) fn open(
         ask: Ask,
         files: &Files,
@@ -177,7 +177,7 @@ impl Dialog {
         }
     }
 
-    /// Asks for the CSV file of the run `scenario`; it offers `path`.
+    /// Creates a dialog that asks for the CSV file of the run `scenario`, and suggests `path`.
     fn export(scenario: Arc<Scenario>, path: String) -> Self {
         let fields = [("file", path), ("every", "1".to_owned())];
         let title = format!(
@@ -189,8 +189,8 @@ impl Dialog {
         dialog
     }
 
-    /// Asks for the file of a figure of the run up to `step`; it offers `path` and the picture of the
-    /// pane in `focus`.
+    /// Creates a dialog that asks for the file of a figure of the run up to `step`. It suggests `path` and the figure
+    /// of the pane in `focus`.
     fn figure(step: u64, path: String, focus: Pane) -> Self {
         let kind = match focus {
             Pane::Above | Pane::ThreeD => focus.id(),
@@ -206,7 +206,8 @@ impl Dialog {
         Self::new(DialogKind::Figure(step), &title, &fields, info)
     }
 
-    /// Asks for the run file of the run up to `step`, which leaves out `later` actions; it offers `path`.
+    /// Creates a dialog that asks for the run file of the run up to `step`, and suggests `path`. The file does not
+    /// contain `later` actions.
     fn save_run(step: u64, later: usize, path: String) -> Self {
         let left_out =
             format!("without {later} later actions: go to the end of the run to have them in it");
@@ -221,7 +222,7 @@ impl Dialog {
         )
     }
 
-    /// Asks for the file of the scenario `content`; it offers `path`.
+    /// Creates a dialog that asks for the file of the scenario `content`, and suggests `path`.
     fn save_present(content: String, path: String) -> Self {
         let info = "a scenario that starts from the state on the screen";
         let question = DialogKind::SavePresent(content);
@@ -229,15 +230,15 @@ impl Dialog {
         Self::new(question, title, &[("file", path)], [info])
     }
 
-    /// Asks for a number in `unit`, which is empty for a pure number.
+    /// Creates a dialog that asks for a number in `unit`, which is empty for a pure number.
     pub(super) fn number(title: &str, unit: &str, about: &str) -> Self {
         let label = if unit.is_empty() { "number" } else { unit };
         let fields = [(label, String::new())];
         Self::new(DialogKind::Number(unit.to_owned()), title, &fields, [about])
     }
 
-    /// Lists the settings that have `filter` in their labels, with the values that they have in `view`; the row `selected` is
-    /// selected.
+    /// Creates a dialog that lists the settings whose labels match `filter`, with their values in `view`. The row
+    /// `selected` is selected.
     pub(super) fn settings(view: &View, filter: &str, selected: usize) -> Self {
         let info = "markers, colors, background, frames and mouse are kept for the next time";
         let settings = SETTINGS.iter();
@@ -252,7 +253,7 @@ impl Dialog {
         dialog
     }
 
-    /// Changes what filters the settings, and lists those that match it.
+    /// Changes the filter of the settings, and lists the settings that match it.
     fn filter_settings(&mut self, change: impl FnOnce(&mut String)) {
         let DialogKind::Settings { filter, all } = &mut self.question else {
             return;
@@ -270,7 +271,7 @@ impl Dialog {
         };
     }
 
-    /// Lists all settings again; returns whether some were left out.
+    /// Clears the filter of the settings. Returns false if there was none.
     pub(super) fn clear_filter(&mut self) -> bool {
         let is_filtered = self
             .setting_filter()
@@ -281,7 +282,7 @@ impl Dialog {
         is_filtered
     }
 
-    /// Returns what filters the settings; `None` in another dialog.
+    /// Returns the filter of the settings; `None` in another dialog.
     pub(super) fn setting_filter(&self) -> Option<&str> {
         match &self.question {
             DialogKind::Settings { filter, .. } => Some(filter),
@@ -289,13 +290,13 @@ impl Dialog {
         }
     }
 
-    /// Returns the number of the selected setting among all of [`SETTINGS`].
+    /// Returns the index of the selected setting in [`SETTINGS`].
     pub(super) fn selected_setting(&self) -> Option<usize> {
         let label = &self.form.fields.get(self.form.selected)?.label;
         SETTINGS.iter().position(|setting| setting.label == label)
     }
 
-    /// Creates a dialog with `fields`, each with its label and the text that it offers, and the lines `info` below them.
+    /// Creates a dialog with `fields`, each with its label and suggested text, and the lines `info` below them.
     fn new(
         question: DialogKind,
         title: &str,
@@ -319,7 +320,7 @@ impl Dialog {
         }
     }
 
-    /// Returns whether a value is typed, in its row of the values pane.
+    /// Returns true if the dialog asks for a value, in its row of the values pane.
     pub fn is_of_value(&self) -> bool {
         matches!(self.question, DialogKind::Value(_))
     }
@@ -328,15 +329,15 @@ impl Dialog {
         self.setting_filter().is_some()
     }
 
-    /// Returns whether the user has confirmed that the existing file `path` is to be replaced.
+    /// Returns true if the user has confirmed replacing the existing file `path`.
     pub(super) fn may_replace(&self, path: &Path) -> bool {
         self.asked_to_replace.as_deref() == Some(path)
     }
 
-    /// Returns the command that the answer stands for; `None` where it changes nothing.
+    /// Returns the command of the answer; `None` if it changes nothing.
     ///
     /// # Errors
-    /// Why it is refused.
+    /// Returns an error if the answer is refused.
     pub(super) fn command(
         &self,
         files: &Files,
@@ -378,7 +379,7 @@ impl Dialog {
         }))
     }
 
-    /// Returns the interval of the rows to write, as typed in the second field: 10 stands for each tenth row.
+    /// Returns the interval of the rows to write, as typed in the second field: 10 means every tenth row.
     fn every(&self) -> Result<NonZeroU64, String> {
         let text = self.form.text(1).trim();
         text.parse()
@@ -416,7 +417,7 @@ impl Dialog {
         }
     }
 
-    /// Shows how many rows and bytes an export would write. Other dialogs stay as they are.
+    /// Shows the number of rows and bytes that an export would write. Does nothing in other dialogs.
     fn show_estimate(&mut self) {
         let DialogKind::Export(scenario) = &self.question else {
             return;
@@ -434,7 +435,7 @@ impl Dialog {
         };
     }
 
-    /// Returns the same dialog with the reason why the answer was refused.
+    /// Returns the dialog with the reason why its answer was refused.
     pub(super) fn with_error(mut self, refusal: Refusal) -> Self {
         self.asked_to_replace = None;
         let complaint = match refusal {
@@ -447,13 +448,13 @@ impl Dialog {
                 format!("{} exists: Enter again replaces it", PrintablePath(path))
             }
         };
-        self.form.info.retain(|line| *line != complaint); // it is said once
+        self.form.info.retain(|line| *line != complaint); // shown only once
         self.form.complaint = Some(complaint);
         self
     }
 }
 
-/// Returns what the dialog says about a parameter: its meaning and its choices.
+/// Returns the lines about a parameter: its meaning and its choices.
 fn about(parameter: &Parameter) -> Vec<String> {
     let mut lines = vec![parameter.spec.about.to_owned()];
     if parameter.value.is_bool() {

@@ -1,4 +1,4 @@
-//! What the user does to the run: values and pushes, undo and redo, and the opening of another scenario.
+//! The user's edits of the run: values and pushes, undo and redo, and opening another scenario.
 
 use super::advice::Offer;
 use super::answer::{ActionResult, Done, PendingAction, Refusal};
@@ -17,7 +17,7 @@ use std::sync::Arc;
 use std::time::Duration;
 use toml::Table;
 
-/// The words of messages about undo and redo: if there is nothing to do, what was done, to which run it leads, the way back.
+/// The texts of messages about undo and redo: nothing to do, the effect, the run that was reached, and the way back.
 const UNDO: [&str; 4] = [
     "nothing to undo",
     "undone",
@@ -31,7 +31,7 @@ const REDO: [&str; 4] = [
     "u takes it back",
 ];
 
-/// Ends the message about an edit with which the run has begun anew.
+/// The end of the message about an edit that restarted the run.
 const FROM_START: &str = "rerun from the start; u returns to the previous run";
 
 /// The runs, and the values that can be edited.
@@ -50,9 +50,9 @@ pub(super) struct ScenarioEdit {
 enum EditMessage {
     Nothing,
     Text(String),
-    /// The value of this key, and from when on it acts.
+    /// The value of this key, and when it takes effect.
     Value(String),
-    /// The value of this key, with which the run has begun anew.
+    /// The value of this key, with which the run was restarted.
     ValueFromStart(String),
 }
 
@@ -66,7 +66,7 @@ impl Edits {
         }
     }
 
-    /// Takes up the journal and the push to come of a session.
+    /// Restores the journal and the next push of a session.
     pub(super) fn resume(
         &mut self,
         journal: Journal,
@@ -79,14 +79,14 @@ impl Edits {
         self.values.suit(player.run().scenario());
     }
 
-    /// Records the push to come, and `step` as the one at which the present run may be left now.
+    /// Records the next push, and `step` as the step at which the present run is left. Returns the journal.
     fn leave_at(&mut self, step: u64) -> &mut Journal {
         let journal = self.runs.journal_mut();
         journal.set_left_at(step, &self.values.next_push);
         journal
     }
 
-    /// Leaves the present run for that of `scenario`, opened as `name`.
+    /// Switches to the run of `scenario`, opened as `name`.
     pub(super) fn open(
         &mut self,
         name: &str,
@@ -103,8 +103,9 @@ impl Edits {
         }
     }
 
-    /// Sets all keys of `table` as one act; with `coalesces`, undo takes it back together with the act before. Keys of body
-    /// and start begin a new run; the others act from the next step on.
+    /// Sets all keys of `table` as one edit. With `coalesces`, a single undo restores it and the edit before.
+    ///
+    /// Keys of body and start begin a new run. The others take effect from the next step on.
     pub(super) fn set(&mut self, table: &Table, coalesces: bool, player: &Player) -> Edited {
         let keys = table.clone().into_iter();
         let (new, rest): (Table, Table) =
@@ -120,9 +121,10 @@ impl Edits {
         self.perform(acts, coalesces, said, player)
     }
 
-    /// Sets all keys of `table` in a new run, the present one from its start, which is played to the same time. Values on
-    /// which no number depends need no new run. With `coalesces` it replaces the present run, which began with another
-    /// value of the same key.
+    /// Sets all keys of `table` in a new run: the present one from its start, replayed to the same time.
+    ///
+    /// Values that do not affect the numbers need no new run. With `coalesces` the new run replaces the present one,
+    /// which began with another value of the same key.
     pub(super) fn rerun(&mut self, table: &Table, coalesces: bool, player: &Player) -> Edited {
         if table.keys().all(|key| Effect::of_key(key) == Effect::None) {
             return self.set(table, coalesces, player);
@@ -163,7 +165,7 @@ impl Edits {
         Ok(edited)
     }
 
-    /// Pushes from the next step on: with the push to come, but for the values that `choice` has.
+    /// Pushes from the next step on: with the next push, changed by the values of `choice`.
     pub(super) fn push(&mut self, choice: &PushChoice, player: &Player) -> Edited {
         let (push, given) = self.given(choice, player)?;
         let said = format!(
@@ -174,18 +176,19 @@ impl Edits {
         self.perform(acts, false, EditMessage::Text(said), player)
     }
 
-    /// Returns the push that `choice` stands for, as the user chooses it and as it acts at the present step.
+    /// Returns the push of `choice` in two forms: as the user chooses it, and as it acts at the present step.
     fn given(&self, choice: &PushChoice, player: &Player) -> Result<(NextPush, PushFile), String> {
         let push = self.chosen(choice, player)?;
         let run = player.run();
         let mut given = push.given(run.scenario(), run.simulation().state())?;
         if let Some(Force::Vector(vector)) = choice.force_N {
-            given.force_N = vector; // exactly as it was written: norm and direction would round it
+            given.force_N = vector; // the exact numbers: norm and direction would round them
         }
         Ok((push, given))
     }
 
-    /// Returns whether `choice` is a push at the step at which the last one was given, and the run was played on since.
+    /// Returns true if `choice` repeats a push: the last act was a push at the present step, and the run was played on
+    /// since.
     pub(super) fn is_push_tried_again(&self, choice: &PushChoice, player: &Player) -> bool {
         let here = player.step_number();
         self.given(choice, player).is_ok()
@@ -210,8 +213,9 @@ impl Edits {
         self.values.chosen(choice, scenario, time_step_s)
     }
 
-    /// Begins a new run with the values of `set` in its scenario, and does `acts` at its beginning. With `coalesces` it
-    /// replaces the present run, which began with another value of the same key.
+    /// Begins a new run with the values of `set` in its scenario, and with `acts` at its start.
+    ///
+    /// With `coalesces` it replaces the present run, which began with another value of the same key.
     fn begin_with(
         &mut self,
         set: &Table,
@@ -237,7 +241,7 @@ impl Edits {
         })
     }
 
-    /// Begins the run anew as the advice says.
+    /// Restarts the run with the scheme and time step of `offer`.
     pub(super) fn take_offer(&mut self, offer: Offer, player: &Player) -> ScenarioEdit {
         let Offer { what, scenario, .. } = offer;
         let in_place = match edited_motion(player.run().scenario()) {
@@ -257,8 +261,10 @@ impl Edits {
         }
     }
 
-    /// Does `acts` at the present step as one act; with `coalesces`, undo takes them back together with the act before. An
-    /// edit at step 0 of a run that was played further plays it as far again.
+    /// Performs `acts` at the present step as one edit. With `coalesces`, a single undo restores them and the edit
+    /// before.
+    ///
+    /// An edit at step 0 of a run that was played further replays the run to the same time.
     fn perform(
         &mut self,
         acts: Vec<Act>,
@@ -312,7 +318,7 @@ impl Edits {
         self.move_cursor(Journal::redo, REDO, player)
     }
 
-    /// Undoes an act or does one again, with `turn`.
+    /// Undoes or redoes one edit, with `turn`.
     fn move_cursor(
         &mut self,
         turn: fn(&mut Journal) -> &[Arc<JournalEntry>],
@@ -347,8 +353,8 @@ impl Edits {
         })
     }
 
-    /// Prepares the push with which the run of `scenario`, the present one again, was left; `name` is that of the run that
-    /// is left now.
+    /// Restores the next push of the run of `scenario`, to which undo or redo has returned. `name` is the name of the
+    /// run that is left now.
     fn return_to_run(&mut self, name: &str, scenario: &Arc<Scenario>) -> RunChange {
         let is_of_same_name = self.runs.name() == name;
         if !is_of_same_name {
@@ -366,7 +372,7 @@ impl Edits {
         }
     }
 
-    /// Brings up to date what depends on the scenario of `player`, which has changed.
+    /// Updates everything that depends on the scenario of `player`, after it has changed.
     pub(super) fn follow(&mut self, player: &Player) {
         self.runs.compare_with_file(player.run().scenario());
         self.list_values(player);
@@ -376,7 +382,7 @@ impl Edits {
         self.values.list_again(player.run(), self.runs.journal());
     }
 
-    /// Lists the values again if others are in force.
+    /// Lists the values again if other edits are in force at the present step.
     pub(super) fn read(&mut self, player: &Player) {
         let step = player.step_number();
         if self.values.is_outdated(step, self.runs.journal()) {
@@ -384,7 +390,7 @@ impl Edits {
         }
     }
 
-    /// Returns the answer to the command that has made `edit`, which `player` has followed.
+    /// Returns the result of the command that made `edit`, after `player` has applied it.
     pub(super) fn answer(&self, edit: ScenarioEdit, player: &Player) -> Done {
         let said = match edit.said {
             EditMessage::Nothing => None,

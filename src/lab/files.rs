@@ -1,4 +1,4 @@
-//! The files of the lab: their folder, which of them may be read and written, and the export in progress.
+//! The files of the lab: their folder, the permission to read and write them, and the export in progress.
 
 use super::answer::{ActionResult, Done, PendingAction, Refusal};
 use super::command::{Export, FigureCommand, Save};
@@ -26,13 +26,13 @@ use std::sync::Arc;
 pub struct Files {
     /// The folder in which files are read and written; `None` for the working directory.
     folder: Option<PathBuf>,
-    /// The folder outside of which nothing is read or written, if there is one.
+    /// The only folder in which the lab reads and writes, if it is restricted.
     confined: Option<Confined>,
     exporting: Option<Exporting>,
-    /// Why the last export failed, until it has been read.
+    /// The reason why the last export failed, until it has been read.
     failure: Option<String>,
     pub written: Vec<Written>,
-    /// What the header of an export says of where it comes from.
+    /// A line about the origin of the run for the header of an export.
     pub note: Option<String>,
 }
 
@@ -46,22 +46,28 @@ impl Files {
         self.folder.as_deref().unwrap_or(Path::new("."))
     }
 
-    /// From now on reads and writes nothing outside of the folder.
+    /// Restricts all reading and writing to `folder` from now on.
     pub fn confine(&mut self, folder: Confined) {
         self.confined = Some(folder);
     }
 
-    /// The folder outside of which nothing is read or written, if there is one.
+    /// Returns the only folder in which the lab reads and writes, if it is restricted.
     pub fn confined(&self) -> Option<&Confined> {
         self.confined.as_ref()
     }
 
-    /// Whether the file `path` may be read and written.
+    /// Checks that the file `path` may be read and written.
+    ///
+    /// # Errors
+    /// Returns an error if it may not, with the reason.
     pub fn admit(&self, path: &Path) -> Result<(), String> {
         self.confined().map_or(Ok(()), |folder| folder.check(path))
     }
 
-    /// Whether the file `path` may be read; in the lab of a seat also one of the class's folder.
+    /// Checks that the file `path` may be read. The lab of a seat may also read files in the class's folder.
+    ///
+    /// # Errors
+    /// Returns an error if it may not, with the reason.
     pub fn admit_reading(&self, path: &Path) -> Result<(), String> {
         self.confined()
             .map_or(Ok(()), |folder| folder.check_reading(path))
@@ -84,8 +90,9 @@ impl Files {
             .map_err(|problems| format!("{}: {}", problems.origin, problems.in_one_line()))
     }
 
-    /// The text of the measured data `name`: those that come with the program, or a file. `may_wait` says whether it may be
-    /// a FIFO or a device, which is read for any length of time.
+    /// Reads the measured data `name`, shipped with the program or from a file.
+    ///
+    /// If `may_wait` is true, the file may be a FIFO or a device, which can take any length of time to read.
     pub(super) fn measured_text(
         &self,
         name: &str,
@@ -105,12 +112,12 @@ impl Files {
         self.exporting.is_some()
     }
 
-    /// The file that is being written, if one is.
+    /// Returns the path of the running export, if there is one.
     pub(super) fn exported_to(&self) -> Option<&Path> {
         self.exporting.as_ref().map(Exporting::path)
     }
 
-    /// Begins to write the rows of the run.
+    /// Starts writing the rows of the run.
     pub(super) fn export(&mut self, export: &Export, runs: &Runs, player: &Player) -> ActionResult {
         let mut layout = export.layout.clone();
         layout.note.clone_from(&self.note);
@@ -129,7 +136,7 @@ impl Files {
         Ok(Done::saying(said).going_on(PendingAction::Exporting))
     }
 
-    /// Begins to draw a figure of the run.
+    /// Starts drawing a figure of the run.
     pub(super) fn draw(
         &mut self,
         figure: &FigureCommand,
@@ -183,7 +190,7 @@ impl Files {
         }
     }
 
-    /// Checks the export in progress; returns the message about its end once it has ended.
+    /// Checks the running export. Returns a message once it has ended.
     pub(super) fn follow_export(&mut self) -> Option<String> {
         let outcome = self.exporting.as_mut()?.outcome()?;
         self.exporting = None;
@@ -201,12 +208,12 @@ impl Files {
         })
     }
 
-    /// Why the last export failed, if it did. It can be read once.
+    /// Returns the reason if the last export failed, and forgets it.
     pub(super) fn take_failure(&mut self) -> Option<String> {
         self.failure.take()
     }
 
-    /// Ends the export under way; what it has written is removed.
+    /// Ends the running export and removes its file.
     pub(super) fn drop_export(&mut self) {
         self.exporting = None;
     }
@@ -217,13 +224,13 @@ impl Files {
         Some(format!("exporting: {percent:.0} %, Esc stops it"))
     }
 
-    /// The path of the file that the user calls `name`.
+    /// Returns the path of the file that the user calls `name`.
     pub(super) fn path_of(&self, name: &str) -> PathBuf {
         let folder = self.folder.as_deref().filter(|_| !name.is_empty());
         folder.unwrap_or(Path::new("")).join(name)
     }
 
-    /// Writes `content` to the file `path`; `what` names the content in the message.
+    /// Writes `content` to the file `path`. `what` names the content in messages.
     pub(super) fn save(&self, what: &str, content: &str, path: &Path, force: bool) -> ActionResult {
         is_named(path)?;
         if content.len() as u64 > LONGEST_SCENARIO_FILE {
@@ -247,7 +254,7 @@ impl Files {
         })
     }
 
-    /// A free name for a file: `name` without its folder and extension, then `about`, a number if needed, and
+    /// Returns an unused file name: `name` without its folder and extension, then `about`, a number if needed, and
     /// `extension`.
     pub(super) fn free_name(&self, name: &str, about: &str, extension: &str) -> String {
         let whole_stem = Path::new(name)
@@ -256,7 +263,7 @@ impl Files {
         let stem = whole_stem
             .strip_suffix(about)
             .unwrap_or(&whole_stem)
-            .replace(is_steering, "_"); // what is offered can be seen and typed
+            .replace(is_steering, "_"); // the suggested name can be read and typed
         (1..=1000)
             .map(|number| match number {
                 1 => format!("{stem}{about}.{extension}"),
@@ -267,7 +274,8 @@ impl Files {
     }
 }
 
-/// The scenario of the run from step 0 to `to_step`, or to the present step of `player`; `to` says what it is for.
+/// Returns the scenario of the run from step 0 to `to_step`, or to the present step of `player`. The verb `to` says in
+/// messages what the run is needed for.
 pub(super) fn run_up_to(
     to_step: Option<u64>,
     to: &str,
@@ -285,7 +293,8 @@ fn refusal(error: DestinationError) -> Refusal {
     }
 }
 
-/// Refuses a FIFO or a device: reading it may wait for any length of time, which only the command line can do.
+/// Returns an error for a FIFO or a device: only the command line reads these, because they can block for any length of
+/// time.
 fn refuse_waiting(name: &str, instead: &str) -> Result<(), Problems> {
     if !Destination::may_wait(Path::new(name)) {
         return Ok(());
@@ -299,7 +308,7 @@ fn is_named(path: &Path) -> Result<(), Refusal> {
     is_named.then_some(()).ok_or("the file needs a name".into())
 }
 
-/// The message about a complete export, and how to copy the file. From the login of a seat no file can be copied.
+/// Returns the message about a complete export, and how to copy the file. In the login of a seat no file can be copied.
 fn in_words(written: &Written, is_seat: bool) -> String {
     let rows = written
         .rows

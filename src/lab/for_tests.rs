@@ -1,11 +1,11 @@
-//! What the tests of several files of the lab begin with.
+//! Helpers for the tests of several files of the lab.
 
 use super::view::View;
 use super::view::theme::{Background, Marker, Palette, Theme};
 use crate::engine::scenario::{Document, Scenario};
 use std::sync::Arc;
 
-/// The scenario of the preset method-2.
+/// Returns the scenario of the preset method-2.
 pub(in crate::lab) fn scenario() -> Arc<Scenario> {
     preset("method-2")
 }
@@ -14,7 +14,7 @@ pub(in crate::lab) fn preset(name: &str) -> Arc<Scenario> {
     preset_with(name, &[])
 }
 
-/// The scenario of the preset `name`, changed by texts `key=value`.
+/// Returns the scenario of the preset `name`, changed by the assignments `key=value` in `sets`.
 pub(in crate::lab) fn preset_with(name: &str, sets: &[&str]) -> Arc<Scenario> {
     let mut document = Document::open(name).unwrap();
     sets.iter().for_each(|set| document.set(set).unwrap());

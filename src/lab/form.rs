@@ -4,15 +4,15 @@ use super::action::FieldEdit;
 use crate::engine::text::printable::is_steering;
 use tui_input::{Input, InputRequest};
 
-/// Characters a field holds at most.
+/// Maximum number of characters in a field.
 const MOST_TYPED: usize = 1000;
 
-/// One line to type into. The cursor moves by visible characters, each of which may consist of several code points.
+/// A line of text input. The cursor moves by visible characters, each of which may consist of several code points.
 #[derive(Clone, Debug, Default)]
 pub struct InputField {
     pub label: String,
     input: Input,
-    /// Whether the whole text is marked: typing then replaces it.
+    /// True if the whole text is marked. Typing then replaces it.
     is_marked: bool,
 }
 
@@ -20,15 +20,15 @@ pub struct InputField {
 #[derive(Clone, Debug, Default)]
 pub struct InputForm {
     pub title: String,
-    /// Its fields, from top to bottom.
+    /// The fields, from top to bottom.
     pub fields: Vec<InputField>,
-    /// The number of the field that is typed into.
+    /// Index of the selected field.
     pub selected: usize,
     /// The lines below the fields.
     pub info: Vec<String>,
-    /// Why the form was refused; typing removes it.
+    /// The reason why the form was refused. Typing removes it.
     pub complaint: Option<String>,
-    /// The line about the keys that end it.
+    /// The line about the keys that close the form.
     pub keys: &'static str,
 }
 
@@ -41,7 +41,7 @@ impl InputField {
         }
     }
 
-    /// Returns the field of `label` with a choice that is not typed: `text` is marked, and no cursor stands behind it.
+    /// Creates the field `label` for a choice that is not typed. `text` is marked, and no cursor follows it.
     pub fn choice(label: &str, text: &str) -> Self {
         let field = Self::new(label, text);
         Self {
@@ -54,17 +54,17 @@ impl InputField {
         self.input.value()
     }
 
-    /// Returns how many code points stand before the cursor.
+    /// Returns the number of code points before the cursor.
     pub fn cursor(&self) -> usize {
         self.input.cursor()
     }
 
-    /// Returns whether the whole text is marked: typing then replaces it.
+    /// Returns true if the whole text is marked. Typing then replaces it.
     pub fn is_marked(&self) -> bool {
         self.is_marked
     }
 
-    /// Inserts `typed` before the cursor. Characters that would control a terminal are refused.
+    /// Inserts `typed` before the cursor. Ignores characters that would control a terminal.
     fn type_char(&mut self, typed: char) {
         if is_steering(typed) {
             return;
@@ -75,7 +75,7 @@ impl InputField {
         }
     }
 
-    /// Removes the text if it is marked; returns whether it did.
+    /// Removes the text if it is marked. Returns true if it was.
     fn take_marked(&mut self) -> bool {
         let was_marked = std::mem::take(&mut self.is_marked);
         if was_marked {
@@ -86,8 +86,8 @@ impl InputField {
 }
 
 impl InputForm {
-    /// Returns a form with `title` and `fields`, the first of them selected; `keys` is the line about the keys that end
-    /// it.
+    /// Creates a form with `title` and `fields`, with the first field selected. `keys` is the line about the keys that
+    /// close it.
     pub fn new(title: &str, fields: Vec<InputField>, keys: &'static str) -> Self {
         Self {
             title: title.to_owned(),
@@ -102,8 +102,8 @@ impl InputForm {
         self.fields.get(index).map_or("", InputField::text)
     }
 
-    /// Inserts the pasted `text` before the cursor as if it had been typed. If the field is too short for it, the end is
-    /// cut and the form says so.
+    /// Inserts the pasted `text` before the cursor as if it were typed. If it does not fit, the end is cut off and the
+    /// form says so.
     pub fn paste(&mut self, text: &str) {
         let mut typed = text.chars().filter(|&c| !is_steering(c)).peekable();
         self.edit(|field| {
@@ -121,7 +121,7 @@ impl InputForm {
         }
     }
 
-    /// Marks the whole text of the field: typing then replaces it.
+    /// Marks the whole text of the selected field, so that typing replaces it.
     pub fn mark(&mut self) {
         self.move_cursor(InputRequest::GoToEnd);
         if let Some(field) = self.fields.get_mut(self.selected) {
@@ -129,14 +129,14 @@ impl InputForm {
         }
     }
 
-    /// Selects the field of this number, if there is one.
+    /// Selects the field with the index `field`, if it exists.
     pub fn select(&mut self, field: usize) {
         if field < self.fields.len() {
             self.selected = field;
         }
     }
 
-    /// Changes or moves within the selected field, or selects another: after the last comes the first.
+    /// Edits the selected field, moves its cursor, or selects another field. The order of the fields is circular.
     pub fn edit_field(&mut self, edit: FieldEdit) {
         let count = self.fields.len().max(1);
         match edit {
@@ -160,7 +160,7 @@ impl InputForm {
         }
     }
 
-    /// Removes the text if it is marked, or else `what`.
+    /// Removes the text if it is marked, or else the part `what`.
     fn remove(&mut self, what: InputRequest) {
         self.edit(|field| {
             if !field.take_marked() {
@@ -177,17 +177,17 @@ impl InputForm {
     }
 }
 
-/// The most characters of a line without a cursor: a filter or a search.
+/// Maximum number of characters in a line without a cursor: a filter or a search.
 const MOST_IN_LINE: usize = 100;
 
-/// Adds `text` to the line `typed`, without line ends and other control characters, up to 100 characters.
+/// Appends `text` to the line `typed`, without control characters, up to 100 characters.
 pub(super) fn type_into(typed: &mut String, text: &str) {
     let room = MOST_IN_LINE.saturating_sub(typed.chars().count());
     let characters = text.chars().filter(|&c| !is_steering(c));
     typed.extend(characters.take(room));
 }
 
-/// Changes `line`, which has no cursor: nothing moves in it.
+/// Edits `line`, which has no cursor. Ignores edits that move a cursor.
 pub fn edit_line(line: &mut String, edit: FieldEdit) {
     match edit {
         FieldEdit::Type(typed) => type_into(line, typed.encode_utf8(&mut [0; 4])),
@@ -208,7 +208,7 @@ mod tests {
         InputForm::new("test", fields, "Esc")
     }
 
-    /// Returns what a character of the tests stands for: a key that edits, or itself.
+    /// Returns the edit for a character of the tests: an editing key, or typing the character.
     fn edit(key: char) -> FieldEdit {
         match key {
             '«' => Home,
@@ -227,21 +227,21 @@ mod tests {
     #[test]
     fn keys_edit_the_field_that_is_selected() {
         for (text, keys, edited, cursor) in [
-            // Typing goes where the cursor is.
+            // Typing inserts at the cursor.
             ("0.1", "»5←←⌫", ["015", ""], 1),
             ("0.1", "»5←←⌫«⌦速»ü", ["速15ü", ""], 4),
             ("速15ü", "»⌫⌫⌫⌫⌫⌦", ["", ""], 0),
             ("", "∅", ["", ""], 0),
-            // A character of several code points goes at once.
+            // A character of several code points is deleted as a whole.
             ("e\u{301}x", "←←", ["e\u{301}x", ""], 0),
             ("e\u{301}x", "←←⌦", ["x", ""], 0),
-            // What is typed takes the place of what was there, unless the cursor was moved.
+            // Typing replaces the suggested text, unless the cursor was moved.
             ("45", "30", ["30", ""], 2),
             ("45", "⌫", ["", ""], 0),
             ("45", "←.", ["4.5", ""], 2),
-            // Fields follow one another in a ring.
+            // The order of the fields is circular.
             ("x", "»↓y↓z↑!", ["xz", "y!"], 2),
-            // What steers a terminal is refused.
+            // Characters that control a terminal are ignored.
             ("", "\u{1b}\n\t\u{7f}\u{9b}\u{202e}\u{2066}", ["", ""], 0),
             ("", "\\\"é速", ["\\\"é速", ""], 4),
         ] {

@@ -1,5 +1,7 @@
-//! What the lab says: the message at the bottom of the screen, which goes away after a few seconds or at the next key; the
-//! line about what there is to see; and what to try next.
+//! The texts that the lab shows: the message at the bottom of the screen, the line about what to look at, and what to
+//! try next.
+//!
+//! A message disappears after a few seconds or at the next key.
 
 use super::answer::{ActionResult, Done};
 use super::player::{Halt, MOST_UNTIL, Player};
@@ -12,40 +14,41 @@ use indicatif::HumanCount;
 use std::borrow::Cow;
 use std::time::Duration;
 
-/// How long a message stays unless a key removes it earlier.
+/// Duration of a message, unless a key removes it earlier.
 const MESSAGE_STAYS: Duration = Duration::from_secs(5);
 
-/// What is said at the end of the scenario's run, before what to try next.
+/// The beginning of the message at the end of the scenario's run, before what to try next.
 const END_OF_RUN: &str = "end of the run: space goes on, r begins again";
 
-/// What a line about what to try says of the exact motion, and what it says where that is drawn.
+/// The mention of the exact motion in a line about what to try, and its replacement if the exact motion is shown
+/// already.
 const ASKS_FOR_EXACT: &str = "t draws the exact motion";
 const HAS_EXACT: &str = "the exact motion is drawn in dashes";
 
-/// The present message, if there is one, and the lasting trouble with the session.
+/// The present message, and the lasting problem with the session.
 #[derive(Clone, Debug, Default)]
 pub struct Messages {
     said: Option<ShownMessage>,
     /// Why the session cannot be saved, if it cannot.
     trouble: Option<String>,
-    /// Whether the last key asked to leave while an export was in progress, and the user was warned.
+    /// True if the last key was a request to quit that got a warning.
     was_warned: bool,
 }
 
-/// What was on the screen when a key was pressed; the key has removed it.
+/// The count and the message that a key has removed.
 #[derive(Clone, Copy, Debug)]
 pub struct Cleared {
     pub(super) count: Option<u64>,
-    /// Whether a message or a count was removed.
+    /// True if a message or a count was removed.
     pub(super) anything: bool,
-    /// Whether the user was warned that leaving stops the export.
+    /// True if the previous key was a request to quit that got a warning.
     pub(super) was_warned: bool,
 }
 
 #[derive(Clone, Debug)]
 struct ShownMessage {
     text: String,
-    /// The time at which it goes away; `None` where only a key removes it.
+    /// The time at which the message disappears; `None` if only a key removes it.
     until: Option<Duration>,
 }
 
@@ -55,12 +58,12 @@ impl Messages {
         self.show(text.into(), Some(now + MESSAGE_STAYS));
     }
 
-    /// Shows `text` until the next key: for messages that must not be missed.
+    /// Shows `text` until the next key. This is for messages that must not be missed.
     pub fn keep_saying(&mut self, text: impl Into<String>) {
         self.show(text.into(), None);
     }
 
-    /// Shows what a command says that was carried out, or why it was refused. Returns whether there is something to show.
+    /// Shows the message of a command, or the reason why it was refused. Returns false if there is nothing to show.
     pub(super) fn answer(&mut self, answer: ActionResult, now: Duration) -> bool {
         let done = answer.unwrap_or_else(|refusal| Done::saying(refusal.to_string()));
         match done.said {
@@ -75,7 +78,8 @@ impl Messages {
         self.said = Some(ShownMessage { text, until });
     }
 
-    /// Shows `text` before the message, until the next key; alone it does without the "; " at its end.
+    /// Shows `text` in front of the message until the next key. Without a message, shows `text` alone, without the "; "
+    /// at its end.
     pub fn keep_saying_first(&mut self, text: &str) {
         let Some(said) = &mut self.said else {
             return self.keep_saying(text.trim_end_matches("; "));
@@ -84,17 +88,17 @@ impl Messages {
         said.until = None;
     }
 
-    /// Removes the message; returns whether there was one.
+    /// Removes the message. Returns false if there was none.
     pub fn take_back(&mut self) -> bool {
         self.said.take().is_some()
     }
 
-    /// Removes the message if its time is over at `now`; returns whether it did.
+    /// Removes the message if its time is over at `now`. Returns true if it did.
     pub fn expire(&mut self, now: Duration) -> bool {
         self.ends_in(now).is_some_and(|left| left.is_zero()) && self.take_back()
     }
 
-    /// Returns how long the message stays from `now` on; `None` where only a key removes it, or there is none.
+    /// Returns the remaining time of the message at `now`; `None` if only a key removes it or there is none.
     pub fn ends_in(&self, now: Duration) -> Option<Duration> {
         let until = self.said.as_ref()?.until;
         until.map(|until| until.saturating_sub(now))
@@ -104,19 +108,19 @@ impl Messages {
         self.said.as_ref().map(|said| said.text.as_str())
     }
 
-    /// Records why the session cannot be saved, or that it can; returns whether that is new.
+    /// Records why the session cannot be saved, or `None` if it can. Returns true if this is a change.
     pub fn set_trouble(&mut self, trouble: Option<String>) -> bool {
         let is_new = self.trouble != trouble;
         self.trouble = trouble;
         is_new
     }
 
-    /// Returns why the session cannot be saved, if it cannot.
+    /// Returns the reason why the session cannot be saved; `None` if it can.
     pub fn trouble(&self) -> Option<&str> {
         self.trouble.as_deref()
     }
 
-    /// Removes the message, as every key does; `count` is the count that the key has removed.
+    /// Removes the message, as every key does. `count` is the count that the key has removed.
     pub(super) fn clear(&mut self, count: Option<u64>) -> Cleared {
         Cleared {
             count,
@@ -125,14 +129,15 @@ impl Messages {
         }
     }
 
-    /// Says at `now` what leaving the lab would end; asked again right after it, the lab ends.
+    /// Shows at `now` what quitting would end. If the next key is also a request to quit, the lab quits.
     pub(super) fn warn(&mut self, text: impl Into<String>, now: Duration) {
         self.was_warned = true;
         self.say(text, now);
     }
 
-    /// Says `text`, that the numbers have stopped being finite, and what helps: a key that mends the run, if that is known,
-    /// and, of a run with edits, what takes back the last.
+    /// Shows `text`, which says that the numbers are no longer finite, with the remedies.
+    ///
+    /// These are `remedy`, a key that fixes the run, if one is known, and undo if the run has edits.
     pub(super) fn tell_of_break(&mut self, text: &str, remedy: Option<&str>, is_edited: bool) {
         let unknown = "a shorter time step or another scheme may mend it (e)";
         let undo = if is_edited {
@@ -160,8 +165,8 @@ pub(super) fn halt_in_words(halt: Halt, next: Option<&str>) -> Option<String> {
     }
 }
 
-/// Returns the line about what to try after the run: as a command or the scenario has it, or else the preset, as long as its
-/// motion is as it was opened.
+/// Returns the line about what to try after the run. A command or the scenario may set it. Otherwise it comes from the
+/// preset, as long as the motion is unchanged.
 pub(super) fn next<'a>(view: &'a View, runs: &'a Runs, player: &'a Player) -> Option<Cow<'a, str>> {
     let file = &player.run().scenario().file;
     let set = view.look.next.as_deref().or(file.viewed_text("next"));
@@ -173,14 +178,14 @@ pub(super) fn next<'a>(view: &'a View, runs: &'a Runs, player: &'a Player) -> Op
     if next.is_empty() {
         return None;
     }
-    // What is on the screen already is not to be asked for.
+    // The line must not ask for the exact motion if it is on the screen already.
     match player.run().overlay() {
         Some(_) => Some(next.replace(ASKS_FOR_EXACT, HAS_EXACT).into()),
         None => Some(next.into()),
     }
 }
 
-/// Returns the line about what there is to see in the run.
+/// Returns the line about what to look at in the run.
 pub(super) fn note<'a>(view: &'a View, runs: &'a Runs, player: &'a Player) -> Cow<'a, str> {
     if view.asked() == Some(AskedAnswer::Elsewhere) {
         return "".into();
@@ -198,7 +203,7 @@ pub(super) fn note<'a>(view: &'a View, runs: &'a Runs, player: &'a Player) -> Co
     let set = view.look.look_at.as_deref();
     let changed = runs.changed_from_file();
     if set.is_none() && changed.is_some() && view.sheet.is_some() {
-        // The page says what the run is. The file's line speaks of another one.
+        // The page describes the run. The file's line is about another run.
         return "".into();
     }
     set.or(changed)

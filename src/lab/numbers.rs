@@ -1,4 +1,4 @@
-//! The numbers of a run that a condition can name: the columns of the CSV, the readouts, and keys of the scenario.
+//! The numbers of a run that a condition can name: CSV columns, readouts, and keys of the scenario.
 
 use crate::engine::analysis::Readouts;
 use crate::engine::analysis::readouts::{self, Readout};
@@ -13,19 +13,22 @@ use crate::lab::playback::live::LiveRun;
 
 #[derive(Clone, Copy, Debug)]
 pub enum NumberSource {
-    /// The CSV row of the present step.
+    /// A column of the CSV at the present step.
     Column(&'static CsvColumn),
-    /// A readout that is no column of the CSV.
+    /// A readout that is not a CSV column.
     Readout(&'static Readout),
     /// Gravity in force, m/s².
     Gravity,
     /// The time step in force, s.
     TimeStep,
-    /// A value of the scenario, which does not change; `None` if the scenario has none, or where there is no run.
+    /// A constant value of the scenario; `None` if the scenario lacks it or there is no run.
     Fixed(Option<f64>),
 }
 
-/// Finds the number called `name`, of `run` where there is one yet.
+/// Finds the number called `name`, in `run` if there is one yet.
+///
+/// # Errors
+/// Returns an error if there is no such number, or if it cannot be compared in the lab.
 pub fn find(name: &str, run: Option<&LiveRun>) -> Result<NumberSource, String> {
     if let Some(column) = CsvColumn::find(name) {
         return Ok(NumberSource::Column(column));
@@ -61,11 +64,11 @@ fn holds_number(kind: ValueKind) -> bool {
     matches!(kind, ValueKind::Number(_) | ValueKind::Whole(..))
 }
 
-/// Completes the refusal of `wrong`: the nearest name, or all names.
+/// Returns the rest of the message about the unknown name `wrong`: the nearest name, or all names.
 fn nearest_to(wrong: &str) -> String {
     let near = readouts::nearest(wrong);
     if near.contains(" or ") {
-        return near; // lowest_tilt_deg is measured or predicted
+        return near; // for example, lowest_tilt_deg can be measured or predicted
     }
     let columns = COLUMNS.iter().map(|column| column.name);
     let others = readouts::READOUTS.iter().filter(|readout| {
@@ -78,22 +81,22 @@ fn nearest_to(wrong: &str) -> String {
     nearest(wrong, names.chain(keys.map(|key| key.path)))
 }
 
-/// Returns the value of `key` in the scenario of `run`.
+/// Returns the value of `key` in the scenario of `run` at its present step.
 fn number_in(run: &LiveRun, key: &str) -> Option<f64> {
     let table = table_at(run.scenario(), run.simulation().step_number());
     let number = dotted::find(&table, key).and_then(float);
     number.or(ZERO_BY_ITSELF.contains(&key).then_some(0.0))
 }
 
-/// The keys that are 0 where a scenario does not have them.
+/// The keys that are 0 if a scenario does not set them.
 const ZERO_BY_ITSELF: [&str; 3] = ["start.tilt_deg", "start.turn_deg", "start.roll_deg"];
 
-/// The numbers of a run at one step after the other. At each step only the numbers that are asked for are computed.
+/// The numbers of a run at successive steps. At each step only the requested numbers are computed.
 #[derive(Debug, Default)]
 pub struct RunNumbers {
-    /// The readouts; those not in `read` are of an earlier step.
+    /// The readouts. Those not in `read` are outdated.
     readouts: Option<Readouts>,
-    /// Which of the readouts have been computed at the present step.
+    /// The groups of readouts that were computed at the present step.
     read: Vec<readouts::ReadoutSource>,
 }
 
@@ -116,7 +119,7 @@ impl RunNumbers {
 }
 
 impl PresentNumbers<'_> {
-    /// Returns the number of `source`; `None` if there is none at this step.
+    /// Returns the number of `source`; `None` if it has no value at this step.
     pub fn value(&mut self, source: &NumberSource) -> Option<f64> {
         match source {
             NumberSource::Column(column) => {

@@ -1,4 +1,4 @@
-//! Rows of an own program that were pasted: they become measured data in a file of their own.
+//! Saves rows of the user's own program that were pasted as measured data in a new file.
 
 use super::answer::Refusal;
 use super::command::Command;
@@ -9,10 +9,13 @@ use crate::engine::scenario::Problems;
 use crate::engine::text::printable::is_steering;
 use toml::Table;
 
-/// The most bytes of rows that can be pasted.
+/// Maximum number of bytes that can be pasted.
 pub const MOST_PASTED: usize = 1_000_000;
 
-/// Keeps the rows `text` in a new file. Returns what is to be said, and the command that puts them beside the run.
+/// Saves the rows `text` in a new file. Returns a message, and the command that shows the rows with the run.
+///
+/// # Errors
+/// Returns an error if the rows are not valid or the file cannot be written.
 pub(super) fn keep(
     text: &str,
     files: &Files,
@@ -27,7 +30,7 @@ pub(super) fn keep(
         let rule = "what was pasted is longer than 1 MB: print fewer rows, or columns, or digits";
         return Err(rule.into());
     }
-    // Terminals paste a line's end as the key Enter.
+    // Terminals paste the end of a line as the key Enter.
     let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
     let text = text.replace('\r', "\n");
     if text.contains(|c| is_steering(c) && !"\n\t".contains(c)) {

@@ -1,5 +1,5 @@
-//! The popups, which lie over the panes and get the keys: the browser, the help, a dialog; and the count typed before a
-//! key.
+//! The popups (browser, help, dialog), which are drawn over the panes and receive the keys; and the count typed before
+//! a key.
 
 use super::action::FieldEdit;
 use super::browser::Browser;
@@ -12,26 +12,26 @@ pub const MOST_COUNTED: u64 = 999_999_999;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Mode {
-    /// The panes: nothing lies on top of them.
+    /// The panes, without a popup.
     #[default]
     Lab,
     Browser,
-    /// The list of lessons, which stands beside the panes and has the focus.
+    /// The list of lessons, which is next to the panes and has the focus.
     Lessons,
-    /// The line in which the user types a part of the name of a value.
+    /// The line in which the user types part of the name of a value.
     Find,
     /// The list of keys and words.
     Help,
     Dialog,
 }
 
-/// The browser, the help and the dialog, and which of them is open; the count.
+/// The browser, the help, the dialog, the mode that says which of them is open, and the count.
 #[derive(Default)]
 pub struct Popups {
     pub mode: Mode,
     /// The mode to return to when the help is closed.
     pub under_help: Mode,
-    /// The open dialog; `Some` exactly in [`Mode::Dialog`].
+    /// The open dialog: `Some` only in [`Mode::Dialog`].
     dialog: Option<Dialog>,
     pub browser: Browser,
     pub help: HelpSearch,
@@ -43,7 +43,7 @@ impl Popups {
         self.dialog.as_ref()
     }
 
-    /// Adds `digit` to `count`, the count that the key has removed.
+    /// Appends `digit` to `count`, the count that the key has removed.
     pub(super) fn add_digit(&mut self, count: Option<u64>, digit: u8) {
         let longer = count.unwrap_or(0) * 10 + u64::from(digit);
         self.count = Some(longer.min(MOST_COUNTED));
@@ -54,8 +54,10 @@ impl Popups {
         self.mode = Mode::Dialog;
     }
 
-    /// Asks for a number in `unit`, of which the character `typed` is there already: `title` says for what, `about` how to
-    /// answer.
+    /// Opens a dialog that asks for a number in `unit`.
+    ///
+    /// `title` says what the number is, `about` says how to answer, and `typed` is the first character if it was typed
+    /// already.
     pub fn ask_number(&mut self, title: &str, unit: &str, about: &str, typed: Option<char>) {
         self.open_dialog(Dialog::number(title, unit, about));
         if let Some(first) = typed {
@@ -78,10 +80,10 @@ impl Popups {
         self.mode = Mode::Browser;
     }
 
-    /// Lists the folder that is selected in the browser, or returns the name of the entry to be opened.
+    /// Lists the folder that is selected in the browser, or returns the name of the entry to open.
     ///
     /// # Errors
-    /// Why there is nothing to open.
+    /// Returns an error if there is nothing to open.
     pub(super) fn choose(&mut self, files: &Files) -> Result<Option<String>, String> {
         let Some(entry) = self.browser.choice().cloned() else {
             return Err("nothing is selected: Esc clears the filter".to_owned());
@@ -110,8 +112,9 @@ impl Popups {
         }
     }
 
-    /// Closes the topmost of help, browser and dialog; returns whether one of them was open. The filter of a list is cleared
-    /// first. The filter of the values is the caller's to clear.
+    /// Closes the top popup, but clears the filter of a list first. Returns false if no popup was open.
+    ///
+    /// The filter of the values must be cleared by the caller.
     pub(super) fn close(&mut self) -> bool {
         match self.mode {
             Mode::Lab | Mode::Lessons => return false,
@@ -137,7 +140,7 @@ impl Popups {
         }
     }
 
-    /// Selects the row of this number, from 0, of the open list or dialog.
+    /// Selects the row with this index in the open list or dialog.
     pub fn select(&mut self, row: usize) {
         match (self.mode, &mut self.dialog) {
             (Mode::Browser, _) => self.browser.select(row),
@@ -155,8 +158,9 @@ impl Popups {
         }
     }
 
-    /// Puts the pasted `text` into the dialog or the filter. Elsewhere pasting does nothing but return a message: the letters
-    /// of a pasted text are not meant as keys.
+    /// Inserts the pasted `text` into the dialog or the filter.
+    ///
+    /// Elsewhere, returns a message instead, because the letters of pasted text are not meant as keys.
     pub(super) fn paste(&mut self, text: &str) -> Option<String> {
         match (&mut self.dialog, self.mode) {
             (Some(dialog), _) => dialog.paste(text),
@@ -172,7 +176,7 @@ impl Popups {
     }
 }
 
-/// The text that is searched for, and the selected entry.
+/// The search text of the help, and the selected entry.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct HelpSearch {
     pub text: String,
@@ -180,8 +184,8 @@ pub struct HelpSearch {
 }
 
 impl HelpSearch {
-    /// Changes the text that is searched for; the first entry found is selected. `/` begins a search in other panes: at
-    /// the beginning it means nothing here.
+    /// Changes the search text, and selects the first entry found. A leading `/` is ignored, because it starts a search
+    /// in other panes.
     fn search(&mut self, change: impl FnOnce(&mut String)) {
         change(&mut self.text);
         self.text = self.text.trim_start_matches('/').to_owned();
@@ -192,7 +196,7 @@ impl HelpSearch {
         self.selected = self.selected.saturating_add_signed(rows);
     }
 
-    /// Moves the selection to the last of `entries` entries, if it is beyond it.
+    /// Limits the selection to `entries` entries.
     pub fn limit(&mut self, entries: usize) {
         self.selected = self.selected.min(entries.saturating_sub(1));
     }

@@ -1,4 +1,5 @@
-//! The journal of the session, the scenario as the user opened it, and how the present run differs from it.
+//! The journal of the session, the scenario as the user opened it, and the differences between the present run and that
+//! scenario.
 
 use crate::engine::journal::changed::Original;
 use crate::engine::journal::{Journal, RunRecord};
@@ -6,27 +7,27 @@ use crate::engine::scenario::Scenario;
 use crate::lab::storage::session::SharedText;
 use std::sync::Arc;
 
-/// The journal of the lab and the scenario as it was opened.
+/// The journal of the lab, and the scenario as it was opened.
 pub struct Runs {
     journal: Journal,
-    /// The scenario that the words of the opened file were written for.
+    /// The scenario for which the texts of the opened file were written.
     original: Original,
-    /// How the present run differs from that scenario, in words; `None` where it does not.
+    /// The differences between the present run and that scenario, in words; `None` if there are none.
     changed_from_file: Option<String>,
-    /// The journal as the session keeps it; `None` where it has changed since it was written.
+    /// The journal as written for the session; `None` if it has changed since.
     kept: Option<SharedText>,
-    /// The pinned run that is kept with it.
+    /// The pinned run written with it.
     kept_reference: Option<Reference>,
-    /// The number of acts below which undo does not go: those before the page of a lesson began.
+    /// The number of acts that undo keeps: those before the page of a lesson began.
     floor: Option<usize>,
 }
 
-/// What a session keeps of a pinned run, to pin it again.
+/// The data with which a session pins a run again.
 #[derive(Clone, Default)]
 pub(super) struct Reference {
-    /// The step up to which it was played; of no meaning for the present run.
+    /// The step up to which it was played; unused if the present run is pinned.
     pub(super) step: u64,
-    /// Its scenario; `None` where the present run is pinned.
+    /// Its scenario; `None` if the present run is pinned.
     pub(super) run: Option<Arc<Scenario>>,
 }
 
@@ -38,12 +39,12 @@ impl PartialEq for Reference {
 }
 
 impl Runs {
-    /// Creates the journal of a run of `scenario`, opened as `name`, to which nothing was done yet.
+    /// Creates the journal of a run of `scenario`, opened as `name`, without edits.
     pub(super) fn new(name: &str, scenario: &Arc<Scenario>) -> Self {
         Self::resumed(Journal::new(name, scenario), scenario)
     }
 
-    /// Takes up the journal of a session; the present run was opened from `file`.
+    /// Restores the journal of a session. The present run was opened from `file`.
     pub(super) fn resumed(journal: Journal, file: &Arc<Scenario>) -> Self {
         Self {
             original: Original::find(&journal.present().name, file),
@@ -68,13 +69,13 @@ impl Runs {
         &self.journal
     }
 
-    /// Returns the journal, to be changed.
+    /// Returns the journal for changes, and discards its written form.
     pub(super) fn journal_mut(&mut self) -> &mut Journal {
         self.kept = None;
         &mut self.journal
     }
 
-    /// Keeps undo from taking back what was done up to now, or lets it again.
+    /// Stops undo at the present act if `is_here` is true, or removes that limit.
     pub(super) fn set_floor(&mut self, is_here: bool) {
         self.floor = is_here.then(|| self.journal.done());
     }
@@ -83,32 +84,35 @@ impl Runs {
         self.floor == Some(self.journal.done())
     }
 
-    /// Returns whether more was done to the runs since undo was kept from taking back what there was.
+    /// Returns true if the journal differs from its state when the limit of undo was set.
     pub fn is_above_floor(&self) -> bool {
         self.floor.is_some_and(|floor| floor != self.journal.done())
     }
 
-    /// Returns how the present run differs from the scenario as it was opened, in words; `None` where it does not.
+    /// Returns the differences between the present run and the scenario as it was opened, in words; `None` if there are
+    /// none.
     pub fn changed_from_file(&self) -> Option<&str> {
         self.changed_from_file.as_deref()
     }
 
-    /// Makes `file` the scenario as the user opened it.
+    /// Sets `file` as the scenario that the user opened.
     pub(super) fn set_file(&mut self, file: &Arc<Scenario>) {
         self.original = Original::find(self.name(), file);
     }
 
-    /// Returns `scenario`, the present run's, as it is to be written to a file: words about another motion are marked.
+    /// Returns `scenario`, that of the present run, for writing to a file. Texts that describe another motion are
+    /// marked.
     pub(super) fn flag_stale_text(&self, scenario: &Arc<Scenario>) -> Arc<Scenario> {
         self.original.flag_stale_text(scenario)
     }
 
-    /// Describes how `scenario`, the present run's, differs from the scenario as it was opened.
+    /// Compares `scenario`, that of the present run, with the scenario as it was opened, and records the differences.
     pub(super) fn compare_with_file(&mut self, scenario: &Scenario) {
         self.changed_from_file = self.original.difference(scenario);
     }
 
-    /// Returns the journal as the session keeps it, with the pinned run; `write` writes them.
+    /// Returns the text of the journal and the pinned run for the session, written by `write`. Unchanged text is
+    /// reused.
     pub(super) fn kept(
         &mut self,
         reference: Option<Reference>,
@@ -123,8 +127,10 @@ impl Runs {
         kept.clone()
     }
 
-    /// Returns the scenario of the run from step 0 to `step`, with all that was done up to there; `to` says what it is
-    /// for.
+    /// Returns the scenario of the run from step 0 to `step`, with all edits up to there.
+    ///
+    /// # Errors
+    /// Returns an error if `step` is 0. The verb `to` says in the message what the run was needed for.
     pub(super) fn run_up_to(&self, step: u64, to: &str) -> Result<Arc<Scenario>, String> {
         if step == 0 {
             return Err(format!(

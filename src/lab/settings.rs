@@ -1,5 +1,7 @@
-//! The settings: what is shown, and how. One dialog lists them with their present values. Choices of markers, colors, frames
-//! and the mouse are remembered for the next time.
+//! The settings of the display. A dialog lists them with their present values.
+//!
+//! Choices of markers, colors, background, frame rate and mouse are saved for the next session. A new setting is a row
+//! of [`SETTINGS`].
 
 use super::command::Command;
 use super::view::theme::{Background, Marker, Palette};
@@ -7,32 +9,32 @@ use super::view::{HideablePart, View};
 use crate::lab::storage::settings::remember;
 use std::path::PathBuf;
 
-/// Frames a second that the dialog offers.
+/// Frame rates that the dialog offers, frames per second.
 const FRAME_RATES: [u32; 5] = [2, 5, 10, 15, 30];
 
-/// What is remembered of the settings.
+/// The saved choices, and the defaults.
 #[derive(Default)]
 pub struct Settings {
-    /// The folder in which the settings that the user chooses are remembered; `None` where nothing is.
+    /// The folder in which choices are saved; `None` to save nothing.
     pub folder: Option<PathBuf>,
-    /// The palette where nobody chooses; `None` where that is not known.
+    /// The palette without a choice; `None` if unknown.
     pub usual_palette: Option<Palette>,
-    /// Whether the terminal is asked for its background, since nobody chose one.
+    /// True if the terminal is asked for its background because the user did not choose one.
     pub asks_background: bool,
 }
 
-/// A setting: its label, its present value, and the change to its next value (`true`) or the one before.
+/// A setting: its label, its present value, and the change to its next value (`true`) or its previous one (`false`).
 pub(super) struct LabSetting {
     pub(super) label: &'static str,
     pub(super) value: fn(&View) -> String,
     change: fn(&mut View, bool) -> Changed,
 }
 
-/// What a changed setting asks for.
+/// The effect of a changed setting.
 enum Changed {
-    /// The view changes by this command.
+    /// This command changes the view.
     By(Command),
-    /// The view has changed: this value is remembered.
+    /// The view has changed, and this value must be saved under this key.
     Remembered(&'static str, toml::Value),
     Palette,
 }
@@ -49,7 +51,7 @@ const fn row(
     }
 }
 
-/// Every setting. The first three belong to the run and its lesson; the others are remembered for the next time.
+/// All settings. The first three belong to the run and its lesson. The others are saved for the next session.
 #[rustfmt::skip]
 pub(super) const SETTINGS: [LabSetting; 8] = [
     row("verdict", |view| shown(view, HideablePart::Health), |view, _| hide_or_show(view, HideablePart::Health)),
@@ -70,7 +72,7 @@ pub(super) const SETTINGS: [LabSetting; 8] = [
         Changed::Remembered("background", view.theme.background.name().into())
     }),
     row("frames a second", |view| format!("{} at most", view.fps), |view, forward| {
-        // Another number may stand in config.toml: the nearest offered one follows it.
+        // config.toml may contain another number: the next offered one follows it.
         let before = FRAME_RATES.partition_point(|rate| *rate < view.fps);
         let after = FRAME_RATES.partition_point(|rate| *rate <= view.fps);
         let count = FRAME_RATES.len();
@@ -85,11 +87,11 @@ pub(super) const SETTINGS: [LabSetting; 8] = [
 ];
 
 impl Settings {
-    /// Changes the setting of this number in `view`, and remembers the choice. Returns the command that changes the view,
-    /// where one does.
+    /// Changes the setting with the index `number` in `view`, and saves the choice. Returns the command that changes
+    /// the view, if one is needed.
     ///
     /// # Errors
-    /// Why the choice cannot be remembered.
+    /// Returns an error if the choice cannot be saved.
     pub(super) fn change(
         &self,
         number: usize,
@@ -132,7 +134,7 @@ fn shown(view: &View, part: HideablePart) -> String {
     if view.hides(part) { "hidden" } else { "shown" }.to_owned()
 }
 
-/// Returns the value after `now` among `all`, or the one before; after the last comes the first.
+/// Returns the value after `now` in `all`, or the value before it. The list is circular.
 fn next<T: Copy + PartialEq>(all: &[T], now: T, forward: bool) -> T {
     let here = all.iter().position(|value| *value == now).unwrap_or(0);
     let step = if forward { 1 } else { all.len() - 1 };

@@ -1,34 +1,36 @@
-//! A text that stands beside the panes, such as the page of a lesson. A room above the lab writes it.
+//! A text next to the panes, such as the page of a lesson. A module above the lab writes it.
 
 use crate::engine::text::ascii::in_ascii;
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Sheet {
-    /// What stands on its rule, at the left.
+    /// Text at the left of its top rule.
     pub title: String,
-    /// What stands there at the right: which of its pages this is.
+    /// Text at the right of its top rule: the page number.
     pub place: String,
     pub paragraphs: Vec<Paragraph>,
-    /// The first and the last of the paragraphs that are to be seen whole: a longer sheet is scrolled to them.
+    /// The first and the last paragraph that must be visible. A longer sheet is scrolled to them.
     pub seen: Option<(usize, usize)>,
-    /// Whether a run is played before the rest of the sheet comes: where there is room for one pane, both share it.
+    /// True if a run is played before the rest of the sheet is shown. A screen with room for only one pane is then
+    /// shared by both.
     pub plays: bool,
-    /// The question that waits for an answer. Until it has one, whatever answers it is hidden.
+    /// The question that waits for an answer. Until it is answered, everything that reveals the answer is hidden.
     pub asked: Option<AskedAnswer>,
-    /// Whether a class still answers the question: whatever answers it is hidden from those who have answered, too.
+    /// True if a class is still answering the question. Everything that reveals the answer then stays hidden from those
+    /// who have answered, too.
     pub is_round_open: bool,
-    /// Whether a digit is an answer, or begins one, rather than a count.
+    /// True if a digit selects or begins an answer instead of a count.
     pub takes_digits: bool,
-    /// What Enter does here, in one word; empty where it does nothing.
+    /// The effect of Enter, in one word; empty if it does nothing.
     pub enter: &'static str,
     pub has_next: bool,
-    /// Whether it is a list that what is typed filters.
+    /// True if the sheet is a list that typed text filters.
     pub is_list: bool,
-    /// Whether it has the whole screen: nothing of the run is shown.
+    /// True if the sheet fills the screen and the run is not shown.
     pub is_alone: bool,
-    /// What stands on its rule instead of the title, where that is not empty: it may change while the page stays.
+    /// Text on its top rule instead of the title, unless empty. It may change while the page stays.
     pub framed: String,
-    /// What stands in its last row.
+    /// Text in its last row.
     pub border: String,
 }
 
@@ -36,13 +38,13 @@ pub struct Sheet {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AskedAnswer {
     Choice {
-        /// How many answers there are.
+        /// Number of answers.
         count: usize,
-        /// Whether one is chosen, though not given yet.
+        /// True if an answer is selected but not submitted.
         is_chosen: bool,
     },
     Number,
-    /// It is given in other labs.
+    /// An answer that is given in other labs.
     Elsewhere,
 }
 
@@ -58,9 +60,9 @@ pub enum SheetLineKind {
     Text,
     /// An entry of a list.
     Item {
-        /// What stands before it: a dash or a number.
+        /// The text in front of it: a dash or a number.
         mark: String,
-        /// In how many lists the list stands.
+        /// Nesting depth of the list: the number of lists that contain it.
         depth: u16,
     },
     Code,
@@ -68,19 +70,19 @@ pub enum SheetLineKind {
     Caption,
     Question,
     Choice {
-        /// Its number, where it has one.
+        /// Its number, if it has one.
         number: Option<usize>,
-        /// Whether it is the selected one.
+        /// True if it is selected.
         is_selected: bool,
-        /// What stands at the end of its row, such as that it was given.
+        /// Text at the end of its row, for example that it was submitted.
         mark: &'static str,
     },
-    /// What was predicted, above what came out.
+    /// The prediction, above the result.
     Said,
-    /// What came out.
+    /// The result.
     Result,
     Goal {
-        /// Whether it has been.
+        /// True if the goal has been reached.
         is_reached: bool,
     },
     Hint,
@@ -103,7 +105,7 @@ pub enum Emphasis {
 }
 
 impl SheetLineKind {
-    /// Returns whether it is the selected one of several choices.
+    /// Returns true if it is the selected choice.
     pub fn is_selected(&self) -> bool {
         matches!(
             self,
@@ -125,7 +127,7 @@ impl Paragraph {
         Self { kind, words }
     }
 
-    /// The same for a terminal without UTF-8.
+    /// Returns the paragraph in ASCII, for a terminal without UTF-8.
     pub fn in_ascii(&self) -> Self {
         let words = self.words.iter().map(|words| StyledText {
             text: in_ascii(&words.text),

@@ -1,4 +1,4 @@
-//! A lab at one moment, without what was done before: what a session keeps beside its history, and what a class follows.
+//! The state of a lab at one moment, without the history of edits. Sessions and classes save it.
 
 use super::Lab;
 use super::view::ViewSettings;
@@ -8,13 +8,15 @@ use serde::{Deserialize, Serialize};
 /// A run at one of its steps, and how it is shown.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Snapshot {
-    /// The name under which the run was opened. A session has it in its history, as it has the run and its end.
+    /// The name under which the run was opened. Sessions leave `name`, `run` and `end_s` empty, because their journal
+    /// contains them.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub name: String,
     /// The run file.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub run: String,
-    /// When the run ends, s: an edit of the time step does not change it, and the run file does not say it.
+    /// Time at which the run ends, s. The run file does not contain it, and an edit of the time step does not change
+    /// it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub end_s: Option<f64>,
     pub step: u64,
@@ -25,7 +27,8 @@ pub struct Snapshot {
 }
 
 impl Lab {
-    /// Returns the lab as it is now. Who has no history of its runs adds the run.
+    /// Returns the present state of the lab. A caller that does not save the journal must fill in `name`, `run` and
+    /// `end_s`.
     pub fn snapshot(&self) -> Snapshot {
         Snapshot {
             name: String::new(),

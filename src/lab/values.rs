@@ -1,5 +1,5 @@
-//! The values that the user can edit: those of the scenario, as they are at the present step, and those of the push to
-//! come. One of them is selected.
+//! The values that the user can edit: the values of the scenario at the present step, and those of the next push. One
+//! of them is selected.
 
 pub mod list;
 
@@ -15,10 +15,10 @@ use nalgebra::Vector3;
 use std::time::Duration;
 use toml::Table;
 
-/// Nudges of the same value with shorter pauses than this between them are one act: one undo takes back all of them.
+/// Maximum pause between nudges of the same value that count as one edit, which a single undo restores.
 const NUDGE_PAUSE: Duration = Duration::from_secs(3);
 
-/// The order of the groups in the list. The scenario's pushes come after the next push, its points after its motion.
+/// The order of the groups in the list. The scenario's pushes follow the next push, and its points follow its motion.
 const GROUP_ORDER: [&str; 7] = [
     MAIN_GROUPS[0],
     MAIN_GROUPS[1],
@@ -29,22 +29,22 @@ const GROUP_ORDER: [&str; 7] = [
     "scenario",
 ];
 
-/// The list of values, the push to come, and the value that was nudged last.
+/// The list of values, the next push, and the value that was nudged last.
 #[derive(Clone)]
 pub struct Values {
     pub list: ValueList,
-    /// The push to come; the list shows another one once it is listed again.
+    /// The next push. The list shows a change after [`list_again`](Self::list_again).
     pub next_push: NextPush,
-    /// The scenario's file when the list was made, with its edits up to then.
+    /// The scenario's file when the list was made, including the edits up to then.
     file: ScenarioFile,
-    /// How many entries of the journal were in force when the list was made.
+    /// Number of journal entries in force when the list was made.
     entries_listed: usize,
-    /// The key that was nudged last, whether the run began anew with it, and when; `None` if something else was done since.
+    /// The key of the last nudge, whether it restarted the run, and its time; `None` after any other action.
     last_nudged: Option<(String, bool, Duration)>,
 }
 
 impl Values {
-    /// Creates an empty list, and a first push to come that is possible in `scenario`.
+    /// Creates an empty list, and a next push that is possible in `scenario`.
     pub(super) fn new(scenario: &Scenario) -> Self {
         Self {
             list: ValueList::default(),
@@ -61,9 +61,9 @@ impl Values {
         self.entries_listed = journal.count_by(step);
         let scenario = run.scenario();
         let table = parameters::table_at(scenario, step);
-        // A push that is given at a later step cannot be edited here: an edit here would discard it.
+        // A push at a later step cannot be edited here: an edit here would discard it.
         let pushes = journal.pushes_by(step);
-        let first_added = scenario.file.push.len(); // by an edit, which is in the table once it is made
+        let first_added = scenario.file.push.len(); // later pushes come from edits that are in force in the table
         let mut listed = parameters(&table, scenario);
         listed.retain(|parameter| {
             number_of_push(&parameter.key)
@@ -73,11 +73,11 @@ impl Values {
         let mut values = main_values(&mut listed, &self.file, scenario);
         values.extend(listed.into_iter().map(ListedValue::from));
         values.extend(ListedValue::all_of(&self.next_push));
-        values.sort_by_key(|value| rank(&value.group)); // stable: within a group nothing moves
+        values.sort_by_key(|value| rank(&value.group)); // stable: keeps the order within a group
         self.list.set(values);
     }
 
-    /// Returns whether the list must be made again, as other entries of `journal` are in force at `step`.
+    /// Returns true if other entries of `journal` are in force at `step` than when the list was made.
     pub(super) fn is_outdated(&self, step: u64, journal: &Journal) -> bool {
         journal.count_by(step) != self.entries_listed
     }
@@ -88,10 +88,10 @@ impl Values {
             .select(NEXT_PUSH_HEADING, PushField::Size.label().0);
     }
 
-    /// Returns the keys to set so that the listed value with this `key` is nudged `times` times.
+    /// Returns the keys to set to nudge the listed value of this `key` `times` times.
     ///
     /// # Errors
-    /// If there is no such value, or it cannot be nudged so.
+    /// Returns an error if there is no such value or it cannot be nudged this way.
     pub(super) fn nudged(
         &self,
         key: &str,
@@ -108,8 +108,10 @@ impl Values {
         nudged.map_err(|reason| format!("{} {reason}", value.label))
     }
 
-    /// Returns the value of `key` with its label and unit; a vector by the values that follow from it, as |L| and the tilt of
-    /// L; the key alone where nothing of it is listed.
+    /// Returns the value of `key` with its label and unit.
+    ///
+    /// A vector is given by the values that follow from it, such as |L| and the tilt of L. Returns the key alone if
+    /// none of its values are listed.
     pub(super) fn in_words(&self, key: &str) -> String {
         let is_part = |own: &str| {
             own.strip_prefix(key)
@@ -129,7 +131,7 @@ impl Values {
         }
     }
 
-    /// Returns whether a nudge of `key` at `now` and the nudge before it are one act.
+    /// Returns true if a nudge of `key` at `now` and the previous nudge are one edit.
     pub(super) fn coalesces_with_last_nudge(&self, key: &str, rerun: bool, now: Duration) -> bool {
         self.last_nudged.as_ref().is_some_and(|(last, reran, at)| {
             *last == key && *reran == rerun && now.saturating_sub(*at) < NUDGE_PAUSE
@@ -140,17 +142,17 @@ impl Values {
         self.last_nudged = Some((key.to_owned(), rerun, now));
     }
 
-    /// Records that something else was done: the next nudge is an act of its own.
+    /// Records another action, so that the next nudge is a separate edit.
     pub(super) fn forget_nudge(&mut self) {
         self.last_nudged = None;
     }
 
-    /// Makes the push to come act on a point that `scenario` has.
+    /// Moves the next push to a point that `scenario` has, if it must.
     pub(super) fn suit(&mut self, scenario: &Scenario) {
         self.next_push = self.next_push.clone().suited_to(scenario);
     }
 
-    /// Returns the push to come, with the values that `choice` has in place of its own. `time_step_s` is the time step in force, s.
+    /// Returns the next push, changed by the values of `choice`. `time_step_s` is the time step in force, s.
     pub(super) fn chosen(
         &self,
         choice: &PushChoice,
@@ -175,7 +177,7 @@ impl Values {
         push.checked()
     }
 
-    /// Returns the command that nudges the selected value; `None` where none is shown.
+    /// Returns the command that nudges the selected value; `None` if no value is shown.
     pub(super) fn selected_nudged(
         &self,
         times: i32,
@@ -197,7 +199,7 @@ impl Values {
         })
     }
 
-    /// Returns the command that gives the selected value what `text` says, in a new run or from now on; `None` if it already
+    /// Returns the command that sets the selected value to `text`, in a new run or from now on; `None` if it already
     /// has that value.
     pub(super) fn value_typed(
         &self,
@@ -240,7 +242,7 @@ impl PushChoice {
     }
 }
 
-/// Returns the place of a group in the list; groups with a smaller number come first.
+/// Returns the sort key of a group in the list.
 fn rank(group: &str) -> usize {
     let place = |of: &str| GROUP_ORDER.iter().position(|known| *known == of);
     let (before, offset) = match place(group) {

@@ -1,4 +1,4 @@
-//! The list of the values that can be edited, with the selected one.
+//! The list of the values that can be edited, and the selected value.
 
 use crate::engine::journal::derived::DerivedValue;
 use crate::engine::journal::next_push::{NextPush, PushField};
@@ -6,25 +6,27 @@ use crate::engine::journal::parameters::Parameter;
 use crate::engine::scenario::{Scenario, ScenarioFile, nudge};
 use toml::{Table, Value};
 
-/// The headings over the values that are always shown.
+/// The headings of the values that are always shown.
 pub const MAIN_GROUPS: [&str; 2] = ["start and motion", "body"];
-/// The heading over the values of the push to come.
+/// The heading of the values of the next push.
 pub(super) const NEXT_PUSH_HEADING: &str = "next push (p)";
 
-/// The values, the selected one, and what is searched for: while there is something, only values that have it in their
-/// names are shown: those of which a word begins with it, or where there are none, those that have it anywhere.
+/// The values, the selected one, and the search text.
+///
+/// A search lists only values whose group, label or key matches. If any value matches at the beginning of its words,
+/// only such values are listed; otherwise those that contain the text anywhere.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ValueList {
     pub values: Vec<ListedValue>,
-    /// The number of the selected value among all, from 0.
+    /// Index of the selected value among all values.
     selected: usize,
     pub name: String,
-    /// How well the values that are shown answer the search.
+    /// Match quality of the listed values.
     shows: Option<Match>,
 }
 
 impl ValueList {
-    /// Replaces the values. The selection stays on the value of the same group and label, or else at the same number.
+    /// Replaces the values. The selection stays on the value with the same group and label, or else at the same index.
     pub fn set(&mut self, values: Vec<ListedValue>) {
         let was = self
             .selected()
@@ -38,8 +40,9 @@ impl ValueList {
         }
     }
 
-    /// Changes what is searched for: only values that have it in their group, label or key are shown, all of them where it
-    /// is empty. The selection stays on its value, or moves to the first that is shown.
+    /// Changes the search text. Only values whose group, label or key matches are listed; an empty text lists all.
+    ///
+    /// The selection stays on its value, or moves to the first one listed.
     pub(in crate::lab) fn filter_by<T>(&mut self, change: impl FnOnce(&mut String) -> T) -> T {
         let changed = change(&mut self.name);
         self.search();
@@ -47,7 +50,7 @@ impl ValueList {
         changed
     }
 
-    /// Moves the selection by `rows` of the values that are shown; it stops at both ends.
+    /// Moves the selection by `rows` listed values. It stops at both ends.
     pub fn shift(&mut self, rows: isize) {
         let shown = self.indices();
         let here = shown.iter().position(|&index| index == self.selected);
@@ -56,7 +59,7 @@ impl ValueList {
         self.selected = next.copied().unwrap_or(self.selected);
     }
 
-    /// Selects the value `label` of `group`; returns whether there is one.
+    /// Selects the value `label` of `group`. Returns false if there is none.
     pub fn select(&mut self, group: &str, label: &str) -> bool {
         let mut values = self.values.iter();
         let found = values.position(|value| value.group == group && value.label == label);
@@ -64,7 +67,7 @@ impl ValueList {
         found.is_some()
     }
 
-    /// Selects the value of this number among all, if it is shown.
+    /// Selects the value at `index` among all values, if it is listed.
     pub fn select_index(&mut self, index: usize) {
         let is_shown = self
             .values
@@ -80,12 +83,12 @@ impl ValueList {
         self.is_shown(value).then_some(value)
     }
 
-    /// Returns the number of the selected value among all, from 0.
+    /// Returns the index of the selected value among all values.
     pub fn selected_index(&self) -> usize {
         self.selected
     }
 
-    /// Returns the values that are shown, in order, each with its number among all.
+    /// Returns the listed values in order, each with its index among all values.
     pub fn shown(&self) -> Vec<(usize, &ListedValue)> {
         let values = self.values.iter().enumerate();
         values.filter(|(_, value)| self.is_shown(value)).collect()
@@ -96,7 +99,7 @@ impl ValueList {
         answer.is_some() && answer == self.shows
     }
 
-    /// Finds out how well the best of the values answer what is searched for.
+    /// Computes the best match quality of the values for the search text.
     fn search(&mut self) {
         let answers = self.values.iter().map(|value| value.answers(&self.name));
         self.shows = answers.flatten().min();
@@ -114,30 +117,30 @@ impl ValueList {
     }
 }
 
-/// A value, in words, and where it is set.
+/// A value in words, and its source.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ListedValue {
-    /// Dotted key, as `--set` takes it; `None` for the push to come.
+    /// Dotted key, as in `--set`; `None` for the next push.
     pub key: Option<String>,
     pub group: String,
     pub label: String,
     pub unit: &'static str,
     /// The value with all its digits.
     pub text: String,
-    /// Whether the scenario's file does not contain it: the value is the default.
+    /// True if the scenario's file does not set it, so that the default applies.
     pub is_default: bool,
     pub is_settable: bool,
-    /// Of the values that are always shown, those of the highest rank are left out first if there is no room; `None`: it is
-    /// shown in the whole list only.
+    /// Priority of a value that is always shown: the highest ranks are dropped first if space is short. `None` for
+    /// values that are only in the whole list.
     pub rank: Option<u8>,
     pub(in crate::lab) source: ValueSource,
 }
 
-/// Where a listed value is set.
+/// The source of a listed value.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::lab) enum ValueSource {
     Scenario(Box<Parameter>),
-    /// A value that follows from several keys, and its number.
+    /// A value that is computed from several keys, and its number.
     Derived(DerivedValue, Option<f64>),
     NextPush(PushField),
 }
@@ -163,8 +166,8 @@ enum MainValue {
     Derived(DerivedValue),
 }
 
-/// Takes the values that are always shown out of `parameters`, and adds those that follow from several keys of `file`, the
-/// file of `scenario` with its edits.
+/// Moves the values that are always shown out of `parameters`, and adds those that are computed from several keys.
+/// `file` is the file of `scenario` with its edits.
 pub(super) fn main_values(
     parameters: &mut Vec<Parameter>,
     file: &ScenarioFile,
@@ -227,7 +230,8 @@ impl ListedValue {
         })
     }
 
-    /// Returns `derived` in `scenario`, whose file is `file` with its edits; `None` if this run can have no such value.
+    /// Returns the value of `derived` in `scenario`, whose file with its edits is `file`; `None` if this run cannot
+    /// have such a value.
     fn of_derived(derived: DerivedValue, file: &ScenarioFile, scenario: &Scenario) -> Option<Self> {
         let number = derived.number(file, scenario);
         let is_listed = match derived {
@@ -247,11 +251,11 @@ impl ListedValue {
         })
     }
 
-    /// Returns the keys to set so that it is nudged up `times` times, or down if `times` is negative; empty for the push to
-    /// come, which no key holds.
+    /// Returns the keys to set to nudge the value up `times` times, or down if negative. The table is empty for the
+    /// next push, which has no keys.
     ///
     /// # Errors
-    /// Why it cannot be nudged so.
+    /// Returns an error if the value cannot be nudged this way.
     pub(in crate::lab) fn nudged(
         &self,
         times: i32,
@@ -268,11 +272,11 @@ impl ListedValue {
         }
     }
 
-    /// Returns the keys to set so that it has the value that `text` says, and whether it has another one now. No key holds
-    /// the push to come.
+    /// Returns the keys to set to give the value the content of `text`, and true if that changes it. The table is empty
+    /// for the next push, which has no keys.
     ///
     /// # Errors
-    /// Why it cannot have that value.
+    /// Returns an error if the value cannot be `text`.
     pub(in crate::lab) fn typed(
         &self,
         text: &str,
@@ -293,13 +297,13 @@ impl ListedValue {
         }
     }
 
-    /// Returns its key in the scenario's file; `None` if it follows from several, or is of the push to come.
+    /// Returns its key in the scenario's file; `None` if it is computed from several keys or belongs to the next push.
     pub fn file_key(&self) -> Option<&str> {
         let is_of_file = matches!(self.source, ValueSource::Scenario(_));
         self.key.as_deref().filter(|_| is_of_file)
     }
 
-    /// Returns its meaning and its unit, in one line.
+    /// Returns a one-line description with the unit.
     pub fn about(&self) -> &'static str {
         match &self.source {
             ValueSource::Scenario(parameter) => parameter.spec.about,
@@ -308,24 +312,24 @@ impl ListedValue {
         }
     }
 
-    /// Returns how its group, label and key answer the search for `name`.
+    /// Returns the match quality of its group, label and key for the search text `name`.
     pub(super) fn answers(&self, name: &str) -> Option<Match> {
         let key = self.key.as_deref().unwrap_or_default();
         Match::find(&format!("{} {} {key}", self.group, self.label), name)
     }
 }
 
-/// How names answer a search; capitals do not matter. The best comes first.
+/// Match quality of names in a search, ignoring case. The best comes first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Match {
-    /// With each word that is searched for one of their words begins.
+    /// Each search word is the beginning of a word in the names.
     Word,
-    /// Each word that is searched for is a part of them.
+    /// Each search word occurs somewhere in the names.
     Part,
 }
 
 impl Match {
-    /// Returns how `names` answer the search for `name`; `None` where they do not.
+    /// Returns the match quality of `names` for the search text `name`; `None` if they do not match.
     pub fn find(names: &str, name: &str) -> Option<Self> {
         let (text, search) = (names.to_lowercase(), name.to_lowercase());
         let mut wanted = search.split_whitespace();
@@ -346,7 +350,7 @@ mod tests {
     use crate::engine::journal::parameters::{parameters, table_of};
     use crate::lab::for_tests::scenario;
 
-    /// Returns a value of a scenario that is listed under this group and label.
+    /// Returns a scenario value that is listed under this group and label.
     fn listed((group, label): (&str, &str)) -> ListedValue {
         let scenario = scenario();
         let mut parameter = parameters(&table_of(&scenario.file), &scenario).remove(0);
@@ -377,7 +381,7 @@ mod tests {
                 .into(),
         );
         assert_eq!(selected(&list), "motion dt");
-        // Gone: the value that stands there now, or the last.
+        // The value is gone: the value at its index is selected, or the last one.
         list.set([("start", "tilt"), ("start", "Lx")].map(listed).into());
         assert_eq!(selected(&list), "start Lx");
         list.set(Vec::new());
