@@ -155,6 +155,7 @@ const TOPICS: &[(&str, &str)] = &[
     ("csv", include_str!("topics/csv.txt")),
     ("fit", include_str!("topics/fit.txt")),
     ("friction", include_str!("topics/friction.txt")),
+    ("glossary", include_str!("topics/glossary.txt")),
     ("lab", include_str!("topics/lab.txt")),
     ("numbers", include_str!("topics/numbers.txt")),
     ("own-code", include_str!("topics/own-code.txt")),
@@ -214,7 +215,7 @@ fn in_width(table: &str) -> String {
 /// The name of a table in a topic, and what is written in its place.
 type ManualTable = (&'static str, fn() -> Result<String, fmt::Error>);
 
-const TABLES: [ManualTable; 6] = [
+const TABLES: [ManualTable; 7] = [
     ("{COLUMNS}", || {
         Ok(two_columns(COLUMNS, |it| (it.name, it.about)))
     }),
@@ -224,6 +225,7 @@ const TABLES: [ManualTable; 6] = [
     ("{COLUMNS OF POINTS}", || {
         Ok(two_columns(POINT_COLUMNS, |it| (it.name, it.about)))
     }),
+    ("{GLOSSARY}", || Ok(glossary())),
     ("{KEYS}", info::key_list),
     ("{READOUTS}", info::readout_list),
     ("{SCHEMES}", info::scheme_list),
@@ -279,6 +281,12 @@ fn terms(rows: &[(String, &str)]) -> String {
             format!("{begin}{meaning}\n")
         })
         .collect()
+}
+
+/// Formats the words of the lab's help with their meanings.
+fn glossary() -> String {
+    let words = keys_of_lab::glossary().map(|(word, meaning)| (word.to_owned(), meaning));
+    terms(&words.collect::<Vec<_>>())
 }
 
 fn paragraph(text: &str) -> String {

@@ -57,7 +57,7 @@ fn the_manual_is_printed_as_text() {
 #[test]
 fn no_line_is_wider_than_80_columns() {
     let ground = Ground::new();
-    let topics = " class csv fit friction lab numbers scenario schemes sweep run";
+    let topics = " class csv fit friction glossary lab numbers own-code scenario schemes sweep run";
     for topic in topics.split(' ') {
         let text = ground.stdout(&format!("man {topic}"));
         assert_eq!(
@@ -97,7 +97,8 @@ fn the_topics_hold_the_tables_of_the_program() {
         ("csv", "vx_m_per_s "),
         ("schemes", "srkn11b"),
         ("numbers", "measured_precession_rad_per_s (rad/s)"),
-        ("lab", "Take a step apart"),
+        ("glossary", "  pivot         the foot of the axle"),
+        ("lab", "See how one time step is computed"),
     ] {
         let page = ground.stdout(&format!("man {topic}"));
         has(&page, words);

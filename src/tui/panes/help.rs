@@ -287,7 +287,8 @@ impl HelpEntry {
     }
 }
 
-fn glossary() -> impl Iterator<Item = (&'static str, &'static str)> {
+/// Returns the words that the lab uses, each with its meaning.
+pub fn glossary() -> impl Iterator<Item = (&'static str, &'static str)> {
     let lines = GLOSSARY.lines();
     lines.filter_map(|line| line.split_once(" = "))
 }
