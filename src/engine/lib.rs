@@ -1,21 +1,22 @@
-//! Runs of a gyroscope, without a terminal: what a scenario file says, its steps, the user's edits, and the numbers.
+//! Runs of a gyroscope, independent of any terminal: scenarios, time steps, the user's edits, and the numbers derived
+//! from them.
 //!
-//! It uses the crate [`physics`]. All that a run is belongs here, if it needs neither a screen nor a page. A module that draws or
-//! asks the user belongs to the program.
+//! This crate uses the crate [`physics`]. Code belongs here if it needs neither a screen nor a page. Code that draws,
+//! or that asks the user, belongs to the program.
 //!
-//! The modules; each uses only modules listed before it:
+//! The modules, each of which uses only modules listed before it:
 //!
-//! - [`text`](mod@text): numbers and words as people read them, without control characters that a terminal would obey.
+//! - [`text`](mod@text): numbers and words as people read them, free of control characters that a terminal would obey.
 //! - [`cores`]: work on all cores.
-//! - [`provenance`]: the run, the data and the request that the file of a figure carries.
-//! - [`physics`]: body, state, loads, schemes, observables: a crate of its own.
-//! - [`scenario`]: a TOML file becomes a checked [`Scenario`](scenario::Scenario); every refusal names file,
+//! - [`provenance`]: embeds the run, the data and the request in the file of a figure, and extracts them.
+//! - [`physics`]: body, state, loads, schemes, observables; a separate crate.
+//! - [`scenario`]: turns a TOML file into a checked [`Scenario`](scenario::Scenario). Every error message names file,
 //!   line, key, value and rule. The shipped presets live here too.
 //! - [`run`]: steps a scenario and its edits forward in time. No other module does.
-//! - [`journal`]: the user's edits of a run, from which the run is computed again: values, pushes, undo; conditions.
-//! - [`analysis`]: how reliable a run's numbers are: theory, measurement, health, comparisons.
-//! - [`recording`]: the curves of a run, as the least and greatest value of each bin of steps.
-//! - [`export`]: output of a run: columns, CSV, summaries, and the files they are written to.
+//! - [`journal`]: the user's edits of a run (values, pushes, undo), from which the run is recomputed; conditions.
+//! - [`analysis`]: theory, measurements, comparisons, and how reliable a run's numbers are.
+//! - [`recording`]: the curves of a run, as minimum and maximum of each bin of steps.
+//! - [`export`]: the output of a run: columns, CSV, summaries, and the files they are written to.
 //! - [`data`]: measured values read from a CSV, and the same quantities of a run.
 
 #![cfg(unix)]

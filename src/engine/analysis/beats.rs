@@ -1,14 +1,17 @@
-//! A straight line through turning points whose distances beat.
+//! Straight-line fit through turning points whose intervals beat.
 //!
-//! A lopsided body's nutations grow longer and shorter with the direction in which the body points as the axle turns back.
-//! Where that direction comes round slowly, the points are off a straight line by an arc, and the line from the first to
-//! the last is steeper or less steep than the mean of a longer run. How much a single point is off it says nothing of that.
-//! So a line is also fitted together with the sines and cosines of that direction. Its slope is the long run's but for
-//! what is left of the beats.
+//! The nutations of a lopsided body vary in length with the direction in which the body points when the axle turns
+//! back. If that direction changes slowly, the points deviate from a straight line in an arc. The line from the first
+//! to the last point is then steeper or flatter than the mean of a longer run. The scatter of single points does not
+//! show this error.
+//!
+//! So the line is fitted together with sines and cosines of that direction. Its slope is the slope of a long run, apart
+//! from a remainder of the beats.
 
-/// Harmonics of the direction that are fitted: the center of mass makes the first, unequal moments of inertia the second.
+/// Number of fitted harmonics of the direction. The center of mass causes the first, unequal moments of inertia the
+/// second.
 const HARMONICS: u8 = 2;
-/// A column of which less than this is left is a combination of those before it.
+/// A column is a combination of the earlier ones if less than this fraction of it remains.
 const DEPENDENT: f64 = 1e-6;
 
 /// One turning point.
@@ -16,18 +19,18 @@ const DEPENDENT: f64 = 1e-6;
 pub(super) struct Point {
     pub x: f64,
     pub y: f64,
-    /// The direction in which the body points, rad.
+    /// Direction in which the body points, rad.
     pub phase: f64,
 }
 
-/// The slope of the line, with its standard error.
+/// Slope of the line, with its standard error.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Slope {
     pub value: f64,
     pub error: f64,
 }
 
-/// Fits the line by least squares; `None` for too few points.
+/// Fits the line by least squares. Returns `None` if there are too few points.
 pub(super) fn slope(points: &[Point]) -> Option<Slope> {
     let mut columns = vec![vec![1.0; points.len()]];
     for harmonic in 1..=HARMONICS {
@@ -44,7 +47,7 @@ pub(super) fn slope(points: &[Point]) -> Option<Slope> {
         }
     }
     let freedom = points.len().checked_sub(basis.len() + 1)?;
-    // Their size may be far beyond their differences.
+    // Differences from the first point, which may be much smaller than the values themselves.
     let first = points.first()?;
     let x = without(&basis, &column(points, |point| point.x - first.x));
     let y = without(&basis, &column(points, |point| point.y - first.y));
@@ -58,7 +61,7 @@ fn column(points: &[Point], of: impl Fn(&Point) -> f64) -> Vec<f64> {
     points.iter().map(of).collect()
 }
 
-/// `column` without its parts along the vectors of `basis`, which are of unit length and perpendicular to each other.
+/// Returns `column` without its components along the vectors of `basis`, which are orthonormal.
 fn without(basis: &[Vec<f64>], column: &[f64]) -> Vec<f64> {
     let mut left = column.to_vec();
     for vector in basis {

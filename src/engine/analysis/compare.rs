@@ -1,4 +1,6 @@
-//! Schemes and time steps compared with the exact motion: a table of errors, drifts, cost and measured order.
+//! Compares schemes and time steps with the exact motion: a table of errors, drifts, cost and measured order.
+//!
+//! A new column is a field of [`ComparisonRow`], set in `ComparisonTrial::row`.
 
 use super::cost::has_closed_form;
 use super::deviation::Deviation;
@@ -16,34 +18,34 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-/// A scheme at one time step, over the whole scenario.
+/// Results of one scheme at one time step, over the whole scenario.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ComparisonRow {
     pub scheme: &'static str,
     pub time_step_s: f64,
-    /// Steps taken; fewer than asked for where the numbers stopped being finite.
+    /// Number of steps taken. It is less than requested if the numbers stopped being finite.
     pub steps: u64,
-    /// Largest distance of the traced point from the exact motion, m, while that can be predicted; `None` where the numbers
-    /// stopped being finite, its own or those of the exact motion.
+    /// Largest distance of the traced point from the exact motion, m, while the motion can be predicted. `None` if the
+    /// run or the exact motion stopped being finite.
     #[serde(serialize_with = "or_na")]
     pub error_m: Option<f64>,
-    /// The same at the end, or when the motion can be predicted no longer, m.
+    /// Distance at the end, or at the time until which the motion can be predicted, m.
     #[serde(serialize_with = "or_na")]
     pub error_at_end_m: Option<f64>,
-    /// Order measured against the row before of the same scheme, from `error_m`: ln(error ratio)/ln(time step ratio);
-    /// `None` where the error is down at rounding.
+    /// Order measured between the previous row of the same scheme and this one, from `error_m`: ln(error ratio)/ln(time
+    /// step ratio). `None` if the error is at the level of rounding.
     #[serde(serialize_with = "or_na")]
     pub order: Option<f64>,
-    /// Largest |(E − E0 − W)/S|.
+    /// Largest |(E − E0 − W)/S|; see [`Step::energy_drift`].
     #[serde(serialize_with = "or_na")]
     pub energy_drift: Option<f64>,
-    /// Largest deviation of L·axle from the exact motion's, over |L| at the start; `None` where that is not finite.
+    /// Largest deviation of L·axle from the exact motion, divided by |L| at the start. `None` if it is not finite.
     #[serde(rename = "L_axle_drift", serialize_with = "or_na")]
     pub spin_drift: Option<f64>,
-    /// Largest deviation of L_z from the exact motion's, over |L| at the start; `None` where that is not finite.
+    /// Largest deviation of L_z from the exact motion, divided by |L| at the start. `None` if it is not finite.
     #[serde(rename = "Lz_drift", serialize_with = "or_na")]
     pub lz_drift: Option<f64>,
-    /// Cost of a step where stepping went fastest, ns.
+    /// Cost of a step in the fastest block of steps, ns.
     pub ns_per_step: f64,
     /// Time spent on stepping alone, s.
     pub wall_s: f64,
@@ -56,10 +58,10 @@ fn or_na<S: Serializer>(number: &Option<f64>, serializer: S) -> Result<S::Ok, S:
     }
 }
 
-/// Runs `scenario` by every scheme at every time step (s), on all cores (on one where no threads are to be
-/// had), and holds each against the exact motion. What
-/// is counted in steps keeps its seconds. `watch` is told the steps taken so far, of how many, and says whether to go
-/// on; `None` where it said no.
+/// Runs `scenario` with every scheme at every time step (s), and compares each run with the exact motion.
+///
+/// The runs use all cores, or one if no threads are available. Everything that is counted in steps keeps its time in
+/// seconds. `watch` receives the steps taken so far and their total number. If it breaks, the result is `None`.
 pub fn compare(
     scenario: &Scenario,
     schemes: &[&'static SchemeInfo],
@@ -93,16 +95,16 @@ pub fn compare(
     rows.map(|rows| with_orders(rows, ERROR_ROUNDING * scenario.arm_m()))
 }
 
-/// Number of steps of a trial, evenly spread, at which the energy is read off. The distance is read at every step.
+/// Number of steps per run, evenly spread, at which the energy is read. The distance is read at every step.
 const ENERGY_SAMPLES: u64 = 1000;
-/// Steps that are taken at once, without a look at the clock, the exact motion or the watcher.
+/// Maximum steps between checks of the clock, the exact motion and the watcher.
 const COMPARISON_BLOCK_STEPS: u64 = 4096;
-/// The same where a step may have to be integrated, which may take long.
+/// The same if a step may have to be integrated, which can be slow.
 const BLOCK_OF_INTEGRATIONS: u64 = 16;
-/// Fewer steps than these tell little of what a step costs.
+/// Minimum number of steps for a meaningful timing.
 const TIMED: u64 = 1000;
 
-/// A run that is played through beside the exact motion, as a [`ComparisonRow`] has its numbers.
+/// A run compared with the exact motion, with the numbers for its [`ComparisonRow`].
 #[derive(Default)]
 struct ComparisonTrial {
     steps: u64,
@@ -112,14 +114,14 @@ struct ComparisonTrial {
     spin_drift: f64,
     lz_drift: f64,
     stepping: Duration,
-    /// Time of a step where stepping went fastest, s: what other work on the machine has cost is not in it.
+    /// Time per step in the fastest block, s. It excludes delays caused by other work on the machine.
     fastest_s: f64,
     has_broken: bool,
 }
 
 impl ComparisonTrial {
-    /// Plays `scenario` to its end, unless `watch`, which is asked from time to time, says no. Its errors are those up to
-    /// `until_s`.
+    /// Plays `scenario` to its end, and records its errors up to `until_s`. `watch` is called regularly. If it breaks,
+    /// the result is `None`.
     fn run(
         scenario: &Arc<Scenario>,
         until_s: f64,
@@ -186,16 +188,16 @@ impl ComparisonTrial {
         }
     }
 
-    /// Takes in the time of `steps` steps.
+    /// Records that `steps` steps took `duration`.
     fn time(&mut self, (steps, duration): (u64, Duration)) {
         self.stepping += duration;
-        // What is left at the end may be too few.
+        // The remainder at the end may be too short for a timing.
         if steps >= TIMED || (steps > 0 && self.fastest_s.is_infinite()) {
             self.fastest_s = self.fastest_s.min(duration.as_secs_f64() / steps as f64);
         }
     }
 
-    /// Holds one step of the run against the exact motion.
+    /// Compares one step of the run with the exact motion.
     fn hold(&mut self, state: &State, truth: &mut Truth, scale: f64) {
         let off = Deviation::between(state, truth);
         self.end_distance_m = off.distance_m;
@@ -210,7 +212,7 @@ impl ComparisonTrial {
     }
 }
 
-/// Steps up to the step `end`, and keeps the states on the way.
+/// Steps up to step `end`, and collects the states.
 fn take_steps(run: &mut Simulation, end: u64, states: &mut Vec<State>) -> Result<(), NotFinite> {
     while run.step_number() < end {
         states.push(*run.step()?.after());
@@ -218,7 +220,7 @@ fn take_steps(run: &mut Simulation, end: u64, states: &mut Vec<State>) -> Result
     Ok(())
 }
 
-/// The greater of two numbers; NaN, of a run that could not be followed, is kept.
+/// Returns the greater of two numbers, or NaN if either is NaN because the run could not be followed.
 fn greater(most: f64, now: f64) -> f64 {
     if most.is_nan() || now <= most {
         most
@@ -227,7 +229,8 @@ fn greater(most: f64, now: f64) -> f64 {
     }
 }
 
-/// Every how many steps to look; odd, so that an even rhythm of the run is not met always at the same beat.
+/// Returns the number of steps between two energy readings. It is odd, so that a run with an even period is not always
+/// read at the same phase.
 fn stride(steps: u64) -> u64 {
     match steps / ENERGY_SAMPLES {
         0 => 1,
@@ -235,7 +238,7 @@ fn stride(steps: u64) -> u64 {
     }
 }
 
-/// An error below this part of the traced point's arm tells of rounding and not of the scheme.
+/// Errors below this fraction of the traced point's arm are rounding errors, and say nothing about the scheme.
 const ERROR_ROUNDING: f64 = 1e-12;
 
 fn with_orders(mut rows: Vec<ComparisonRow>, least_m: f64) -> Vec<ComparisonRow> {
@@ -254,22 +257,23 @@ fn order(coarse: &ComparisonRow, fine: &ComparisonRow, least_m: f64) -> Option<f
     (smaller > least_m && order.is_finite()).then_some(order)
 }
 
-/// The rows as a table for reading.
+/// The rows as a table to print.
 #[derive(Clone, Copy, Debug)]
 pub struct ComparisonTable<'a> {
     pub rows: &'a [ComparisonRow],
-    /// What the energy drifts are measured in; `None` where there is nothing to measure them by.
+    /// Unit of the energy drifts. `None` if there is no energy to measure them by.
     pub energy_unit: Option<EnergyUnit>,
-    /// How far the exact motion can be predicted.
+    /// Limits on predicting the exact motion.
     pub predictability: Predictability,
 }
 
 impl ComparisonTable<'_> {
-    /// The table as one JSON object: which run, compared with which exact motion, and a row for each scheme and time
-    /// step under the names of the CSV's columns. null stands for a number that there is not.
+    /// Returns the table as one JSON object: the run, the exact motion, and one row for each scheme and time step.
+    ///
+    /// The keys of a row are the column names of the CSV. A missing number is null.
     ///
     /// # Errors
-    /// Never, unless memory runs out.
+    /// Returns an error only if memory runs out.
     pub fn json(&self, title: &str, duration_s: f64, truth: &str) -> serde_json::Result<Value> {
         let rows: serde_json::Result<Vec<Value>> = self
             .rows

@@ -1,20 +1,21 @@
-//! What the exact motion of a scenario costs: nothing in closed form, the turning of the body where it is integrated.
+//! Cost of the exact motion of a scenario: none in closed form, otherwise the rotation that must be integrated.
 
 use crate::physics::{Damping, Loads, State, SymmetricTop, observables};
 use crate::run::Clock;
 use crate::scenario::{Edit, Scenario};
 use crate::text::number::shortest;
 
-/// Radians of rotation through which the exact motion may be integrated on the side: less than half a second's work, and
-/// no more than an integration does in one time step.
+/// Rotation through which the exact motion may be integrated alongside a run, rad. It takes less than half a second,
+/// and is no more than an integration does in one time step.
 pub const AFFORDABLE_RAD: f64 = 2e5;
 
-/// Whether the exact motion of `scenario` can be had on the side: in closed form always, by integration for a while.
+/// Returns true if the exact motion of `scenario` is cheap enough to be computed alongside a run. A closed form always
+/// is; an integration must be short.
 pub fn is_affordable(scenario: &Scenario) -> bool {
     integration_rad(scenario) <= AFFORDABLE_RAD
 }
 
-/// Why the exact motion of `scenario` cannot be had on the side; `None` where it [can](is_affordable).
+/// Returns why the exact motion of `scenario` is not [affordable](is_affordable), or `None` if it is.
 pub fn why_exact_unavailable(scenario: &Scenario) -> Option<String> {
     (!is_affordable(scenario)).then(|| {
         format!(
@@ -24,12 +25,12 @@ pub fn why_exact_unavailable(scenario: &Scenario) -> Option<String> {
     })
 }
 
-/// Radians of rotation through which the exact motion of `scenario` has to be integrated; 0 where it has a closed form.
+/// Returns the rotation through which the exact motion of `scenario` must be integrated, rad; 0 for a closed form.
 pub fn integration_rad(scenario: &Scenario) -> f64 {
     integration_rad_per_s(scenario, &scenario.start) * Clock::end_s(scenario)
 }
 
-/// The same in a second from `state` on.
+/// Returns the rotation per second that must be integrated from `state` on, rad/s.
 pub fn integration_rad_per_s(scenario: &Scenario, state: &State) -> f64 {
     if has_closed_form(scenario) {
         return 0.0;
@@ -42,20 +43,21 @@ pub fn integration_rad_per_s(scenario: &Scenario, state: &State) -> f64 {
     turning_rad_per_s(scenario, &weight, state)
 }
 
-/// Radians by which the body of `scenario` turns or swings in a second under `loads`, from `state` on.
+/// Returns the rate at which the body of `scenario` turns or swings under `loads`, from `state` on, rad/s.
 pub(super) fn turning_rad_per_s(scenario: &Scenario, loads: &Loads, state: &State) -> f64 {
     let body = &scenario.body.mechanics;
     let spin = observables::angular_velocity(body, state).norm();
     // A body at rest will swing and turn under its weight, at about this rate.
     let moment = loads.moment(body).norm();
     let swing = (moment * body.inverse_inertia().trace()).sqrt();
-    // Strong friction makes the steps of the integration as short as fast turning does.
+    // Strong friction shortens the steps of the integration as much as fast turning does.
     let damping = Damping::new(body, &scenario.friction);
     let slowing = damping.map_or(0.0, |damping| damping.rate(spin));
     spin + swing + slowing
 }
 
-/// Whether there is no friction, the body is symmetric and every push, those of edits too, acts on its axle.
+/// Returns true if there is no friction, the body is symmetric, and every push, including those set by edits, acts on
+/// its axle.
 pub fn has_closed_form(scenario: &Scenario) -> bool {
     let body = &scenario.body.mechanics;
     let edited = scenario.edits.iter().flat_map(Edit::pushes_set);

@@ -1,7 +1,7 @@
-//! How far a run strays from the exact motion beside it, over every step, and how the tilts of both swing.
+//! Distance of a run from the exact motion at every step, and a comparison of how the tilts of both swing.
 //!
-//! The exact motion to the last bit costs as much as a step. Eight steps together are looked at within rounding, for a quarter
-//! of that; the farthest of all is computed to the last bit when it is asked for.
+//! The exact motion to the last bit costs as much as a step. So eight steps at a time are compared to within rounding,
+//! at a quarter of that cost. The largest distance is computed to the last bit when it is needed.
 
 use super::cost::{has_closed_form, is_affordable};
 use super::predictability::{Companion, Predictability};
@@ -14,25 +14,27 @@ use nalgebra::{Matrix3, Vector3};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-/// The exact motion beside one run, and how far the run has been off it.
+/// The exact motion that accompanies one run, and the run's largest distance from it.
 #[derive(Clone, Debug)]
 pub struct ExactReference {
-    /// `None` where it would take too long, or has left the range of numbers.
+    /// `None` if computing it would take too long, or it has left the range of numbers.
     truth: Option<Truth>,
-    /// Made when the first steps are looked at: of a run that is never compared it is never needed.
+    /// Created at the first comparison. A run that is never compared does not need it.
     companion: Option<Companion>,
-    /// The newest steps, which are looked at together, and how many these are: only a closed form is had faster for several.
+    /// The newest steps, which have not been compared yet.
     waiting: Vec<State>,
+    /// Number of steps compared together. It is 1 without a closed form, because comparing several at once saves
+    /// nothing then.
     together: usize,
-    /// The step that is farthest off so far, where its distance is known within rounding alone.
+    /// The farthest step so far, if its distance is known only to within rounding.
     farthest: Option<State>,
-    /// The distance of the farthest step, m.
+    /// Distance of the farthest step, m.
     most_m: f64,
     swings: Swings,
 }
 
 impl ExactReference {
-    /// The exact motion beside the run of `scenario`, which stands at its start.
+    /// Creates the exact motion for the run of `scenario`, which is at its start.
     pub fn new(scenario: &Arc<Scenario>) -> Self {
         let truth = is_affordable(scenario).then(|| Truth::new(Arc::clone(scenario)));
         Self {
@@ -46,9 +48,9 @@ impl ExactReference {
         }
     }
 
-    /// Goes on beside a run of `scenario`, whose past is the same.
+    /// Continues with the run of `scenario`, which has the same past.
     pub fn branch(&mut self, scenario: &Arc<Scenario>) {
-        self.settle(); // its steps so far belong to the forces so far
+        self.settle(); // the steps so far belong to the old forces
         self.together = looked_at_together(scenario);
         match &mut self.truth {
             Some(truth) => truth.branch(scenario),
@@ -63,12 +65,12 @@ impl ExactReference {
         self.truth.take_if(|_| !is_affordable(scenario));
     }
 
-    /// Whether the run is compared with the exact motion.
+    /// Returns true if the run is compared with the exact motion.
     fn is_known(&self) -> bool {
         self.truth.is_some()
     }
 
-    /// Returns how many exact motions go on beside the run: that, and its companion.
+    /// Returns the number of exact motions that accompany the run: two with the companion, or none.
     pub fn motions(&self) -> u32 {
         match &self.truth {
             Some(_) if !self.has_parted() => 2,
@@ -76,7 +78,7 @@ impl ExactReference {
         }
     }
 
-    /// The exact motion, where the run is compared with it.
+    /// Returns the exact motion, if the run is compared with it.
     pub fn truth(&mut self) -> Option<&mut Truth> {
         self.settle();
         self.truth.as_mut()
@@ -91,7 +93,7 @@ impl ExactReference {
         }
     }
 
-    /// The same, at the latest when the run is [settled](Self::settle).
+    /// Compares `state` later, at the latest when the run is [settled](Self::settle).
     #[inline]
     pub fn wait(&mut self, state: &State) {
         if self.is_known() && !self.has_parted() {
@@ -99,13 +101,13 @@ impl ExactReference {
         }
     }
 
-    /// Looks at the steps that wait.
+    /// Compares the waiting steps.
     fn look(&mut self) {
         let _ = self.look_while(&mut || ControlFlow::Continue(()));
     }
 
-    /// Looks at the steps that wait as long as `go_on` says so; it is asked after a few of them. Those that are left then
-    /// are never looked at.
+    /// Compares the waiting steps while `go_on`, which is called after every few steps, returns `Continue`. The steps
+    /// that remain after a break are never compared.
     fn look_while(&mut self, go_on: &mut dyn FnMut() -> ControlFlow<()>) -> ControlFlow<()> {
         let mut states = std::mem::take(&mut self.waiting);
         for together in states.chunks(self.together) {
@@ -134,7 +136,7 @@ impl ExactReference {
             }
         } else {
             for state in states {
-                self.settle_farthest(); // the forces may change here, and it stood under those before
+                self.settle_farthest(); // the forces may change here; the farthest step is from before
                 if !self.is_predictable_at(state.time_s) {
                     break;
                 }
@@ -149,8 +151,8 @@ impl ExactReference {
         }
     }
 
-    /// Whether the exact motion can be predicted up to `time_s`, which is not before the last such question. Of what comes
-    /// later no step is judged.
+    /// Returns true if the exact motion can be predicted up to `time_s`, which must not decrease from call to call.
+    /// Later steps are not judged.
     #[inline]
     fn is_predictable_at(&mut self, time_s: f64) -> bool {
         let Some(truth) = &mut self.truth else {
@@ -163,27 +165,26 @@ impl ExactReference {
         companion.until_s().is_none_or(|until_s| time_s <= until_s)
     }
 
-    /// Whether the exact motion could be predicted no longer at a step that was [looked at](Self::settle).
+    /// Returns true if a step that was [compared](Self::settle) came after the motion had become unpredictable.
     fn has_parted(&self) -> bool {
         let companion = self.companion.as_ref();
         companion.is_some_and(|companion| companion.until_s().is_some())
     }
 
-    /// Returns how far the exact motion can be predicted, as found up to the last time that the run was
-    /// [settled](Self::settle).
+    /// Returns how far the exact motion can be predicted, as found when the run was last [settled](Self::settle).
     pub fn predictability(&self) -> Predictability {
         let companion = self.companion.as_ref().filter(|_| self.is_known());
         companion.map_or_else(Predictability::default, Companion::found)
     }
 
-    /// Looks at all steps so far, and computes the largest distance to the last bit.
+    /// Compares all steps so far, and computes the largest distance to the last bit.
     pub fn settle(&mut self) {
         self.look();
         self.settle_farthest();
     }
 
-    /// As [`settle`](Self::settle), as long as `go_on` says so: each step may take long. A run that was left in between is
-    /// compared no further.
+    /// Does the same as [`settle`](Self::settle) while `go_on` returns `Continue`, because each step may take long.
+    /// After a break the run is compared no further.
     pub fn settle_while(&mut self, go_on: &mut dyn FnMut() -> ControlFlow<()>) -> ControlFlow<()> {
         self.look_while(go_on)?;
         self.settle_farthest();
@@ -192,14 +193,14 @@ impl ExactReference {
 
     fn settle_farthest(&mut self) {
         if let (Some(state), Some(truth)) = (self.farthest.take(), &mut self.truth) {
-            self.most_m = 0.0; // it was known within rounding
+            self.most_m = 0.0; // it was known only to within rounding
             let distance_m = Deviation::distance_of(&state, truth);
             self.take_in(distance_m);
         }
     }
 
-    /// Takes in a distance, m, known to the last bit. One that is no number ends the comparison: the exact motion has left the
-    /// range of numbers, and does not come back.
+    /// Records a distance, m, known to the last bit. A distance that is not finite ends the comparison, because the
+    /// exact motion has left the range of numbers for good.
     fn take_in(&mut self, distance_m: f64) {
         if !distance_m.is_finite() {
             self.truth = None;
@@ -208,8 +209,8 @@ impl ExactReference {
         }
     }
 
-    /// How far off the run is in `state`; `None` where it is not compared with the exact motion, or that can be predicted
-    /// no longer.
+    /// Returns the deviation of the run in `state`. `None` if the run is not compared with the exact motion, or the
+    /// motion can no longer be predicted.
     pub fn deviation(&mut self, state: &State) -> Option<Deviation> {
         self.settle();
         if self.has_parted() {
@@ -220,8 +221,8 @@ impl ExactReference {
         self.truth.as_ref().map(|_| deviation)
     }
 
-    /// Returns the state of the exact motion at `time_s`, s; `None` where the run is not compared with it, or it can no longer
-    /// be predicted.
+    /// Returns the exact state at `time_s`, s. `None` if the run is not compared with the exact motion, or the motion
+    /// can no longer be predicted.
     pub fn exact_state(&mut self, time_s: f64) -> Option<State> {
         self.settle();
         if self.has_parted() {
@@ -231,14 +232,16 @@ impl ExactReference {
         state.is_finite().then_some(state)
     }
 
-    /// The largest distance of the traced point from the exact motion up to the last time that it was [settled](Self::settle),
-    /// m, while that could be predicted; `None` where it is not compared.
+    /// Returns the largest distance of the traced point from the exact motion, m, as found when the run was last
+    /// [settled](Self::settle).
+    ///
+    /// It covers the time for which the motion could be predicted. `None` if the run is not compared.
     pub fn most_distance_m(&self) -> Option<f64> {
         self.truth.as_ref().map(|_| self.most_m)
     }
 
-    /// How the tilt has swung up to then beside the exact motion's, where they differ most; `None` where it is not held
-    /// against that.
+    /// Returns the swing of the tilt next to the exact one, over the same time, where they differ most. `None` if the
+    /// run is not compared.
     pub fn swing(&self) -> Option<SwingComparison> {
         self.truth.as_ref().and_then(|_| self.swings.worst())
     }
@@ -252,9 +255,11 @@ fn looked_at_together(scenario: &Scenario) -> usize {
     }
 }
 
-/// Distance of the traced point of each of `states`, which follow one another, from where it should be, within a few units
-/// of rounding of the arm, m, and the [height] of the exact motion's axle; `None` where that is not had in less time, or is
-/// no number.
+/// Returns the distances of the traced point from the exact motion in consecutive `states`, m, and the [height] of the
+/// exact motion's axle.
+///
+/// The distances are accurate to a few units of rounding of the arm. `None` if this saves no time, or a number is not
+/// finite.
 fn near_exact(
     states: &[State; AT_ONCE],
     truth: &Truth,
@@ -267,7 +272,7 @@ fn near_exact(
         let exact = Vector3::new(x[place], y[place], z[place]);
         (states[place].orientation * at - exact).norm()
     });
-    // Mostly the traced point is one of the axle.
+    // Usually the traced point is on the axle.
     let cosines = if at.x == 0.0 && at.y == 0.0 && at.z != 0.0 {
         z.map(|z| z / at.z)
     } else {
@@ -277,19 +282,19 @@ fn near_exact(
     are_numbers.then(|| (distances_m, cosines.map(height)))
 }
 
-/// How far a run is off at one moment.
+/// Deviation of a run from the exact motion at one moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deviation {
-    /// Distance of the traced point from where it should be, m.
+    /// Distance of the traced point from its exact position, m.
     pub distance_m: f64,
-    /// L·axle less the exact motion's, J s.
+    /// L·axle minus its exact value, J s.
     pub axle_momentum: f64,
-    /// L_z less the exact motion's, J s.
+    /// L_z minus its exact value, J s.
     pub lz: f64,
 }
 
 impl Deviation {
-    /// Of a run that is `seen` so, from its `truth`.
+    /// Returns the deviation of the state `seen` in a run from the exact motion `truth`.
     pub fn between(seen: &State, truth: &mut Truth) -> Self {
         let exact = truth.state_at(seen.time_s);
         Self {
@@ -299,7 +304,7 @@ impl Deviation {
         }
     }
 
-    /// Its distance alone, m.
+    /// Returns the distance alone, m.
     #[inline]
     pub fn distance_of(seen: &State, truth: &mut Truth) -> f64 {
         let exact = truth.orientation_at(seen.time_s);
@@ -307,7 +312,7 @@ impl Deviation {
     }
 }
 
-/// Distance of the traced point from where it is if the body stands as `exact`, m.
+/// Returns the distance of the traced point from its position at the orientation `exact`, m.
 #[inline]
 fn distance_m(seen: &State, exact: &Matrix3<f64>, scenario: &Scenario) -> f64 {
     let at = &scenario.body.mechanics.points()[scenario.trace].at;

@@ -1,7 +1,7 @@
-//! The equations of motion of a symmetric top between two rows of its run, under a constant load on the axle.
+//! Solves the equations of motion of a symmetric top between two rows of its run, under a constant load on the axle.
 //!
-//! With l = L/I1 and p the load over I1, both in the world frame, da/dt = l × a and dl/dt = a × p: the spin about the axle
-//! does not enter. Both right sides are products, so that a Taylor series follows term by term.
+//! With l = L/I1 and p the load over I1, both in the world frame, da/dt = l × a and dl/dt = a × p. The spin about the
+//! axle does not enter. Both right sides are products, so that a Taylor series follows term by term.
 
 use super::turns::HeightExtreme;
 use crate::physics::observables::Azimuth;
@@ -9,55 +9,56 @@ use crate::run::Step;
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 
-/// A run that starts within this part of a time step of a turning point starts at it.
+/// Fraction of a time step. A run that starts this close to a turning point counts as starting at it.
 pub(super) const AT_TURN: f64 = 1e-6;
 const EQUATION_ORDER: usize = 18;
-/// Size of the last term against the whole.
+/// Size of the last term relative to the sum.
 const EQUATION_LAST_TERM: f64 = f64::EPSILON / 16.0;
-/// Steps of the series between two rows at most; beyond them the motion is too fast to be followed.
+/// Maximum number of series steps between two rows. Beyond it, the motion is too fast to follow.
 const MOST_SERIES_STEPS: usize = 64;
 
-/// The terms of one series, from the constant one on.
+/// Terms of one series, beginning with the constant.
 type PowerSeries = [Vector3<f64>; EQUATION_ORDER + 1];
 
 /// Axle and momentum of a symmetric top at one moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct TopMotion {
     pub axle: Vector3<f64>,
-    /// L over the moment across the axle, rad/s.
+    /// L divided by the moment of inertia across the axle, rad/s.
     pub momentum: Vector3<f64>,
 }
 
 impl TopMotion {
-    /// Rate of the axle's height, 1/s.
+    /// Returns the rate of the axle's height, 1/s.
     pub fn climb(&self) -> f64 {
         self.momentum.x * self.axle.y - self.momentum.y * self.axle.x
     }
 
-    /// Rate of that rate, 1/s², under `pull`: the load over the moment across, 1/s².
+    /// Returns the second derivative of the axle's height, 1/s². `pull` is the load over the moment of inertia across
+    /// the axle, 1/s².
     pub fn bend(&self, pull: &Vector3<f64>) -> f64 {
         let turning = self.momentum.cross(&self.axle);
         (self.axle.cross(pull).cross(&self.axle) + self.momentum.cross(&turning)).z
     }
 
-    /// The axle's rate of azimuth, rad/s.
+    /// Returns the axle's rate of azimuth, rad/s.
     pub fn azimuth_rate(&self) -> f64 {
         let turning = self.momentum.cross(&self.axle);
         (self.axle.x * turning.y - self.axle.y * turning.x) / self.level().powi(2)
     }
 
-    /// Horizontal length of the axle's direction, the sine of the tilt.
+    /// Returns the horizontal length of the axle's direction, which is the sine of the tilt.
     pub fn level(&self) -> f64 {
         libm::hypot(self.axle.x, self.axle.y)
     }
 
-    /// Azimuth from here to `other`, rad, in (−π, π].
+    /// Returns the azimuth from here to `other`, rad, in (−π, π].
     pub fn azimuth_to(&self, other: &Self) -> f64 {
         let (a, b) = (&self.axle, &other.axle);
         libm::atan2(a.x * b.y - a.y * b.x, a.x * b.x + a.y * b.y)
     }
 
-    /// Where it is `time_s` later (earlier, if negative).
+    /// Returns the motion `time_s` later (earlier if negative).
     pub fn after(mut self, time_s: f64, pull: &Vector3<f64>) -> Self {
         let mut left = time_s;
         for _ in 0..MOST_SERIES_STEPS {
@@ -75,7 +76,7 @@ impl TopMotion {
         self
     }
 
-    /// The series of axle and momentum, and how far they hold, s.
+    /// Returns the series of axle and momentum, and the time for which they are accurate, s.
     fn series(&self, pull: &Vector3<f64>) -> (PowerSeries, PowerSeries, f64) {
         let zeros = [Vector3::zeros(); EQUATION_ORDER + 1];
         let (mut axle, mut momentum) = (zeros, zeros);
@@ -98,7 +99,7 @@ fn sum(terms: &PowerSeries, step: f64) -> Vector3<f64> {
     terms[0] + rest.fold(Vector3::zeros(), |sum, term| (sum + term) * step)
 }
 
-/// The axle between two rows by its directions and their rates at both: a polynomial of the third degree.
+/// Cubic interpolation of the axle between two rows, from its directions and their rates at both.
 struct Interpolation {
     ends: [Vector3<f64>; 2],
     /// Rates times the time between the rows.
@@ -115,7 +116,7 @@ impl Interpolation {
         }
     }
 
-    /// When its height has an extreme, s after the first row: at a root of a polynomial of the second degree.
+    /// Returns the time after the first row at which the height has an extreme, s: a root of a quadratic.
     pub fn time_of_turn(&self, is_top: bool) -> f64 {
         let [begin, end] = self.ways.map(|way| way.z);
         let rise = self.ends[1].z - self.ends[0].z;
@@ -123,7 +124,7 @@ impl Interpolation {
             3.0 * (begin + end) - 6.0 * rise,
             6.0 * rise - 4.0 * begin - 2.0 * end,
         );
-        // Of both roots the one at which it turns the right way: linear + 2 square t is negative at a top.
+        // Of the two roots, take the extreme of the right kind: linear + 2 square t is negative at a top.
         let root = (linear * linear - 4.0 * square * begin).max(0.0).sqrt();
         let signed = if is_top { -root } else { root };
         let share = if linear * signed > 0.0 {
@@ -148,19 +149,20 @@ impl Interpolation {
     }
 }
 
-/// The equations of motion of one such top, and the time step between its rows.
+/// Equations of motion of one symmetric top, and the time step between its rows.
 #[derive(Clone, Debug)]
 pub(super) struct Equations {
-    /// The load over the moment across the axle, 1/s².
+    /// Load over the moment of inertia across the axle, 1/s².
     pub pull: Vector3<f64>,
     /// Time from one row to the next, s.
     pub time_step_s: f64,
-    /// Rates that the motion is made of, rad/s: of the body, and of the axle.
+    /// Rates of the motion, rad/s: the body's and the axle's.
     pub rates: [f64; 2],
 }
 
 impl Equations {
-    /// When the motion from `row` on comes to its highest point (else its lowest), s from it, between `low` and `high`.
+    /// Returns the time after `row` at which the motion reaches its highest point (its lowest if not `is_top`), s, and
+    /// the motion there. The time lies between `low` and `high`.
     fn time_of_turn(
         &self,
         row: &TopMotion,
@@ -195,11 +197,12 @@ impl Equations {
         (time, swing)
     }
 
-    /// The turning point by interpolation, and how far it is off the one by the equations of motion.
+    /// Returns the turning point by interpolation, with its difference from the turning point by the equations of
+    /// motion.
     pub fn turn(&self, crossing: &Crossing) -> HeightExtreme {
         let (before, step, is_top) = (crossing.before, self.time_step_s, crossing.is_top);
         let from = before.swing;
-        // The equations of motion from the row before it, and from the one after it.
+        // Solve the equations of motion from the row before the turning point, and from the row after it.
         let (guess, range) = match crossing.after {
             None => (0.0, [-AT_TURN * step, AT_TURN * step]),
             Some(after) => {
@@ -232,11 +235,11 @@ impl Equations {
             azimuth_error: libm::hypot(rounding, 0.5 * apart),
             azimuth_rate: swing.azimuth_rate(),
             level,
-            phase: 0.0, // of a symmetric body nothing depends on it
+            phase: 0.0, // a symmetric body does not depend on it
         }
     }
 
-    /// The azimuth's way in `time_s` from `from` on, rad.
+    /// Returns the change of azimuth in the time `time_s` after `from`, rad, with all full turns.
     fn way(&self, from: &TopMotion, time_s: f64) -> f64 {
         let mut at = *from;
         let pieces = (4.0 * self.rates[1] * time_s.abs()).ceil().max(1.0);
@@ -249,12 +252,13 @@ impl Equations {
         way
     }
 
-    /// The full turns of the azimuth from the row `before` to the next one, `now`, that their azimuths do not show.
+    /// Returns the full turns of the azimuth from the row `before` to the next one, `now`, that the azimuths of the
+    /// rows do not show.
     #[cold]
     pub fn missed_turns(&self, before: &StepEquation, now: &StepEquation) -> i64 {
         let (from, to) = (before.swing, now.swing);
         let (begin, end) = (from.climb(), to.climb());
-        // Near the vertical it turns fast where the tilt turns back: no piece of the way leads past that point.
+        // Near the vertical the azimuth turns fast where the tilt turns back, so no interval crosses that point.
         let turn = if (begin > 0.0) != (end > 0.0) {
             let guess = begin / (begin - end) * self.time_step_s;
             self.time_of_turn(&from, begin > 0.0, guess, [0.0, self.time_step_s])
@@ -269,17 +273,17 @@ impl Equations {
     }
 }
 
-/// What is known of the axle after a time step.
+/// The axle after a time step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StepEquation {
     pub time_s: f64,
-    /// Where the axle is, and how it moves.
+    /// Direction and motion of the axle.
     pub swing: TopMotion,
     pub azimuth: Azimuth,
 }
 
 impl StepEquation {
-    /// The row after `step`; `per_across` is one over the moment across the axle, 1/(kg m²).
+    /// Returns the row after `step`. `per_across` is one over the moment of inertia across the axle, 1/(kg m²).
     #[inline]
     pub fn from_step(step: &Step, per_across: f64) -> Self {
         let state = step.after();
@@ -293,26 +297,26 @@ impl StepEquation {
         }
     }
 
-    /// The azimuth, rad, with all full turns.
+    /// Returns the azimuth, rad, with all full turns.
     pub fn azimuth_rad(&self) -> f64 {
         self.azimuth.degrees().to_radians()
     }
 }
 
-/// Two rows with a turning point between them, or a start that stands at one.
+/// Two rows with a turning point between them, or a start at a turning point.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Crossing {
     pub before: StepEquation,
-    /// The row after it; `None` at a start that stands there.
+    /// The row after the turning point. `None` if the run starts at it.
     pub after: Option<StepEquation>,
-    /// Full turns of the azimuth that the rows up to `before` miss.
+    /// Full turns of the azimuth that the rows up to `before` do not show.
     pub missed: i64,
-    /// Whether the axle is highest there, and not lowest.
+    /// True if the axle is highest there, false if it is lowest.
     pub is_top: bool,
 }
 
 impl Crossing {
-    /// The height of the row nearer to the turning point.
+    /// Returns the height of the row nearer to the turning point.
     pub fn height(&self) -> f64 {
         let [a, b] = [self.before, self.after.unwrap_or(self.before)].map(|row| row.swing.axle.z);
         if self.is_top { a.max(b) } else { a.min(b) }

@@ -1,10 +1,11 @@
-//! The least and the greatest of a run's numbers, over every step that it has taken, its start included; and by how much
-//! the axle's tilt swings: the greatest tilt less the least since the forces last changed.
+//! Minimum and maximum of a run's numbers over every step, including the start, and the swing of the axle's tilt. The
+//! swing is the maximum tilt minus the minimum since the forces last changed.
 //!
-//! Where the steps follow the swing, the row nearest to a turning point is off it by what a parabola through it and its
-//! neighbours says; that is stated as the uncertainty, and not added to the value. Where they do not (fewer than six rows a
-//! swing: a strobed run) the rows are phases of the swing in no order. How much the second half of them has added to the
-//! swing of the first then tells how much is still unseen.
+//! If the steps follow the swing, the row nearest to a turning point misses it by an amount that a parabola through the
+//! row and its neighbors gives. This amount is reported as the uncertainty, and is not added to the value.
+//!
+//! With fewer than six rows per swing the run is under-sampled: the rows are phases of the swing in no order. The
+//! amount that their second half has added to the swing of the first half then tells how much is still unseen.
 
 use super::swings::height_in;
 use super::turns::MeasuredNumber;
@@ -12,26 +13,26 @@ use crate::physics::observables::tilt_of;
 use crate::run::Step;
 use nalgebra::Vector3;
 
-/// Where the heights of two tilts differ by less than this, the tilts themselves are compared.
+/// If the heights of two tilts differ by less than this, the tilts themselves are compared.
 const EQUAL_HEIGHTS: f64 = 1e-14;
 
-/// With fewer turning points there has been no whole swing.
+/// Minimum number of turning points of a whole swing.
 const LEAST_TURNS: u64 = 3;
-/// Rows with more than one turning point among them: the run is strobed.
+/// With fewer rows per turning point than this, the run is under-sampled.
 const STROBED: u64 = 3;
-/// What the parabola does not see, in units of its second difference squared over the swing: with it the uncertainty covers
-/// swings of six rows.
+/// Weight of the error that the parabola does not show, which is its second difference squared over the swing. With it,
+/// the uncertainty covers swings of six rows.
 const BEYOND_PARABOLA: f64 = 0.05;
-/// Rounding of a tilt, degrees.
+/// Rounding error of a tilt, degrees.
 const ROUNDING_DEG: f64 = 1e-12;
 
-/// Extremes of tilt and height of a run. They are those of the CSV's columns, to the last bit.
+/// Extremes of a run's tilt and height. They equal the extremes of the CSV's columns to the last bit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extremes {
     pub tilt: Tilts,
-    /// Least z of the traced point, m.
+    /// Minimum z of the traced point, m.
     pub lowest_z_m: f64,
-    /// Greatest z of the traced point, m.
+    /// Maximum z of the traced point, m.
     pub highest_z_m: f64,
 }
 
@@ -40,12 +41,12 @@ pub struct Extremes {
 pub struct Tilts {
     pub lowest_deg: f64,
     pub highest_deg: f64,
-    /// The least and the greatest height of the axle, see [`height_in`]: the height falls as the tilt grows.
+    /// Minimum and maximum height of the axle, see [`height_in`]. The height falls as the tilt grows.
     heights: (f64, f64),
 }
 
 impl Extremes {
-    /// Of the run that stands at `step`.
+    /// Returns the extremes of a run that begins at `step`.
     pub fn new(step: &Step) -> Self {
         let z = step.position().z;
         Self {
@@ -55,7 +56,7 @@ impl Extremes {
         }
     }
 
-    /// Takes in the next `step`, at which the axle has this height.
+    /// Records the next `step`. `height` is the height of the axle after it.
     #[inline]
     pub(super) fn record(&mut self, step: &Step, height: f64) {
         let z = step.position().z;
@@ -77,7 +78,7 @@ impl Tilts {
 
     #[inline]
     fn record(&mut self, step: &Step, height: f64) {
-        // An arc tangent at every step would cost as much as some schemes' step: it is taken only where the axle is
+        // An arc tangent at every step would cost as much as a step of some schemes. It is computed only if the axle is
         // about as low or as high as it has ever been.
         let (least, greatest) = self.heights;
         if height > least + EQUAL_HEIGHTS && height < greatest - EQUAL_HEIGHTS {
@@ -89,23 +90,23 @@ impl Tilts {
         self.highest_deg = self.highest_deg.max(tilt);
     }
 
-    /// The greatest tilt less the least, degrees.
+    /// Returns the maximum tilt minus the minimum, degrees.
     fn swing_deg(&self) -> f64 {
         self.highest_deg - self.lowest_deg
     }
 }
 
-/// Follows the tilt; to be shown every step since the forces last changed.
+/// Follows the tilt. It must receive every step since the forces last changed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct TiltSwing {
     rows: u64,
     turns: u64,
-    /// The axle at the last two rows, and its [height].
+    /// Axle and its height at the last two rows.
     last: [(Vector3<f64>, f64); 2],
     tilts: Tilts,
-    /// The lowest and the highest turning point among the rows.
+    /// Lowest and highest turning point among the rows.
     turned: [Option<TurningRow>; 2],
-    /// The swing at the last two numbers of rows that were powers of two, degrees.
+    /// Swing at the last two row counts that were powers of two, degrees.
     earlier: [f64; 2],
 }
 
@@ -114,9 +115,9 @@ pub(super) struct TiltSwing {
 struct TurningRow {
     tilt_deg: f64,
     height: f64,
-    /// By how much the parabola through it and its neighbours reaches beyond the row, degrees.
+    /// Amount by which the parabola through the row and its neighbors exceeds the row, degrees.
     beyond: f64,
-    /// The second difference of the three, without its sign, degrees.
+    /// Absolute second difference of the three rows, degrees.
     bend: f64,
 }
 
@@ -133,7 +134,7 @@ impl TiltSwing {
         }
     }
 
-    /// Takes in the next `step`, at which the axle has this height.
+    /// Records the next `step`. `height` is the height of the axle after it.
     #[inline]
     pub fn record(&mut self, step: &Step, height: f64) {
         let row = (step.after().axle(), height);
@@ -151,7 +152,7 @@ impl TiltSwing {
         }
     }
 
-    /// Takes in three consecutive rows; the middle one is a turning point.
+    /// Records a turning point at the middle one of three consecutive rows.
     fn turn(&mut self, is_top: bool, rows: [(Vector3<f64>, f64); 3]) {
         self.turns += 1;
         let sign = if is_top { 1.0 } else { -1.0 };
@@ -173,13 +174,13 @@ impl TiltSwing {
         }
     }
 
-    /// The swing so far, degrees; `None` before it was seen whole.
+    /// Returns the swing so far, degrees. `None` until a whole swing has been seen.
     pub fn measured(&self) -> Option<MeasuredNumber> {
         let [Some(bottom), Some(top)] = self.turned else {
             return None;
         };
         let swing = self.tilts.swing_deg();
-        // The start of the run may be a turning point too, and lie beyond those between two rows.
+        // The start of the run may be a turning point too, and lie beyond the turning points between two rows.
         let above = top.tilt_deg + top.beyond - self.tilts.highest_deg;
         let below = self.tilts.lowest_deg - (bottom.tilt_deg - bottom.beyond);
         let bends = top.bend.powi(2) + bottom.bend.powi(2);

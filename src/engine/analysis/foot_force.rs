@@ -1,40 +1,42 @@
-//! The mean force of the floor on the foot over whole nutations, read off the rows.
+//! Mean force of the floor on the foot over whole nutations, measured from the rows.
 //!
-//! The floor pushes with what the weight and the pushes do not accelerate. Its mean from one time to another is therefore
-//! M g, less the pushes, and the change of the body's vertical momentum over the time. Up to any last step that depends on
-//! where the run ends. So both times are turning points of the center of mass: its highest points, or its lowest. The top
-//! of a parabola through the heights of three rows has the time, and the force at the middle row the momentum there.
+//! The floor's force is the weight, minus the pushes, plus the rate of change of the body's vertical momentum. Its mean
+//! between two times is therefore M g, minus the pushes, plus the change of that momentum over the time. If the mean
+//! ended at an arbitrary step, it would depend on where the run ends. So both times are turning points of the center of
+//! mass: highest points or lowest points. The vertex of a parabola through the heights of three rows gives the time.
+//! The force at the middle row gives the momentum there.
 //!
-//! At a turning point the vertical momentum is 0. What is read there instead is the error of the reading, and makes the
-//! uncertainty.
+//! At a turning point the vertical momentum is 0. The value measured there is therefore the error of the measurement,
+//! and gives the uncertainty.
 
 use super::turns::MeasuredNumber;
 use crate::physics::State;
 use crate::physics::observables::{pivot_force_z, vertical_momentum, weight_height};
 use crate::run::Step;
 
-/// A center of mass that swings by less than this part of its distance from the pivot does not swing.
+/// Minimum swing of the center of mass, as a fraction of its distance from the pivot.
 const LEAST_SWING: f64 = 1e-9;
-/// A start whose vertical momentum is less than this part of its change in a time step is a turning point.
+/// A start is a turning point if its vertical momentum is less than this fraction of its change in a time step.
 const AT_TURN: f64 = 1e-6;
 
-/// Follows the center of mass; to be shown every step since the forces last changed.
+/// Follows the center of mass. It must receive every step since the forces last changed.
 #[derive(Clone, Debug)]
 pub(super) struct FootForce {
     /// Distance of the center of mass from the pivot, times the mass, kg m.
     moment: f64,
-    /// The mean of the force without any change of momentum, N: the weight, less the pushes upwards.
+    /// Mean force without any change of momentum, N: the weight minus the upward pushes.
     at_rest: f64,
-    /// M z of the center of mass at the last two rows, and at the last turning point, kg m.
+    /// M z of the center of mass at the last two rows, kg m.
     heights: [f64; 2],
+    /// M z of the center of mass at the last turning point, kg m.
     turned_at: f64,
-    /// The state at which the run starts to be followed.
+    /// State at the start of the measurement, until the first step.
     start: Option<State>,
-    /// First and last of the lowest points, and of the highest.
+    /// Span of the lowest points, and span of the highest points.
     turns: [Option<Span>; 2],
 }
 
-/// From the first turning point of one kind to the last.
+/// The first and the last turning point of one kind.
 #[derive(Clone, Copy, Debug)]
 struct Span {
     first: TurningPoint,
@@ -76,7 +78,7 @@ impl FootForce {
         self.heights = [at, height];
     }
 
-    /// Counts the start, if it is a turning point; `step` is the first one after it.
+    /// Counts the start if it is a turning point. `step` is the first step after it.
     #[cold]
     fn begin(&mut self, step: &Step, start: &State) {
         let body = &step.scenario().body.mechanics;
@@ -94,7 +96,7 @@ impl FootForce {
         }
     }
 
-    /// Counts the row before `step`, after which the center of mass is at `height`, as a turning point.
+    /// Counts the row before `step` as a turning point. After `step`, the center of mass is at `height` (M z, kg m).
     fn turn(&mut self, step: &Step, height: f64) {
         let [before, at] = self.heights;
         let is_rounding = (at - self.turned_at).abs() <= LEAST_SWING * self.moment;
@@ -129,7 +131,7 @@ impl FootForce {
         });
     }
 
-    /// The mean over whole nutations, N; `None` before one was seen.
+    /// Returns the mean over whole nutations, N. `None` until a whole nutation has been seen.
     pub fn mean(&self) -> Option<MeasuredNumber> {
         let [bottoms, tops] = self.turns;
         let span = [tops, bottoms]
@@ -149,8 +151,8 @@ impl FootForce {
     }
 }
 
-/// The force of the floor on the foot of a body whose center of mass does not speed up, N: the weight, and what pushes
-/// press down.
+/// Returns the force of the floor on the foot while the center of mass does not accelerate, N: the weight minus the
+/// upward pushes.
 pub(super) fn mean_at_rest(step: &Step) -> f64 {
     let loads = step.loads();
     let pushes: f64 = loads.pushes.iter().map(|push| push.force.z).sum();

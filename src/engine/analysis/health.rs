@@ -1,8 +1,8 @@
-//! Whether a run's numbers can be believed, and if not, what the time step did to them.
+//! Judges whether a run's numbers can be trusted and, if not, finds a fix by trial.
 //!
-//! For the report's scheme on a symmetric body, with ψ = |Ω|dt: frozen L multiplies the axle's small offset from L by
-//! A = 1 − κ + κ e^{iψ} each step, where the truth is e^{iκψ}; a torque that turns L by δ = |τ|dt/|L| a step makes the
-//! axle lag by δ/|1 − A|, where the truth is δ/(κψ).
+//! Effect of the report's scheme on a symmetric body, with ψ = |Ω|dt: while L is frozen, each step multiplies the
+//! axle's small offset from L by A = 1 − κ + κ e^{iψ}. The true factor is e^{iκψ}. A torque that turns L by δ =
+//! |τ|dt/|L| per step makes the axle lag by δ/|1 − A|. The true lag is δ/(κψ).
 
 use super::cost::{AFFORDABLE_RAD, integration_rad, is_affordable};
 use super::deviation::{Deviation, ExactReference};
@@ -20,116 +20,119 @@ use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// Steps that a search for a better time step may take, of the report's 14 points; of more points as many fewer.
+/// Maximum number of steps in a search for a better time step, for the report's 14 points. More points allow fewer
+/// steps.
 const SEARCH_STEPS: u64 = 2_000_000;
-/// Where a time step is not to be mended, the first of these is tried that can be true to the scenario's friction.
+/// Schemes to try if no time step fixes the run. The first one that can model the scenario's friction is tried.
 const BETTER_SCHEMES: [&str; 2] = ["srkn11b", "strang"];
-/// Number of looks at a trial, evenly spread, at which it may be given up; and the most steps between two looks.
+/// Number of checks in a trial, evenly spread, at which it may be given up.
 const TRIAL_LOOKS: u64 = 1000;
+/// Maximum number of steps between two checks.
 const MOST_TOGETHER: u64 = 4096;
-/// A nutation that swings by less than this (degrees) is none.
+/// Minimum swing of a nutation, degrees. A smaller one is not a nutation.
 pub const LEAST_SWING_DEG: f64 = 1e-6;
-/// A nutation that the scheme has changed by less than this part is as it was.
+/// Maximum relative change of a nutation by the scheme that counts as no change.
 const LEAST_CHANGE: f64 = 0.05;
 
-/// How a run stands at one step.
+/// Health of a run at one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Health {
-    /// The scheme of the step taken last.
+    /// Scheme in force for the next step.
     pub scheme: &'static SchemeInfo,
     /// Turns of the body in one time step, |Ω|dt/2π.
     pub turns_per_step: f64,
-    /// What that does to the picture of the wheel.
+    /// Effect of the time step on the picture of the wheel.
     pub picture: WheelPicture,
-    /// Whether the body has a rim, and so is a wheel.
+    /// True if the body has a rim, and so is a wheel.
     pub has_rim: bool,
-    /// The report's scheme alone: what it does to nutation and lag.
+    /// Effect of the report's scheme on nutation and lag. `None` for other schemes and for lopsided bodies.
     pub nutation: Option<Nutation>,
-    /// How the tilt has swung beside the exact motion's; `None` where the exact motion would take too long.
+    /// Swing of the tilt compared with the exact motion. `None` if the exact motion would take too long.
     pub swing: Option<SwingComparison>,
-    /// Whether the body's orientation is a rotation, as a scheme that breaks down does not leave it.
+    /// True if the body's orientation is a rotation. A scheme that breaks down does not keep it one.
     pub is_a_rotation: bool,
     /// Angle between axle and L now, degrees.
     pub lag_deg: f64,
     /// (E − E0 − W)/S, see [`Step::energy_drift`].
     pub energy_drift: Option<f64>,
-    /// What S is; `None` where there is none.
+    /// The unit S, or `None` if there is none.
     pub energy_unit: Option<EnergyUnit>,
-    /// What friction does; `None` where there is none.
+    /// Effect of friction, or `None` without friction.
     pub slowing: Option<FrictionEffect>,
-    /// How far off the exact motion it is now; `None` where the exact motion would take too long, or can be predicted no
-    /// longer.
+    /// Present deviation from the exact motion. `None` if the exact motion would take too long, or can no longer be
+    /// predicted.
     pub deviation: Option<Deviation>,
-    /// The largest distance of the traced point from the exact motion so far, m, while that could be predicted.
+    /// Largest distance of the traced point from the exact motion so far, m, while the motion could be predicted.
     pub most_distance_m: Option<f64>,
-    /// How far the exact motion can be predicted.
+    /// Limits on predicting the exact motion.
     pub predictability: Predictability,
     /// Distance of the traced point from the pivot, m.
     pub arm_m: f64,
     pub steps: u64,
-    /// Whether the whole run can be had at another time step by itself: no edits, no push that counts its own steps.
+    /// True if the whole run can be repeated with another time step: no edits, and no push that counts its own steps.
     pub can_be_rescaled: bool,
 }
 
-/// What the time step does to the picture of a wheel of n equal points.
+/// Effect of the time step on the picture of a wheel of n equal points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum WheelPicture {
-    /// Each point is nearest to where it was: the turning shows as it is.
+    /// Each point is nearest to its own last position: the wheel appears to turn correctly.
     Right,
-    /// From π/n on one point moves to where another was.
+    /// Under-sampled: the step turns the wheel by more than π/n, and one point moves to where another was.
     Strobed,
-    /// The rest of a step's turning after whole turns is less than half a turn: too slow.
+    /// Under-sampled: after whole turns, a step adds less than half a turn. The wheel appears too slow.
     TooSlow,
-    /// It is more: backwards.
+    /// Under-sampled: after whole turns, a step adds more than half a turn. The wheel appears to turn backwards.
     Backwards,
-    /// It turns further in a step than numbers reach.
+    /// The turn per step is beyond the range of numbers.
     Unknown,
 }
 
-/// What the report's scheme does to a symmetric body at one time step.
+/// Effect of the report's scheme on a symmetric body at one time step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nutation {
-    /// |A|, the factor on the nutation's size each step; the truth is 1.
+    /// |A|, the factor on the nutation's size per step. The true factor is 1.
     pub multiplier: f64,
-    /// How many times the true angle between axle and L in steady precession is the scheme's, for a small angle: κ ψ/|1 − A|.
-    /// `None` without a torque, and where the scheme has no such angle.
+    /// Ratio of the scheme's angle between axle and L in steady precession to the true one, for a small angle: κψ/|1 −
+    /// A|. `None` without a torque, or if the scheme has no such angle.
     pub lag_ratio: Option<f64>,
-    /// The true angle between axle and L in slow steady precession at this tilt and spin, degrees; `None` where there is no
+    /// True angle between axle and L in slow steady precession at this tilt and spin, degrees. `None` if there is no
     /// such precession.
     pub true_lag_deg: Option<f64>,
 }
 
-/// What would mend a run.
+/// Advice that would fix a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Advice {
-    /// It needs no mending.
+    /// The run needs no fix.
     Holds,
-    /// This time step, s, found by trial.
+    /// This time step, s, which was found by trial.
     TimeStep(f64),
-    /// Another scheme at this time step, s: the run's own was tried down to `tried_s` without success.
+    /// Another scheme at this time step, s. The run's own scheme failed down to `tried_s`.
     Scheme {
         name: &'static str,
         time_step_s: f64,
-        /// The finest time step tried with the run's own, s.
+        /// Shortest time step tried with the run's own scheme, s.
         tried_s: f64,
     },
-    /// Its pushes accumulate step by step, and are others at another time step; no other scheme mends it at this one.
+    /// Its pushes accumulate per step, and would differ at another time step. No other scheme fixes the run at this
+    /// one.
     BoundToItsTimeStep,
-    /// Nothing that could be tried in reasonable time.
+    /// No fix could be found in reasonable time.
     Nothing,
 }
 
 impl Health {
-    /// Of the run at `step`, which `beside` has been shown up to there.
+    /// Returns the health of the run at `step`. `beside` has received all steps up to it.
     pub fn new(step: &Step, beside: &mut ExactReference) -> Self {
         let scenario = step.scenario();
         let deviation = beside.deviation(step.after());
-        // What is edited at this step is said at once: it is true of the step to come.
+        // An edit at this step shows at once, because it applies to the next step.
         let (motion, _) = in_force(scenario, step.number());
         let state = step.after();
         let psi = length(step.angular_velocity()) * motion.time_step_s;
         let axle = state.axle();
-        // As a direction: the squares of a very large L leave the range of numbers.
+        // Only the direction counts here. The squares of a very large L would leave the range of numbers.
         let towards = state.momentum / state.momentum.amax();
         let lag = libm::atan2(axle.cross(&towards).norm(), axle.dot(&towards));
         Self {
@@ -160,9 +163,11 @@ impl Health {
         }
     }
 
-    /// Whether the run is believed: the traced point has kept near enough to the exact motion, and the tilt swings as it
-    /// does, while that could be predicted. `None` where that is not known, the traced point is the pivot, or rounding
-    /// decides whether the run leaves its unstable equilibrium.
+    /// Returns true if the run is accepted: while the motion could be predicted, the traced point stayed near the exact
+    /// motion, and the tilt swings like the exact tilt.
+    ///
+    /// `None` if this is unknown, if the traced point is the pivot, or if rounding decides whether the run leaves its
+    /// unstable equilibrium.
     pub fn is_believed(&self) -> Option<bool> {
         if self.limits().unstable.is_some() {
             return None;
@@ -170,7 +175,7 @@ impl Health {
         Some(self.point_holds()? && self.swing?.is_right())
     }
 
-    /// Whether the run's numbers at this step are those of the motion. `None` where that is not known.
+    /// Returns true if the run's numbers at this step agree with the motion. `None` if this is unknown.
     pub fn is_reliable(&self) -> Option<bool> {
         match self.predictability.until_s {
             Some(_) => Some(false),
@@ -178,7 +183,8 @@ impl Health {
         }
     }
 
-    /// Returns what limits every computation of the motion. A scheme that breaks down is to blame, not the equilibrium.
+    /// Returns the limits on predicting the motion. If a scheme breaks down, the scheme is to blame and not the
+    /// equilibrium.
     pub fn limits(&self) -> Predictability {
         Predictability {
             unstable: self.predictability.unstable.filter(|_| self.is_a_rotation),
@@ -186,7 +192,7 @@ impl Health {
         }
     }
 
-    /// Whether the traced point has kept near enough to the exact motion; `None` where that is not known, or the traced
+    /// Returns true if the traced point has stayed near the exact motion. `None` if this is unknown, or the traced
     /// point is the pivot.
     pub fn point_holds(&self) -> Option<bool> {
         self.most_distance_m
@@ -194,8 +200,8 @@ impl Health {
             .map(|most| most <= BELIEVED_WITHIN * self.arm_m)
     }
 
-    /// What the scheme has made of the nutation, where the tilt does not swing as it should and the scheme has changed a
-    /// nutation by more than a twentieth since the start: how many times its size is left.
+    /// Returns the factor by which the scheme has changed a nutation's size since the start. `None` unless the tilt
+    /// swings wrongly and the change is more than a twentieth.
     pub fn changed_nutation(&self) -> Option<f64> {
         let left = libm::pow(self.nutation?.multiplier, self.steps as f64);
         let is_wrong = self
@@ -204,7 +210,7 @@ impl Health {
         (is_wrong && (left - 1.0).abs() > LEAST_CHANGE).then_some(left)
     }
 
-    /// Whether what the scheme has made of the nutation is large enough to be what puts the traced point off.
+    /// Returns true if the change of the nutation is large enough to explain the error of the traced point.
     pub(super) fn nutation_is_the_cause(&self) -> bool {
         let (Some(left), Some(swing), Some(most)) =
             (self.changed_nutation(), self.swing, self.most_distance_m)
@@ -217,7 +223,7 @@ impl Health {
 }
 
 impl WheelPicture {
-    /// Of a wheel of `points` equal points that turns by `psi` radians a step.
+    /// Returns the picture of a wheel of `points` equal points that turns by `psi` radians per step.
     fn from_angle(psi: f64, points: usize) -> Self {
         match psi {
             psi if !psi.is_finite() => Self::Unknown,
@@ -250,29 +256,33 @@ impl Nutation {
         })
     }
 
-    /// The scheme's angle between axle and L in slow steady precession, degrees; `None` where it has none.
+    /// Returns the scheme's angle between axle and L in slow steady precession, degrees. `None` if there is none.
     pub fn scheme_lag_deg(&self) -> Option<f64> {
         Some(self.true_lag_deg? * self.lag_ratio?)
     }
 }
 
-/// What would mend `scenario`: its own time step without the edits of time step and scheme, each finer one of the series
-/// 1, 2, 5, then the better scheme, are tried by running them beside the exact motion, so that what is advised has been
-/// seen to hold. A time step in which the body turns by more than half a turn may come near by luck (wobble-push does at
-/// 0.05 s, and not at 0.02): it is not advised.
+/// Returns advice that would fix `scenario`, found by trial.
+///
+/// It first tries the scenario's own time step without the edits of time step and scheme. Then it tries each shorter
+/// one of the series 1, 2, 5, and then the better scheme. Each trial is compared with the exact motion, so that the
+/// advice is known to work.
+///
+/// A time step in which the body turns by more than half a turn is never advised. It may succeed by luck, as
+/// wobble-push does at 0.05 s, but not at 0.02 s.
 pub fn advise(scenario: &Scenario) -> Advice {
     advise_while(scenario, &|| true).unwrap_or(Advice::Nothing)
 }
 
-/// As [`advise`], given up soon after `is_wanted` returns false: then `None`.
+/// Does the same as [`advise`], but gives up soon after `is_wanted` returns false, and then returns `None`.
 pub fn advise_while(scenario: &Scenario, is_wanted: &dyn Fn() -> bool) -> Option<Advice> {
     let advice = tried(scenario, is_wanted);
-    // Trials that were given up have found nothing out.
+    // Trials that were given up have no result.
     is_wanted().then_some(advice)
 }
 
-/// Plays `scenario` beside the exact motion: the most turns of the body in one time step, where the run is to be believed;
-/// `None` where it is not, or `is_wanted` returned false.
+/// Compares a run of `scenario` with the exact motion. If the run is accepted, returns the maximum turns of the body in
+/// one time step. `None` if it is not accepted, or if `is_wanted` returned false.
 fn turns_if_believed(scenario: &Arc<Scenario>, is_wanted: &dyn Fn() -> bool) -> Option<f64> {
     let mut simulation = Simulation::new(Arc::clone(scenario));
     let mut beside = ExactReference::new(scenario);
@@ -289,13 +299,13 @@ fn turns_if_believed(scenario: &Arc<Scenario>, is_wanted: &dyn Fn() -> bool) -> 
             return None;
         }
         if end == scenario.steps {
-            // In an unstable equilibrium nobody knows more of a run than that it is a rotation.
+            // In an unstable equilibrium, the only possible check is that the orientation is a rotation.
             return (health.is_believed() != Some(false)).then_some(most_turns);
         }
     }
 }
 
-/// Returns what [`turns_if_believed`] does for `scenario` at another time step, s, with another scheme.
+/// Runs [`turns_if_believed`] for `scenario` with another time step, s, and another scheme.
 fn trial(
     scenario: &Scenario,
     time_step_s: f64,
@@ -306,7 +316,7 @@ fn trial(
     turns_if_believed(&other, is_wanted)
 }
 
-/// Returns whether a [`trial`] is believed and its steps turn the body by less than half a turn.
+/// Returns true if a [`trial`] is accepted and its steps turn the body by less than half a turn.
 fn holds(
     scenario: &Scenario,
     time_step_s: f64,
@@ -316,7 +326,7 @@ fn holds(
     trial(scenario, time_step_s, scheme, is_wanted).is_some_and(|most_turns| most_turns < 0.5)
 }
 
-/// What trials of `scenario` lead to; each ends as one that does not hold when `is_wanted` returns false.
+/// Returns the advice that trials of `scenario` lead to. Once `is_wanted` returns false, each trial counts as failed.
 fn tried(scenario: &Scenario, is_wanted: &dyn Fn() -> bool) -> Advice {
     let (own, scheme) = (scenario.motion.time_step_s, scenario.motion.scheme);
     if !is_affordable(scenario) || Clock::end_s(scenario) / own > most_steps(scenario) {
@@ -340,7 +350,7 @@ fn tried(scenario: &Scenario, is_wanted: &dyn Fn() -> bool) -> Advice {
         tried_s,
     };
     if rescale::accumulates(scenario) {
-        // At another time step it would be another run.
+        // At another time step, it would be a different run.
         return if better != scheme && holds(scenario, own, better, is_wanted) {
             with_better(own, own)
         } else {
@@ -357,7 +367,7 @@ fn tried(scenario: &Scenario, is_wanted: &dyn Fn() -> bool) -> Advice {
     found.map_or(Advice::Nothing, |step| with_better(step, tried_s))
 }
 
-/// The scheme that is tried where a time step is not to be mended.
+/// Returns the scheme to try if no time step fixes the run.
 fn better_scheme(scenario: &Scenario) -> &'static SchemeInfo {
     let mut better = BETTER_SCHEMES
         .iter()
@@ -367,7 +377,7 @@ fn better_scheme(scenario: &Scenario) -> &'static SchemeInfo {
         .unwrap_or(scenario.motion.scheme)
 }
 
-/// The length of `vector`, also where its squares leave the range of numbers.
+/// Returns the length of `vector`, even if its squares leave the range of numbers.
 fn length(vector: &Vector3<f64>) -> f64 {
     match vector.amax() {
         0.0 => 0.0,
@@ -375,20 +385,20 @@ fn length(vector: &Vector3<f64>) -> f64 {
     }
 }
 
-/// How many steps a search may take with this many points.
+/// Returns the maximum number of steps of a search with this number of points.
 fn most_steps(scenario: &Scenario) -> f64 {
     SEARCH_STEPS as f64 * 14.0 / scenario.body.mechanics.points().len().max(14) as f64
 }
 
-/// 5, 2 and 1 of every power of ten below the scenario's time step in which the body turns by less than half a turn,
-/// while all of them together take no more steps than the search may.
+/// Returns the time steps to try: 5, 2 and 1 times each power of ten below the scenario's time step. With each, the
+/// body turns by less than half a turn, and all of them together fit into the steps that a search may take.
 fn finer_time_steps(scenario: &Scenario) -> impl Iterator<Item = f64> + use<> {
     let begin = scenario.motion.time_step_s;
     let (duration, most) = (Clock::end_s(scenario), most_steps(scenario));
     let spin = observables::angular_velocity(&scenario.body.mechanics, &scenario.start).norm();
     let coarsest = begin.min(PI / spin);
     let decade = libm::floor(libm::log10(coarsest)).max(-400.0) as i64;
-    // An exact motion that has to be integrated is integrated anew for every trial.
+    // An exact motion without closed form is integrated again for every trial.
     let trials = (AFFORDABLE_RAD / integration_rad(scenario)).clamp(4.0, 64.0) as usize;
     let mut spent = 0.0;
     (0..36)

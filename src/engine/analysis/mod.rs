@@ -1,9 +1,13 @@
-//! What a run's numbers are worth: [`theory`] says what the top should do, [`monitor`] and [`extremes`] what the run did,
-//! [`report_theory`] what the report's scheme should make of it, [`slowing`] what friction does to it, [`health`] what the
-//! time step made of it, [`predictability`] how long the motion can be predicted at all, [`verdict`] and [`remarks`] the same in words.
-//! [`readouts`] is the one table of all these numbers under their names, and [`compare`] holds schemes and time steps against the exact motion.
+//! Measures a run, and judges how reliable its numbers are.
 //!
-//! These rooms follow a run and read it; none of them changes a number of it.
+//! - [`theory`]: the predicted motion of the top; [`report_theory`]: the same for the report's scheme.
+//! - [`monitor`] and [`extremes`]: measurements of the run; [`slowing`]: the effect of friction.
+//! - [`health`]: the effect of the time step; [`predictability`]: how long the motion can be predicted at all.
+//! - [`verdict`] and [`remarks`]: the same in words.
+//! - [`readouts`]: the table of all these numbers and their names. A new number also gets its row there.
+//! - [`compare`]: schemes and time steps compared with the exact motion.
+//!
+//! These modules read a run. None of them changes its numbers.
 
 mod beats;
 pub mod compare;

@@ -1,28 +1,35 @@
-//! What follows a run step by step and can say at any moment how it stands: instruments, theory, health.
+//! Follows a run step by step, and reports instruments, theory and health at any moment.
 //!
-//! How the instruments measure precession and nutation, each with its uncertainty: the axle's height turns back twice in every nutation. Nutation is the mean time from one such point to the
-//! next of its kind, precession the change of azimuth from the first to the last over the time between them.
+//! # How the instruments measure
 //!
-//! Of a symmetric top each nutation is like the one before, and its second half the mirror image of the first. Where the
-//! time step is short enough to follow it, a turning point is found between two rows by the equations of motion, from
-//! either of them: the difference is what the scheme's step has done otherwise. With rounding, and with the distance of
-//! the turning points from a steady rate, it makes the uncertainty. Half a nutation is enough then.
+//! Each measured number has an uncertainty. The axle's height has two turning points in every nutation. The nutation
+//! period is the mean time between successive turning points of one kind. The precession is the change of azimuth from
+//! the first to the last of them, divided by the time between.
 //!
-//! Of other runs, those of a lopsided body, under a load aside, whose time step is too long, or whose nutation is no larger
-//! than the error of a scheme of the first order, a parabola through three rows gives the highest points, and it takes four
-//! nutations to say how much they differ, of a lopsided body sixteen. Rows so few that a nutation may lie unseen between
-//! them give no period. The direction in which a lopsided body points as the axle turns back changes its nutations in
-//! length, in beats that may be longer than the run: `beats`. Its numbers are stated once all directions
-//! were seen, its nutation only if all swings are large. A run without nutation has its precession from the whole way of the azimuth. Where less was seen
-//! than that there is no number.
+//! The nutations of a symmetric top are all alike, and the second half of each mirrors the first. If the time step is
+//! short enough, the equations of motion give the turning point between two rows, starting from either of them. The
+//! difference between the two results is the error of the scheme's step. The uncertainty consists of this error, of
+//! rounding, and of the deviation of the turning points from a steady rate. Half a nutation is enough then.
 //!
-//! A turning point is read by interpolation between two rows, and how far that reading is off is known from the equations
-//! of motion. It is stated in the uncertainty and not taken away from the value. Taken away, the value would no longer be
-//! read off the rows but computed from the equations that it is to be compared with: it would agree with theory to rounding
-//! however coarse the rows are, and nothing would be left that the uncertainty could be compared with.
+//! In other runs, a parabola through three rows gives the highest points. These are runs of lopsided bodies, with a
+//! load off the axle, with too long a time step, or with a nutation no larger than the error of a first-order scheme.
+//! Four nutations are needed to know how much they differ, and sixteen for a lopsided body. If a nutation may be missed
+//! between two rows, no period is reported.
 //!
-//! What is measured is the run as its steps show it: the error of its scheme is not in the uncertainty, and a nutation of
-//! less than two time steps is seen as a slower one, as it is on the screen.
+//! The direction in which a lopsided body points at a turning point changes the length of its nutations, in beats that
+//! may be longer than the run (see `beats`). Its numbers are reported once all directions have been seen, and its
+//! nutation only if all swings are large. In a run without nutation, the precession is the whole change of azimuth over
+//! the time. With less data, no number is reported.
+//!
+//! # Why the value is not corrected
+//!
+//! A turning point is read by interpolation between two rows, and the equations of motion give the error of this
+//! reading. The error is part of the uncertainty, and is not subtracted from the value. A corrected value would be
+//! computed from the equations that it is to be compared with, and not read from the rows. It would agree with theory
+//! to rounding however coarse the rows are, and the uncertainty could not be tested.
+//!
+//! The instruments measure the run as its steps show it. The scheme's error is not part of the uncertainty. A nutation
+//! shorter than two time steps appears as a slower one, as it does on the screen.
 
 use super::deviation::ExactReference;
 use super::extremes::{Extremes, TiltSwing};
@@ -39,7 +46,7 @@ use crate::run::Step;
 use std::borrow::Cow;
 use std::ops::ControlFlow;
 
-/// The instruments that follow a run; to be shown every step of it.
+/// Instruments that follow a run. They must receive every step of it.
 #[derive(Clone, Debug)]
 pub enum Instruments {
     TurningPoints(Box<TurningPoints>),
@@ -47,7 +54,7 @@ pub enum Instruments {
 }
 
 impl Instruments {
-    /// Instruments that begin to follow a run at `step`.
+    /// Creates instruments that follow a run from `step` on.
     pub fn new(step: &Step) -> Self {
         match TurningPoints::new(step) {
             Some(points) => Self::TurningPoints(Box::new(points)),
@@ -63,10 +70,10 @@ impl Instruments {
         }
     }
 
-    /// Nutation period of the run so far, s.
+    /// Returns the nutation period of the run so far, s.
     ///
     /// # Errors
-    /// Where there is none, or too little of it was seen to say how well it is known.
+    /// Returns an error if there is no nutation, or if too little of it was seen to give an uncertainty.
     pub fn nutation_period_s(&self) -> Result<MeasuredNumber, WithoutNutation> {
         match self {
             Self::TurningPoints(points) => points.nutation_period_s(),
@@ -74,7 +81,8 @@ impl Instruments {
         }
     }
 
-    /// Precession of the run so far, rad/s; `None` likewise, and where the axle passes through the vertical.
+    /// Returns the precession of the run so far, rad/s. `None` in the same cases, and if the axle passes through the
+    /// vertical.
     pub fn precession_rad_per_s(&self) -> Option<MeasuredNumber> {
         match self {
             Self::TurningPoints(points) => points.precession_rad_per_s(),
@@ -88,9 +96,9 @@ impl Instruments {
 pub struct Monitor {
     pub instruments: Instruments,
     pub extremes: Extremes,
-    /// The change of forces since which the instruments measure.
+    /// Number of force changes when the instruments started.
     changes: u64,
-    /// The step from which on they do.
+    /// Step at which the instruments started.
     pub since: u64,
     tilt_swing: TiltSwing,
     pub report_theory: Option<ReportTheory>,
@@ -112,39 +120,39 @@ impl Monitor {
         }
     }
 
-    /// Takes in `step`; to be shown every step. Every one of them is compared with the exact motion: what leaves it and
-    /// comes back between two looks has left it too.
+    /// Records `step`. It must receive every step, and compares each with the exact motion. A deviation that has
+    /// vanished at the next reading has occurred all the same.
     pub fn record(&mut self, step: &Step) {
         self.measure(step);
         self.beside.hold(step.after());
     }
 
-    /// The same, but the step is compared with the exact motion later: when [`catch_up`](Self::catch_up) is called, at the
-    /// latest when health or theory is asked for. So the time that stepping takes can be told from it.
+    /// Records `step`, but compares it with the exact motion later, so that the time spent on stepping can be measured
+    /// alone. The comparison follows when [`catch_up`](Self::catch_up) is called, or at the latest when health or
+    /// theory is needed.
     pub fn record_ahead(&mut self, step: &Step) {
         self.measure(step);
         self.beside.wait(step.after());
     }
 
-    /// The mean force of the floor on the foot over whole nutations since the forces last changed, N; `None` before one
-    /// was seen.
+    /// Returns the mean force of the floor on the foot over whole nutations since the forces last changed, N. `None`
+    /// until a whole nutation has been seen.
     pub fn mean_foot_force(&self) -> Option<MeasuredNumber> {
         self.foot_force.mean()
     }
 
-    /// What that mean is by Newton's second law at `step`, N: the weight, and what pushes press down.
+    /// Returns the prediction of that mean at `step` by Newton's second law, N: the weight minus the upward pushes.
     pub fn predicted_mean_foot_force(&self, step: &Step) -> f64 {
         mean_at_rest(step)
     }
 
-    /// Compares the steps with the exact motion that have not been, as long as `go_on` says so: see
+    /// Compares the waiting steps with the exact motion while `go_on` returns `Continue`; see
     /// [`ExactReference::settle_while`].
     pub fn catch_up(&mut self, go_on: &mut dyn FnMut() -> ControlFlow<()>) -> ControlFlow<()> {
         self.beside.settle_while(go_on)
     }
 
-    /// As [`record`](Self::record), without comparing the step with the exact motion: for a reader of what is measured
-    /// and of the extremes alone.
+    /// Records `step` without comparing it with the exact motion. This is enough for measurements and extremes.
     #[inline]
     pub fn measure(&mut self, step: &Step) {
         let height = height_in(step.after());
@@ -163,21 +171,21 @@ impl Monitor {
         }
     }
 
-    /// By how much the tilt has swung since the forces last changed, degrees; `None` before it was seen whole.
+    /// Returns the swing of the tilt since the forces last changed, degrees. `None` until a whole swing has been seen.
     pub fn tilt_swing_deg(&self) -> Option<MeasuredNumber> {
         self.tilt_swing.measured()
     }
 
-    /// How the run stands at `step`, the last one that it was shown.
+    /// Returns the health of the run at `step`, the last step that was recorded.
     pub fn health(&mut self, step: &Step) -> Health {
         Health::new(step, &mut self.beside)
     }
 
-    /// Returns what theory says of the exact motion at `time_s` (s), where there is friction as if it ceased then; `None` for
-    /// a lopsided body, a push off the axle, or a motion that would take too long.
+    /// Returns the theory of the exact motion at `time_s` (s). With friction, it describes the motion that would follow
+    /// if friction ceased then. `None` for a lopsided body, a push off the axle, or a motion that would take too long.
     ///
-    /// For a nearly symmetric body it is the theory of the mean moment across, as the forces last changed: what is constant
-    /// in the motion of a symmetric top swings in its own.
+    /// For a nearly symmetric body, the theory uses the mean moment of inertia across, and the state at the last change
+    /// of forces. The constants of a symmetric top's motion oscillate in the motion of such a body.
     pub fn theory(&mut self, time_s: f64) -> Option<Theory> {
         let truth = self.beside.truth()?;
         let state = truth.state_at(time_s);
@@ -202,7 +210,7 @@ impl Monitor {
         };
         let now = Theory::new(&top, &load, &motion, &state);
         let theory = Theory {
-            // The steady precessions are those at the present tilt.
+            // The steady precessions belong to the present tilt.
             slow_precession: now.slow_precession,
             fast_precession: now.fast_precession,
             is_of_a_moment: rubs,

@@ -1,5 +1,5 @@
-//! A run as its rows show it, for a lopsided body, a load aside, or time steps too long for the motion: the highest points
-//! of the axle by parabolas through three rows.
+//! Measures a run by its highest points, which parabolas through three rows give. It serves lopsided bodies, loads off
+//! the axle, and time steps too long for the motion.
 
 use super::beats::{Point, slope};
 use super::turns::{
@@ -10,25 +10,25 @@ use crate::physics::observables::Azimuth;
 use crate::run::Step;
 use std::f64::consts::TAU;
 
-/// Fewer nutations than this do not say how much they differ from one another: of a symmetric body, and of a lopsided one,
-/// whose nutations grow longer and shorter over several of them.
+/// Minimum number of nutations for an uncertainty: of a symmetric body, and of a lopsided body. The nutations of a
+/// lopsided body grow longer and shorter over several of them.
 const FEWEST_NUTATIONS: [u64; 2] = [4, 16];
-/// Where a swing of a lopsided body's axle is less than this part of all that it rises and sinks, how many there are
-/// depends on which count.
+/// Minimum swing of a lopsided body's axle, as a fraction of its whole range of heights. If some swings are smaller,
+/// the number of nutations depends on which swings are counted.
 const LEAST_SWING_PART: f64 = 0.1;
-/// The directions about a lopsided body's axle in which the vertical was at a turning point are counted in so many parts
-/// of a turn.
+/// Number of sectors in a turn. For each sector, the instruments note whether the vertical was in it at a turning
+/// point, as seen from a lopsided body.
 const DIRECTIONS: u32 = u16::BITS;
-/// More of them in a row than this were not seen: what its nutations are like there is not known.
+/// Maximum number of adjacent sectors that may be unseen. Beyond it, nutations in these directions are unknown.
 const MOST_UNSEEN: u32 = 5;
-/// Between rows that are further apart than this part of a nutation a highest point may be missed.
+/// Minimum number of rows per nutation. With fewer, a highest point may be missed.
 const ROWS_TO_SEE_IT: f64 = 8.0;
-/// Nutations of a lopsided body that differ by more than this factor in length: between two of their highest points lay
-/// one that was too shallow to be seen.
+/// Maximum ratio of the longest to the shortest nutation of a lopsided body. Beyond it, a highest point between two
+/// others was too shallow to be seen.
 const MOST_UNLIKE: f64 = 1.5;
-/// Largest difference of equally long nutations as the rows show them, in rows.
+/// Largest difference, in rows, that equally long nutations show because of the rows.
 const ROWS_OF_CHANCE: f64 = 1.5;
-/// Weight of the scatter of nutations that differ at random, against the scatter of single points.
+/// Weight of the scatter of nutations that differ at random, relative to the scatter of single points.
 const AT_RANDOM: f64 = 1.75;
 
 #[derive(Clone, Debug)]
@@ -36,25 +36,26 @@ pub struct Parabolas {
     /// The last three steps, the newest last.
     looks: [AxleSample; 3],
     seen: u64,
-    /// The last highest point of the axle, still to be confirmed by a lower one after it.
+    /// The last highest point of the axle and its height, until a lower row confirms it.
     candidate: Option<(HeightExtreme, f64)>,
     lowest_since: f64,
     last: Option<(u64, HeightExtreme)>,
     count: u64,
     turns: Turns,
     is_lopsided: bool,
-    /// The height of the last highest or lowest row, and the smallest swing between two; the first is seen in part.
+    /// Height of the last highest or lowest row.
     turned_at: Option<f64>,
+    /// Smallest swing between two such rows. The first swing, seen only in part, does not count.
     smallest_swing: f64,
-    /// The directions in which the vertical was at the turning points, a bit each.
+    /// Sectors of the vertical's direction that were seen at turning points, one bit each.
     directions: u16,
-    /// The shortest and the longest time between two highest points, s.
+    /// Shortest and longest time between two highest points, s.
     nutations_s: [f64; 2],
     heights: [f64; 2],
-    /// Whether the azimuth has turned so far in one step that it cannot be told which way.
+    /// True if the azimuth has turned so far in one step that its direction is ambiguous.
     is_ambiguous: bool,
     start: AxleSample,
-    /// A step about half as far into the run as the newest.
+    /// A step about halfway between the start and the newest step.
     half: AxleSample,
     next_half: AxleSample,
 }
@@ -64,7 +65,7 @@ struct AxleSample {
     time_s: f64,
     axle: [f64; 3],
     azimuth: Azimuth,
-    /// The vertical across the axle, seen from the body.
+    /// Components of the vertical across the axle, body frame.
     vertical: [f64; 2],
 }
 
@@ -85,7 +86,7 @@ impl AxleSample {
 }
 
 impl Parabolas {
-    /// Instruments for the run that begins at `step`.
+    /// Creates instruments for a run that begins at `step`.
     pub fn new(step: &Step) -> Self {
         let look = AxleSample::at(step);
         let is_lopsided = SymmetricTop::from_body(&step.scenario().body.mechanics).is_none();
@@ -139,7 +140,7 @@ impl Parabolas {
         }
     }
 
-    /// The turning point between the last three steps: the top of a parabola through them.
+    /// Returns the turning point between the last three steps: the vertex of the parabola through them.
     fn turn(&self) -> HeightExtreme {
         let [a, b, c] = self.looks;
         let (slope, bend) = parabola(self.looks.map(|look| look.axle[2]));
@@ -164,7 +165,7 @@ impl Parabolas {
         }
     }
 
-    /// Takes in that the axle turns back at this height.
+    /// Records that the axle turns back at this height.
     fn swing_to(&mut self, height: f64) {
         match self.turned_at {
             Some(last) if (height - last).abs() <= HEIGHT_SWING_ROUNDING => return,
@@ -174,15 +175,15 @@ impl Parabolas {
         self.turned_at = Some(height);
     }
 
-    /// Whether a lopsided body has no swing so small that another rule might not count it.
+    /// Returns true if a lopsided body has no swing so small that another rule might not count it.
     fn is_even(&self) -> bool {
         let [lowest, highest] = self.heights;
         self.smallest_swing >= LEAST_SWING_PART * (highest - lowest)
     }
 
-    /// Whether a lopsided body has turned so far about its axle that the lengths of all its nutations were seen.
+    /// Returns true if a lopsided body has turned far enough about its axle to show the lengths of all its nutations.
     fn has_seen_beat(&self) -> bool {
-        // Each pass leaves those that are unseen together with their neighbor.
+        // Each pass keeps only the unseen sectors that have an unseen neighbor.
         let mut unseen = !self.directions;
         for _ in 0..MOST_UNSEEN {
             unseen &= unseen.rotate_left(1);
@@ -190,7 +191,7 @@ impl Parabolas {
         unseen == 0
     }
 
-    /// Counts the candidate once the axle has truly sunk below it.
+    /// Counts the candidate once the axle has sunk below it by more than rounding.
     fn confirm(&mut self) {
         let Some((turn, _)) = self
             .candidate
@@ -213,8 +214,8 @@ impl Parabolas {
         self.count += 1;
     }
 
-    /// The line through the highest points, with what a parabola may be off by at its ends: through three steps of a
-    /// swing's top, ψ apart, up to (2/3√3) ψ²/12 of a step.
+    /// Returns the line through the highest points, with the possible error of a parabola at its ends. Through three
+    /// steps of a swing's top, ψ apart, this error is at most (2/3√3) ψ²/12 of a step.
     fn line(&self) -> Option<StraightLine> {
         let fewest = FEWEST_NUTATIONS[usize::from(self.is_lopsided)];
         let (number, last) = self.last.filter(|(number, _)| *number >= fewest)?;
@@ -229,8 +230,9 @@ impl Parabolas {
         Some(line)
     }
 
-    /// Whether the rows are near enough to one another to show each highest point: where they are not, nutations seem to
-    /// differ because some are taken for one. Of a lopsided body they may differ, and be taken for one, without seeming to.
+    /// Returns true if the rows are close enough together to show each highest point. If they are not, nutations seem
+    /// to differ because some are merged. For a lopsided body this is not a sufficient test: nutations differ anyway,
+    /// and merged ones may look alike.
     fn shows_each(&self) -> bool {
         let row = self.looks[2].time_s - self.looks[1].time_s;
         let [shortest, longest] = self.nutations_s;
@@ -297,8 +299,8 @@ impl Parabolas {
         })
     }
 
-    /// How far `value`, the slope from the first to the last of the turning points' `points`, is off the slope that allows
-    /// for a lopsided body's beats; 0 of a symmetric one.
+    /// Returns how far `value` is from the slope that allows for a lopsided body's beats; 0 for a symmetric body.
+    /// `value` is the slope from the first to the last turning point, and `point` makes the points of the line.
     fn beats(&self, value: f64, point: impl Fn((u64, HeightExtreme)) -> Point) -> f64 {
         let Some(last) = self.last.filter(|_| self.is_lopsided) else {
             return 0.0;
@@ -308,7 +310,7 @@ impl Parabolas {
         slope(&points).map_or(0.0, |slope| libm::hypot(slope.value - value, slope.error))
     }
 
-    /// The whole way of the azimuth over the time, for an axle that keeps its height.
+    /// Returns the mean rate of the azimuth over the whole time, for an axle that keeps its height.
     fn way_of_the_azimuth(&self) -> Option<MeasuredNumber> {
         let now = self.looks[2];
         let [whole, later] = [&self.start, &self.half]
@@ -323,7 +325,7 @@ impl Parabolas {
     }
 }
 
-/// Slope and bend at the middle of the parabola through three numbers one apart.
+/// Returns slope and bend at the middle of the parabola through three equally spaced numbers.
 fn parabola([a, b, c]: [f64; 3]) -> (f64, f64) {
     ((c - a) / 2.0, a - 2.0 * b + c)
 }

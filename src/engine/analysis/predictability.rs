@@ -1,20 +1,22 @@
-//! How long a motion can be predicted: a second exact motion begins 1e-12 rad beside the first and is compared with it.
+//! How long a motion can be predicted. A second exact motion, which begins 1e-12 rad from the first, is compared with
+//! it.
 //!
-//! No double-precision computation begins closer to a motion than rounding allows, and none keeps closer. A start that is
-//! written with 16 digits is off by 1e-16, an integration adds about 1e-15 for every radian turned, and turning a thousand
-//! radians so makes 1e-12. The companion stands for these errors: its offset is above all of them, so that two good
-//! computations of one motion, the exact ones included, differ by less than the companion and the motion do. Where the
-//! motion is chaotic the offset grows exponentially, and another size of it would move the time found by little: a hundred
-//! times less offset adds 4.6 e-folding times to the 23 that an offset of 1e-12 needs to become 1 %.
+//! No double-precision computation begins closer to a motion than rounding allows, and none stays closer. A start with
+//! 16 digits is off by 1e-16. An integration adds about 1e-15 for every radian turned, which makes 1e-12 in a thousand
+//! radians. The companion represents these errors. Its offset is larger than all of them, so two good computations of
+//! one motion differ by less than the companion and the motion do.
 //!
-//! The two have parted when their traced points are more than 1 % of the arm apart, by the rule for the error of a run
-//! ([`BELIEVED_WITHIN`]). They are compared at times that follow from the motion alone, not at the steps of a run: the
-//! answer is the same for every scheme and time step.
+//! In a chaotic motion the offset grows exponentially, and another offset would change the resulting time little. An
+//! offset a hundred times smaller adds 4.6 e-folding times to the 23 that an offset of 1e-12 needs to become 1 %.
 //!
-//! A body that is balanced and yet leaves its companion is in an unstable equilibrium. Balance means that the forces have
-//! no torque and the rotation keeps its axis in the body: a slow top exactly upright, a pendulum standing on its pivot, a
-//! free body that turns exactly about its middle axis. Such a motion stays only in exact arithmetic, and rounding decides
-//! where a run goes. So a run is neither blamed nor praised for it.
+//! The two have separated when their traced points are more than 1 % of the arm apart, which is also the limit for the
+//! error of a run ([`BELIEVED_WITHIN`]). The times of comparison depend on the motion alone, not on the steps of a run.
+//! The result is therefore the same for every scheme and time step.
+//!
+//! A body that is balanced, and yet departs from its companion, is in an unstable equilibrium. Balance means that the
+//! forces have no torque and the rotation keeps its axis in the body. Examples are a slow top exactly upright, a
+//! pendulum upside down on its pivot, and a free body that turns exactly about its middle axis. Such a motion lasts
+//! only in exact arithmetic, and rounding decides where a run goes. The run is therefore neither accepted nor rejected.
 
 use super::cost::{is_affordable, turning_rad_per_s};
 use super::swings::BELIEVED_WITHIN;
@@ -25,25 +27,26 @@ use crate::scenario::Scenario;
 use nalgebra::Vector3;
 use std::sync::Arc;
 
-/// The rotation, rad, world frame, by which the companion's start differs. Its direction is that of no symmetry.
+/// Rotation by which the companion's start differs, rad, world frame. It is along no direction of symmetry.
 const OFFSET: Vector3<f64> = Vector3::new(0.48e-12, 0.64e-12, 0.60e-12);
-/// The angle of that rotation, rad.
+/// Angle of that rotation, rad.
 const OFFSET_RAD: f64 = 1e-12;
-/// The motions are compared each time that the body has turned by this angle, rad, as it turns or swings now.
+/// Angle by which the body turns or swings between two comparisons at its present rate, rad.
 const BETWEEN_LOOKS_RAD: f64 = 0.5;
-/// In closed form an error grows no faster than time, but near the vertical. There this part of the time since the forces
-/// last changed may pass between two comparisons.
+/// Fraction of the time since the forces last changed that may pass between two comparisons, for motions in closed
+/// form. There, an error grows no faster than time, except near the vertical.
 const BETWEEN_LOOKS: f64 = 0.005;
-/// A balance in which an offset has grown by this factor is unstable. In a stable one it grows by less than this unless the
+/// Growth factor of the offset from which on a balance is unstable. In a stable balance it grows by less, unless the
 /// spin is within a millionth of the limit.
 const UNSTABLE_GROWTH: f64 = 1000.0;
 
-/// How far a motion can be predicted, as found up to some time.
+/// Limits on predicting a motion, as found up to some time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Predictability {
-    /// The time from which on no double-precision computation can predict the motion, s; `None` up to that time.
+    /// Time after which no double-precision computation can predict the motion, s. `None` if that time has not been
+    /// reached.
     pub until_s: Option<f64>,
-    /// The equilibrium that the motion is in, where that is unstable.
+    /// The equilibrium that the motion is in, if it is unstable.
     pub unstable: Option<Equilibrium>,
 }
 
@@ -52,25 +55,25 @@ pub struct Predictability {
 pub enum Equilibrium {
     /// The axle is upright.
     Upright,
-    /// The body stands otherwise, or turns about an axis that is fixed in it.
+    /// The body rests in another position, or turns about an axis that is fixed in it.
     Other,
 }
 
-/// A second exact motion that began beside another, and how far they have parted.
+/// A second exact motion that began near another, and the distance between the two.
 #[derive(Clone, Debug)]
 pub(super) struct Companion {
     motion: Truth,
     next_look_s: f64,
-    /// The time up to which the two were to be compared last, s.
+    /// Time up to which the last comparison was requested, s.
     asked_s: f64,
-    /// The largest difference of the orientations so far, rad.
+    /// Largest difference of the orientations so far, rad.
     most_rad: f64,
     until_s: Option<f64>,
     is_balanced: bool,
 }
 
 impl Companion {
-    /// Returns the companion of the exact motion of `scenario`, from the start on.
+    /// Returns the companion of the exact motion of `scenario`, at the start.
     pub fn new(scenario: &Arc<Scenario>) -> Self {
         let start = scenario.start;
         let beside = State {
@@ -87,21 +90,21 @@ impl Companion {
         }
     }
 
-    /// Goes on beside the exact motion of `scenario`, whose past is the same.
+    /// Continues with the exact motion of `scenario`, which has the same past.
     pub fn branch(&mut self, scenario: &Arc<Scenario>) {
         self.motion.branch(scenario);
         if self.until_s.is_none() {
-            // When to look next follows from the forces, which are others now.
+            // The time of the next comparison depends on the forces, which have changed.
             self.next_look_s = self.next_look_s.min(self.asked_s);
         }
     }
 
-    /// Returns when the two had parted, s.
+    /// Returns the time at which the two had separated, s.
     pub fn until_s(&self) -> Option<f64> {
         self.until_s
     }
 
-    /// Compares the two up to `time_s`; `exact` has not been asked for a time later than the next comparison.
+    /// Compares the two up to `time_s`. `exact` must not have been asked for a time later than the next comparison.
     #[inline]
     pub fn look_until(&mut self, exact: &mut Truth, time_s: f64) {
         self.asked_s = time_s;
@@ -131,7 +134,7 @@ impl Companion {
         }
     }
 
-    /// Returns what has been found so far.
+    /// Returns the limits found so far.
     pub fn found(&self) -> Predictability {
         let is_unstable = self.is_balanced && self.most_rad >= UNSTABLE_GROWTH * OFFSET_RAD;
         Predictability {
@@ -142,7 +145,7 @@ impl Companion {
 }
 
 impl Equilibrium {
-    /// Returns that in which `scenario` begins.
+    /// Returns the equilibrium in which `scenario` begins.
     fn of_start(scenario: &Scenario) -> Self {
         let axle = scenario.start.axle();
         let rate = observables::angular_velocity(&scenario.body.mechanics, &scenario.start);
@@ -156,8 +159,8 @@ impl Equilibrium {
     }
 }
 
-/// Returns how far the motion of `scenario` can be predicted, found up to `end_s` (s); nothing is known where the exact
-/// motion would take too long.
+/// Returns how far the motion of `scenario` can be predicted, as found up to `end_s` (s). Reports no limits if the
+/// exact motion would take too long.
 pub fn predictability(scenario: &Arc<Scenario>, end_s: f64) -> Predictability {
     if !is_affordable(scenario) {
         return Predictability::default();
@@ -167,7 +170,7 @@ pub fn predictability(scenario: &Arc<Scenario>, end_s: f64) -> Predictability {
     companion.found()
 }
 
-/// Whether `exact`, in `state`, is no farther from balance than an error of `error_rad` puts it.
+/// Returns true if `exact`, in `state`, is balanced to within an error of `error_rad`.
 fn is_balanced(exact: &Truth, state: &State, error_rad: f64) -> bool {
     let scenario = exact.scenario();
     let body = &scenario.body.mechanics;
@@ -180,7 +183,8 @@ fn is_balanced(exact: &Truth, state: &State, error_rad: f64) -> bool {
         && first.cross(&now).norm() <= error_rad * first.norm_squared()
 }
 
-/// Returns when to compare the motions next after `exact` was in `state`, s: at the latest when the forces change.
+/// Returns the time at which to compare the motions after `exact` was in `state`, s. It is no later than the next
+/// change of forces.
 fn next_look_s(exact: &Truth, state: &State) -> f64 {
     let motion = exact.motion();
     let apart_s = BETWEEN_LOOKS_RAD / turning_rad_per_s(exact.scenario(), exact.loads(), state);
@@ -189,9 +193,9 @@ fn next_look_s(exact: &Truth, state: &State) -> f64 {
         None => apart_s,
     };
     if apart_s.is_nan() || apart_s == 0.0 {
-        return f64::INFINITY; // it turns faster than numbers reach
+        return f64::INFINITY; // the rate is beyond the range of numbers
     }
-    // Just after the change, so that the next distance follows from the new forces; and later than now in any case.
+    // Just after the change, so that the next interval follows from the new forces, and always later than now.
     (state.time_s + apart_s)
         .min(exact.end_s().next_up())
         .max(state.time_s.next_up())

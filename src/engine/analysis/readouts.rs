@@ -1,8 +1,8 @@
-//! The one table of readouts: every number that is read off a run, under the name by which it leaves the program, with
-//! its unit and its meaning. The JSON, the summary, the lab and whoever asks for a number by its name read this table.
+//! The table of readouts: every number that is read from a run, with its name, unit and meaning. The JSON, the summary,
+//! the lab, and everyone who asks for a number by name use this table. A new readout is a row of it.
 //!
-//! A bare name is the live value of the run's last step. `predicted_...` is theory's, `measured_...` the run's own. What
-//! cannot be stated honestly is [`ReadoutValue::Nothing`], null in JSON: no number of it is ever NaN or infinite.
+//! A bare name is the value at the run's last step. A name with `predicted_` is theory's value, and `measured_` is the
+//! run's. A value that is unknown is [`ReadoutValue::Nothing`], null in JSON. No number is ever NaN or infinite.
 
 mod summary_row;
 mod table;
@@ -24,35 +24,35 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// A run at one step, with what has been measured on it and what theory says of it.
+/// A run at one step, with its measurements and the predictions of theory.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Readouts {
     pub title: String,
-    /// The name of the scheme in force.
+    /// Name of the scheme in force.
     pub scheme: &'static str,
-    /// How the scheme went about it, where it has more than one way.
+    /// Variant of the scheme that the run used, if the scheme has more than one.
     pub scheme_kind: Option<String>,
     pub time_step_s: f64,
     pub sample: Sample,
     /// L·axle, J s.
     pub axle_momentum: f64,
-    /// The rate of the spin about the axle, rad/s; of the rotor alone where the scenario names one.
+    /// Rate of the spin about the axle, rad/s. If the scenario names a rotor, the rate of the rotor alone.
     pub spin_rad_per_s: f64,
-    /// Whether a rotor spins in a frame that does not.
+    /// True if a rotor spins in a frame that does not.
     pub has_rotor: bool,
-    /// I3/I1 of a symmetric body, or of a nearly symmetric one, I1 the mean of its moments across.
+    /// I3/I1 of a symmetric or nearly symmetric body. I1 is then the mean of its moments of inertia across the axle.
     pub kappa: Option<f64>,
-    /// The asymmetry of such a body.
+    /// Asymmetry of such a body.
     pub asymmetry: Option<f64>,
     pub health: Health,
-    /// What would mend it, where that has been sought.
+    /// Advice that would fix the run, if it was searched for.
     pub advice: Option<Advice>,
-    /// What theory says of the exact motion now, about the axis that it names.
+    /// Theory of the exact motion now, about the axis that it names.
     pub theory: Option<Theory>,
     pub extremes: Extremes,
     /// M g, N.
     pub weight: f64,
-    /// Its mean over whole nutations since the forces last changed, N.
+    /// Mean force on the foot over whole nutations since the forces last changed, N.
     pub mean_foot_force: Option<MeasuredNumber>,
     /// That mean by Newton's second law, N.
     pub predicted_mean_foot_force: Option<f64>,
@@ -60,21 +60,21 @@ pub struct Readouts {
     pub precession: Option<MeasuredNumber>,
     /// Nutation period since the forces last changed, s.
     pub nutation: Option<MeasuredNumber>,
-    /// Why there is no such period.
+    /// Reason why there is no such period.
     pub without_nutation: Option<WithoutNutation>,
     /// Swing of the tilt since the forces last changed, degrees.
     pub tilt_swing: Option<MeasuredNumber>,
-    /// What the linear theory of the report's scheme says of the motion since the forces last changed.
+    /// Linear theory of the report's scheme for the motion since the forces last changed.
     pub report_theory: Option<ReportTheory>,
-    /// The step at which they did.
+    /// Step at which the forces last changed.
     pub since: u64,
-    /// Time spent on stepping alone, where it was measured.
+    /// Time spent on stepping alone, if it was measured.
     pub stepping: Option<Duration>,
 }
 
 impl Readouts {
-    /// The readouts of `simulation` as it stands: `monitor` has followed it, `health` is how it stands, and `advice`
-    /// what would mend it.
+    /// Returns the readouts of `simulation` at its present step. `monitor` has followed it, and `health` and `advice`
+    /// belong to this step.
     pub fn new(
         simulation: &Simulation,
         monitor: &mut Monitor,
@@ -116,22 +116,22 @@ impl Readouts {
     }
 
     fn read_measured(&mut self, monitor: &Monitor) {
-        // Under friction neither rate lasts: there is no one number that a measurement could come near to.
+        // With friction neither rate is constant, so there is no single number to measure.
         if self.health.slowing.is_none() {
             self.precession = monitor.instruments.precession_rad_per_s();
             (self.nutation, self.without_nutation) = match monitor.instruments.nutation_period_s() {
                 Ok(measured) => (Some(measured), None),
                 Err(why) => (None, Some(why)),
             };
-            // The momentum at turning points that the rows do not show is not what is read there.
+            // If the rows do not show the turning points, they do not show the momentum there either.
             let is_seen = self.nutation_is_resolved() != Some(false);
             self.mean_foot_force = monitor.mean_foot_force().filter(|_| is_seen);
         }
         self.tilt_swing = monitor.tilt_swing_deg();
     }
 
-    /// Reads those of `source` off `simulation` again, which `monitor` has followed on; the others stay as they are, where
-    /// reading them as well would cost more.
+    /// Reads the readouts of `source` from `simulation` again, after `monitor` has followed it further. The other
+    /// readouts keep their values if reading them too would cost more.
     pub fn read_again(
         &mut self,
         source: ReadoutSource,
@@ -159,46 +159,46 @@ impl Readouts {
         }
     }
 
-    /// The number that `name` stands for; `None` where there is none of that name, it is a text, or it cannot be stated.
+    /// Returns the number of the readout `name`. `None` if there is no such readout, it is a text, or it is unknown.
     pub fn number(&self, name: &str) -> Option<f64> {
         find(name)?.read_from(self).number()
     }
 
-    /// Theory, where its axis is +z, about which the measured numbers are too.
+    /// Returns the theory if its axis is +z, which is also the axis of the measured numbers.
     pub fn theory_about_z(&self) -> Option<&Theory> {
         self.theory
             .as_ref()
             .filter(|theory| theory.axis == TheoryAxis::Z)
     }
 
-    /// The same, where it is of the motion that does follow: there is no friction.
+    /// Returns the same theory if it predicts the motion to come, that is, without friction.
     fn lasting_theory(&self) -> Option<&Theory> {
         self.theory_about_z()
             .filter(|theory| !theory.is_of_a_moment)
     }
 
-    /// Least and greatest tilt of the exact motion that follows under the present forces, degrees; `None` where theory
-    /// does not know it.
+    /// Returns the minimum and maximum tilt of the exact motion that follows under the present forces, degrees. `None`
+    /// if theory does not predict it.
     pub fn predicted_tilt_range_deg(&self) -> Option<(f64, f64)> {
         self.lasting_theory().map(|theory| theory.tilt_range_deg)
     }
 
-    /// The same for the whole run so far: `None` too where the forces have changed after the first step, since theory
-    /// does not know the time before.
+    /// Returns the same range for the whole run so far. It is also `None` if the forces have changed after the first
+    /// step, because theory does not cover the time before.
     fn predicted_tilts_of_run(&self) -> Option<(f64, f64)> {
         let is_whole_run = self.since <= 1;
         self.predicted_tilt_range_deg().filter(|_| is_whole_run)
     }
 
-    /// Whether the time step shows the nutation as it is: `Some(false)` where what is measured is strobed,
-    /// `None` where the step is short and theory knows no period to hold it against.
+    /// Returns true if the time step resolves the nutation, and false if the measured nutation is under-sampled. `None`
+    /// if the step is short and theory predicts no period.
     pub fn nutation_is_resolved(&self) -> Option<bool> {
         let period_s = self
             .theory_about_z()
             .and_then(|theory| theory.nutation_period_s);
         let is_short = period_s.map(|period_s| 2.0 * self.time_step_s < period_s);
-        // Turned by half a turn a step or more, the axle's swing about L is seen too seldom as well. The schemes that
-        // turn the body exactly still follow the nutation of a known period that is longer.
+        // If the body turns by half a turn per step or more, the axle's swing about L is sampled too seldom as well.
+        // Schemes that turn the body exactly still follow a nutation whose predicted period is longer.
         let turns_exactly = self.health.scheme.turns_exactly;
         let follows = self.turn_rad() < PI || (turns_exactly && period_s.is_some());
         match is_short {
@@ -208,8 +208,8 @@ impl Readouts {
         }
     }
 
-    /// The period of the tilt's swings as the steps show them, s: measured, or before that predicted where the time step
-    /// shows the nutation as it is; `None` where there are no swings.
+    /// Returns the period of the tilt's swings as the steps show them, s. It is measured, or until then predicted, if
+    /// the time step resolves the nutation. `None` if there are no swings.
     pub fn swing_s(&self) -> Option<f64> {
         let measured = self.nutation.filter(MeasuredNumber::is_settled);
         let swing_s = measured.map(|measured| measured.value).or_else(|| {
@@ -219,11 +219,11 @@ impl Readouts {
         swing_s.filter(|swing_s| *swing_s > 0.0 && swing_s.is_finite())
     }
 
-    /// By how much the body turns in a time step, or the axle about L where that is more, rad.
+    /// Returns the angle by which the body turns in a time step, or the axle about L if that is larger, rad.
     fn turn_rad(&self) -> f64 {
         let turn = self.health.turns_per_step * 2.0 * PI;
         match (&self.theory, self.kappa) {
-            // A free symmetric top's axle goes round L at |L|/I1.
+            // The axle of a free symmetric top goes round L at |L|/I1.
             (Some(theory), Some(_)) if theory.axis == TheoryAxis::Momentum => {
                 let rate = theory.precession.unwrap_or(0.0).abs();
                 turn.max(rate * self.time_step_s)
@@ -234,7 +234,8 @@ impl Readouts {
 }
 
 impl Serialize for Readouts {
-    /// One object, a field a readout, in the table's order; how the scheme went about it is left out where it has one way.
+    /// Writes one object with a field for each readout, in the order of the table. `scheme_kind` is omitted if the
+    /// scheme has only one variant.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut object = serializer.serialize_map(None)?;
         for readout in READOUTS {
@@ -259,7 +260,7 @@ pub enum ReadoutValue {
 }
 
 impl ReadoutValue {
-    /// As a number: 1 and 0 for yes and no; `None` of a text.
+    /// Returns the value as a number, with 1 and 0 for true and false. `None` for a text.
     pub fn number(&self) -> Option<f64> {
         match self {
             Self::Number(number) => Some(*number),
@@ -270,17 +271,18 @@ impl ReadoutValue {
     }
 }
 
-/// Steps that are taken without asking whether to go on.
+/// Number of steps between two calls of `go_on`.
 const READOUT_BLOCK_STEPS: u64 = 4096;
 
-/// Plays the run of `scenario` to its end and reads `wanted` off it; `None` where `go_on` said no on the way.
+/// Plays the run of `scenario` to its end and reads the `wanted` readouts. Returns `None` if `go_on` returned false on
+/// the way.
 pub fn at_end(
     scenario: Scenario,
     wanted: &[&Readout],
     go_on: &dyn Fn() -> bool,
 ) -> Result<Option<Vec<ReadoutValue>>, String> {
     let scenario = Arc::new(scenario);
-    // Only these need every step compared with the exact motion, which may take longer than the run.
+    // Only these readouts need every step compared with the exact motion, which may take longer than the run.
     let is_held = wanted
         .iter()
         .any(|readout| readout.source == ReadoutSource::Exact);
@@ -309,7 +311,7 @@ pub fn at_end(
         }
     }
     let health = monitor.health(simulation.now());
-    // What would mend a run is part of the one sentence about it, and takes a search.
+    // The sentence about a run includes the advice, which takes a search.
     let is_asked = wanted.iter().any(|readout| readout.name == "health");
     let is_wrong = health.is_believed() == Some(false);
     let advice = (is_asked && is_wrong).then(|| advise(&scenario));
@@ -322,8 +324,8 @@ pub fn at_end(
     ))
 }
 
-/// Whether the `wanted` numbers are the same however the run gets to its end: those of theory, where nothing happens at
-/// certain steps on the way, and the scheme needs none.
+/// Returns true if the `wanted` numbers do not depend on how the run gets to its end. Only theory's numbers do not, and
+/// only if the scheme needs no steps and nothing happens at certain steps on the way.
 fn needs_no_steps(scenario: &Scenario, wanted: &[&Readout]) -> bool {
     scenario.motion.scheme.order.is_none()
         && wanted

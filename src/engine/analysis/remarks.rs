@@ -1,4 +1,4 @@
-//! The health of a run in words: the sentence after a run, and the lines of the summary.
+//! The health of a run in words: the sentence after a run, and lines of the summary.
 
 use super::Health;
 use super::health::{Advice, Nutation, WheelPicture};
@@ -8,7 +8,7 @@ use crate::text::number::{NOT_AVAILABLE, fixed, short, shortest, signed_exponent
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 
-/// What is wrong with a run whose scheme has broken down.
+/// Problem of a run whose scheme has broken down.
 const NO_ROTATION: &str = "its orientation is no rotation any more";
 
 impl fmt::Display for WheelPicture {
@@ -23,7 +23,7 @@ impl fmt::Display for WheelPicture {
     }
 }
 
-/// What mends the run: options of the command line where it can be run again with them.
+/// Returns the fix for the run. It consists of command-line options if the run can be repeated with them.
 fn remedy(health: &Health, advice: &Advice) -> Option<String> {
     Some(match advice {
         Advice::TimeStep(step) if health.can_be_rescaled => {
@@ -48,11 +48,12 @@ fn remedy(health: &Health, advice: &Advice) -> Option<String> {
     })
 }
 
-/// Largest ratio of the scheme's lag to the true lag that is reported as right. The scheme's lag is never the smaller.
+/// Largest ratio of the scheme's lag to the true lag that is not reported. The scheme's lag is never smaller than the
+/// true lag.
 const LAG_IS_RIGHT: f64 = 1.05;
 
 impl fmt::Display for Predictability {
-    /// Writes what follows "the motion is"; nothing where there is no limit.
+    /// Writes the words that follow "the motion is", or nothing without a limit.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.unstable {
             Some(Equilibrium::Upright) => {
@@ -82,7 +83,7 @@ fn no_drift(health: &Health) -> &'static str {
     }
 }
 
-/// The unit of an energy drift in few letters, as a column of the lab has it.
+/// Returns the unit of an energy error as a short label for a column of the lab.
 pub fn short_unit(unit: Option<EnergyUnit>) -> &'static str {
     match unit {
         Some(EnergyUnit::Weight) => "mgl",
@@ -91,7 +92,7 @@ pub fn short_unit(unit: Option<EnergyUnit>) -> &'static str {
     }
 }
 
-/// The energy drift in words: its size and its unit, or why there is none.
+/// Returns the energy error in words: its size and unit, or why there is none.
 pub fn energy_in_full(health: &Health) -> String {
     match (health.energy_drift, health.energy_unit) {
         (Some(drift), Some(unit)) => format!("{} of {unit}", signed_exponent(drift, 3)),
@@ -99,7 +100,7 @@ pub fn energy_in_full(health: &Health) -> String {
     }
 }
 
-/// What a time step does to the body and its nutation, for a line of the summary.
+/// Describes the effect of a time step on the body and its nutation, for a line of the summary.
 pub fn step_in_full(health: &Health) -> String {
     let turns = match health.turns_per_step {
         _ if !health.is_a_rotation => format!("turns the body {NOT_AVAILABLE}: {NO_ROTATION}"),
@@ -114,7 +115,7 @@ pub fn step_in_full(health: &Health) -> String {
     }
 }
 
-/// The angle between axle and L, for a line of the summary.
+/// Describes the angle between axle and L, for a line of the summary.
 pub fn lag_in_full(health: &Health) -> String {
     let now = format!("{} degrees now", fixed(health.lag_deg, 4));
     let Some(nutation) = health.nutation else {
@@ -131,7 +132,7 @@ pub fn lag_in_full(health: &Health) -> String {
     )
 }
 
-/// A small number with its sign; 0 without one.
+/// Formats a small number with its sign. Zero has no sign.
 fn of_rounding(number: f64) -> String {
     match number {
         0.0 => "0".to_owned(),
@@ -139,7 +140,7 @@ fn of_rounding(number: f64) -> String {
     }
 }
 
-/// How far the constants of the motion are off, for a line of the summary; `None` where that is not known.
+/// Describes the errors of the constants of motion, for a line of the summary. `None` if they are unknown.
 pub fn constants_in_full(health: &Health) -> Option<String> {
     let off = health.deviation?;
     Some(format!(
@@ -149,12 +150,12 @@ pub fn constants_in_full(health: &Health) -> Option<String> {
     ))
 }
 
-/// Radians a step beyond which no scheme that follows the rotation by polynomials keeps up.
+/// Rotation per step from which on no scheme that approximates the rotation by polynomials is accurate, rad.
 const TOO_FAR_RAD: f64 = 1.0;
 
 impl Health {
-    /// In one sentence of at most 40 words: whether the numbers hold, what is wrong with them, and what would mend it. One
-    /// more says how far the motion can be predicted, where the run goes on after that.
+    /// Returns a sentence of at most 40 words: whether the numbers are reliable, and if not, what is wrong and how to
+    /// fix it. If the run continues beyond the time that can be predicted, one more sentence says so.
     pub fn sentence(&self, advice: Option<&Advice>) -> String {
         let Some(most) = self.most_distance_m else {
             return "Not held against the exact motion, which would take too long or leaves the range of numbers.".to_owned();
@@ -189,7 +190,7 @@ impl Health {
             );
         }
         if limits.until_s.is_some() {
-            // Two exact motions differ by rounding, which says nothing.
+            // Two exact motions differ only by rounding, which is of no interest.
             let within = match self.scheme.order {
                 Some(_) => format!(": the traced point has kept within {far} of the exact motion"),
                 None => String::new(),
@@ -207,7 +208,7 @@ impl Health {
     }
 }
 
-/// What the time step makes of the picture of the turning body, where that is not right.
+/// Describes how the turning body appears, if it appears wrong.
 fn picture(health: &Health) -> String {
     match health.picture {
         WheelPicture::Right => String::new(),
@@ -215,7 +216,7 @@ fn picture(health: &Health) -> String {
     }
 }
 
-/// Why the tilt does not swing as it should, where that is known.
+/// Returns why the tilt swings wrongly, if this is known.
 fn cause_of_swing(health: &Health) -> Option<String> {
     let nutation = health.nutation;
     let too_far = nutation
@@ -233,7 +234,7 @@ fn cause_of_swing(health: &Health) -> Option<String> {
     }
 }
 
-/// What becomes of a nutation: "damped by 0.1 % a step".
+/// Describes the change of a nutation: "damped by 0.1 % a step".
 fn changed(nutation: &Nutation) -> String {
     let change = nutation.multiplier - 1.0;
     let verb = if change < 0.0 { "damped" } else { "fed" };

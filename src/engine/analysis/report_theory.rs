@@ -1,13 +1,13 @@
-//! What the report's scheme makes of a heavy symmetric top, by the theory of the frozen L.
+//! Theory of the report's scheme for a heavy symmetric top, with L frozen in each step.
 //!
-//! With ψ = |Ω|dt, each step multiplies the axle's small offset w from L (a complex number in the plane across L: downward,
-//! and i times the way of the precession) by A = 1 − κ + κ e^{iψ}, and the torque turns L by δ = |τ|dt/|L| the way of the
-//! precession. So w' = A w − iδ: the axle lags L by w* = −iδ/(1 − A), and swings about that. |w*| = δ/|1 − A| is large where
-//! ψ comes near 2πk. The truth is |w*| = δ/(κψ).
+//! The axle's small offset w from L is a complex number in the plane across L: the real axis points down, the imaginary
+//! axis in the direction of the precession. With ψ = |Ω|dt, each step multiplies w by A = 1 − κ + κ e^{iψ}. The torque
+//! turns L by δ = |τ|dt/|L| in the direction of the precession. So w' = A w − iδ: the axle lags L by w* = −iδ/(1 − A),
+//! and swings about that. |w*| = δ/|1 − A| is large if ψ is near 2πk. The true value is |w*| = δ/(κψ).
 //!
-//! This is linear. The swing changes |L|, and with it ψ: near ψ = 2πk that detunes what it predicts. What it would then be off
-//! by is estimated, and more than about a tenth is not predicted. The factors of the estimate were found by comparison with
-//! runs (random L, tilt and ψ up to 35, κ = 1).
+//! This theory is linear. The swing changes |L| and therefore ψ, which detunes the prediction near ψ = 2πk. The
+//! resulting error is estimated, and there is no prediction if it exceeds about a tenth. The factors of the estimate
+//! were found by comparison with runs (random L, tilt and ψ up to 35, κ = 1).
 
 use crate::physics::loads::torque;
 use crate::physics::{State, SymmetricTop, observables};
@@ -15,21 +15,21 @@ use crate::run::Step;
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 
-/// What the scheme makes of the run since the forces last changed.
+/// Prediction for the scheme in the run since the forces last changed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReportTheory {
-    /// |w*|, rad; `None` where it is too large for the linear theory.
+    /// |w*|, rad. `None` if it is too large for the linear theory.
     lag: Option<f64>,
     /// ln |A|.
     growth: f64,
-    /// Phases of the swing; `None` where it is too large for the linear theory.
+    /// Swing about the lag. `None` if it is too large for the linear theory.
     swing: Option<LagSwing>,
 }
 
-/// An axle that swings about its lag.
+/// Swing of the axle about its lag.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct LagSwing {
-    /// w*: downward, and the way of the precession.
+    /// w*: components downward and in the direction of the precession.
     lag: [f64; 2],
     /// w − w* at the beginning.
     offset: [f64; 2],
@@ -37,25 +37,26 @@ struct LagSwing {
     tilt: f64,
     /// arg A.
     turn: f64,
-    /// By how much more or less a step may turn it, for all that is left out, rad.
+    /// Maximum error of `turn` per step, from everything that the theory neglects, rad.
     slip: f64,
 }
 
-/// The greatest error, relative, that is put up with.
+/// Maximum relative error of a prediction.
 const THEORY_TOLERANCE: f64 = 0.1;
-/// A nutation that the scheme changes by more than this part in the run is not the one predicted.
+/// Maximum relative change of the nutation by the scheme during the run. With more, it is not the predicted nutation.
 const NEUTRAL: f64 = 0.05;
-/// A swing that would be less by more than this part if its steps slipped a little is not predicted.
+/// Maximum relative decrease of the predicted swing if its steps slip a little. With more, there is no prediction.
 const SURE: f64 = 0.05;
-/// Number of phases of the swing that are looked at, and their number in one turn.
+/// Maximum number of sampled phases of the swing.
 const SWING_PHASES: u64 = 1024;
+/// Number of sampled phases in one turn.
 const IN_A_TURN: f64 = 256.0;
-/// Parts of the slip that are tried.
+/// Fractions of the slip to try.
 const PHASE_SLIPS: [f64; 4] = [-1.0, -0.5, 0.5, 1.0];
 
 impl ReportTheory {
-    /// Of the run whose forces have just changed, or that begins, at `step`; `None` where it is not the report's scheme, the
-    /// body is not symmetric, or the forces do not pull along z on the axle.
+    /// Returns the theory for a run that begins, or whose forces have just changed, at `step`. `None` for another
+    /// scheme, for a body that is not symmetric, or if the forces on the axle are not along z.
     pub fn new(step: &Step) -> Option<Self> {
         let scenario = step.scenario();
         let body = &scenario.body.mechanics;
@@ -73,7 +74,7 @@ impl ReportTheory {
             torque(&state.orientation, &step.loads().moment(body)).norm() * time_step_s / size;
         let (sin, cos) = (libm::sin(psi), libm::cos(psi));
         let kappa = top.kappa();
-        // 1 - A, and -i kick/(1 - A); a load that pulls up turns L the other way.
+        // 1 - A, and -i kick/(1 - A). A load that pulls up turns L the other way.
         let off_one = [kappa * (1.0 - cos), -kappa * sin];
         let size_2 = off_one[0].powi(2) + off_one[1].powi(2);
         let kick = if load.z > 0.0 { -kick } else { kick };
@@ -101,21 +102,21 @@ impl ReportTheory {
         })
     }
 
-    /// The angle by which the axle lags L in the mean of the first `steps` steps, degrees; `None` too where the scheme feeds
-    /// the nutation meanwhile, until the axle swings about L and not about the lag.
+    /// Returns the mean angle by which the axle lags L in the first `steps` steps, degrees. It is also `None` if the
+    /// scheme amplifies the nutation meanwhile, until the axle swings about L and not about the lag.
     pub fn lag_deg(&self, steps: u64) -> Option<f64> {
         let is_fed = self.growth * steps as f64 > NEUTRAL;
         self.lag.filter(|_| !is_fed).map(f64::to_degrees)
     }
 
-    /// The greatest tilt less the least on the first `steps` steps, degrees; `None` where the scheme changes the nutation
-    /// meanwhile, or the steps meet a few of its phases only.
+    /// Returns the maximum tilt minus the minimum in the first `steps` steps, degrees. `None` if the scheme changes the
+    /// nutation meanwhile, or if the steps sample only a few of its phases.
     pub fn swing_deg(&self, steps: u64) -> Option<f64> {
         let swing = self
             .swing
             .filter(|_| (self.growth * steps as f64).abs() <= NEUTRAL)?;
-        // Near a simple fraction of a turn the steps meet few phases of the swing, and drift through the others as slowly as
-        // the precession, which is left out, turns them.
+        // Near a simple fraction of a turn, the steps sample few phases of the swing. They drift through the others as
+        // slowly as the precession, which is neglected, turns them.
         let seen = swing.seen(steps, self.growth, 0.0);
         let slipped = PHASE_SLIPS.map(|part| swing.seen(steps, self.growth, part * swing.slip));
         let (least, most) = slipped.iter().fold((seen, seen), |(least, most), &seen| {
@@ -128,8 +129,8 @@ impl ReportTheory {
 }
 
 impl LagSwing {
-    /// The greatest tilt less the least on the first `steps` steps, rad, if each turned the swing by `slip` more; its size grows by
-    /// `growth` a step.
+    /// Returns the maximum tilt minus the minimum in the first `steps` steps, rad. Each step turns the swing by `slip`
+    /// in addition, and multiplies its size by exp(`growth`).
     fn seen(&self, steps: u64, growth: f64, slip: f64) -> f64 {
         let stride = (2.0 * PI / IN_A_TURN / self.turn.abs()).clamp(1.0, u32::MAX.into()) as u64;
         let phases = (steps / stride).min(SWING_PHASES);
@@ -140,7 +141,7 @@ impl LagSwing {
         high - low
     }
 
-    /// The tilt after `steps` steps, rad, if each turned the swing by `slip` more; likewise.
+    /// Returns the tilt after `steps` steps, rad, with the same `growth` and `slip`.
     fn tilt(&self, steps: f64, growth: f64, slip: f64) -> f64 {
         let size = libm::exp(growth * steps);
         let turned = (self.turn + slip) * steps;
@@ -152,7 +153,7 @@ impl LagSwing {
     }
 }
 
-/// The axle's offset from L: downward, and the way that z × L points; `None` where L is vertical.
+/// Returns the axle's offset from L: its components downward and along z × L. `None` if L is vertical.
 fn offset_from_momentum(state: &State) -> Option<[f64; 2]> {
     let along = state.momentum.normalize();
     let way = Vector3::z().cross(&along).try_normalize(1e-9)?;

@@ -1,28 +1,29 @@
-//! What friction does to a run: its work so far, and how fast it takes spin and swing.
+//! Effect of friction on a run: its work so far, and how fast it reduces spin and swing.
 
 use crate::physics::{Friction, SymmetricTop};
 use crate::run::Step;
 use crate::text::number::short;
 use std::fmt;
 
-/// A spin of less than this part of |L| is none but for rounding.
+/// A spin below this fraction of |L| is a rounding error.
 const SPIN_ROUNDING: f64 = 1e-12;
 
-/// Friction on a run at one step.
+/// Effect of friction on a run at one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrictionEffect {
-    /// Work of friction since the start, J: 0, or less.
+    /// Work of friction since the start, J. It is never positive.
     pub work: f64,
-    /// The time in which viscous friction alone takes the spin to 1/e, I3/k1, s.
+    /// Time in which viscous friction alone reduces the spin to 1/e, I3/k1, s.
     pub spin_decay_s: Option<f64>,
-    /// The time in which dry friction alone would stop the present spin, L3/k0, s; 0 where it has, but for rounding.
+    /// Time in which dry friction alone would stop the present spin, L3/k0, s. It is 0 if the spin has stopped, except
+    /// for rounding.
     pub spin_stop_s: Option<f64>,
-    /// The time in which friction on the swing takes a fast top's nutation to 1/e, I1/k4, s.
+    /// Time in which friction on the swing reduces a fast top's nutation to 1/e, I1/k4, s.
     pub swing_decay_s: Option<f64>,
 }
 
 impl FrictionEffect {
-    /// Of the run at `step`; `None` where there is no friction. A lopsided body has no such times.
+    /// Returns the effect of friction on the run at `step`. `None` without friction. A lopsided body has no times.
     pub fn new(step: &Step) -> Option<Self> {
         let friction = step.loads().friction;
         if friction.is_none() {
@@ -49,13 +50,13 @@ impl FrictionEffect {
     }
 }
 
-/// Returns how long friction takes that removes `rate` in a second, s, to remove `amount`; `None` without an end.
+/// Returns the time in which friction that removes `rate` per second removes `amount`, s. `None` if it never does.
 fn time_s(amount: Option<f64>, rate: f64) -> Option<f64> {
     Some(amount? / rate).filter(|s| s.is_finite())
 }
 
 impl fmt::Display for FrictionEffect {
-    /// In one line: "work -5.47 J so far; on the swing: a nutation falls to 1/e in 3.3 s, and a precession sinks".
+    /// Writes one line: "work -5.47 J so far; viscous: the spin falls to 1/e in 3.3 s".
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "work {} J so far", short(self.work))?;
         if let Some(seconds) = self.spin_decay_s {

@@ -1,55 +1,57 @@
-//! How the axle's tilt swings in a run, and how in the exact motion at the same moments.
+//! Compares the swing of the axle's tilt in a run with the swing in the exact motion.
 //!
-//! A traced point can keep within 1 % of the exact motion although its nutation is another's: a fast top's is smaller than
-//! that. So the swing is judged by itself. The run is cut into stretches of whole swings. In each the least and the greatest
-//! tilt of both are compared, and the way that the tilt goes up and down in all, which is its size times how often it swings.
-//! The phase is not compared: it is the traced point's to be right in that.
+//! The traced point can stay within 1 % of the exact motion although the nutation is wrong, because the nutation of a
+//! fast top is smaller than 1 %. So the swing is judged by itself. The run is cut into windows of whole swings. In each
+//! window, three numbers of both motions are compared: the minimum tilt, the maximum tilt, and the total path of the
+//! tilt. The path is the size of the swing times the number of swings. The phase is not compared here, since the traced
+//! point shows an error in it.
 //!
-//! Both are looked at where the run has a step, so that a swing which the time step is too long to show counts against no
-//! run whose numbers are right.
+//! Both motions are sampled at the run's steps. A swing that the time step is too long to show therefore does not count
+//! against a run whose numbers are right.
 
 use crate::physics::State;
 use crate::physics::exact::AT_ONCE;
 use crate::text::number::{fixed, short};
 use std::fmt;
 
-/// A run is believed while its traced point keeps within this part of its arm (its distance from the pivot) of the
-/// exact motion: what an eye sees on a plot.
+/// Tolerance on the traced point as a fraction of its arm, which is its distance from the pivot. A run within it is
+/// accepted. A larger error is visible on a plot.
 pub const BELIEVED_WITHIN: f64 = 0.01;
-/// A swing holds while its least and its greatest tilt, and the way of the tilt, are right to this part of it.
+/// Tolerance on the minimum and maximum tilt and on the path of the tilt, as a fraction of the exact swing.
 const SWING_TOLERANCE: f64 = 0.05;
-/// Where the exact motion's tilt swings by less than this (degrees) it does not swing; the summary gives no more digits.
+/// Minimum swing of the exact tilt, degrees. A smaller one is no swing, and the summary shows no more digits.
 const NO_SWING_DEG: f64 = 1e-4;
-/// Then the run's tilt may differ from it by so much, rad: by the same part of what the traced point may.
+/// Tolerance on the tilt if the exact motion does not swing, rad: the same fraction of the traced point's tolerance.
 const WHERE_NONE_RAD: f64 = SWING_TOLERANCE * BELIEVED_WITHIN;
-/// So many swings up or down make a stretch, where the run has as many: the phase counts for little then.
+/// Number of swings up or down in a window, if the run has enough. With this many, the phase has little influence.
 const SWINGS_PER_WINDOW: f64 = 40.0;
-/// With fewer of them the way of the tilt says nothing of a period.
+/// With fewer swings than this, the path of the tilt tells nothing about the period.
 const FEW_SWINGS: f64 = 3.0;
-/// The most blocks of steps that are kept; when there are more, two and two become one.
+/// Maximum number of bins. Beyond it, pairs of bins are merged.
 const MOST_SWING_BINS: usize = 128;
 
-/// Both swings so far; to be shown every step.
+/// Swings of the run and of the exact motion so far. It must receive every step.
 #[derive(Clone, Debug)]
 pub(super) struct Swings {
     blocks: Vec<SwingBin>,
-    /// Steps of a block, at least as many as are taken in together, and those that the last one has.
+    /// Steps per bin, at least the number that is recorded at once.
     steps: u64,
+    /// Number of steps in the last, unfinished bin.
     last_steps: u64,
-    /// The heights of the run's axle and of the exact motion's at the last step.
+    /// Heights of the run's axle and of the exact motion's axle at the last step.
     last: [f64; 2],
 }
 
-/// What the heights of both axles did on consecutive steps.
+/// Heights of both axles over consecutive steps.
 #[derive(Clone, Copy, Debug)]
 struct SwingBin {
     from_s: f64,
     to_s: f64,
-    /// The run's, and the exact motion's.
+    /// Ranges of the run and of the exact motion.
     ways: [HeightRange; 2],
 }
 
-/// Least and greatest [height], and the sum of all changes of it, without their signs.
+/// Minimum and maximum [height], and the sum of its absolute changes.
 #[derive(Clone, Copy, Debug)]
 struct HeightRange {
     least: f64,
@@ -57,30 +59,31 @@ struct HeightRange {
     length: f64,
 }
 
-/// The swing of the tilt in a run beside the exact motion's, in the stretch in which they differ most.
+/// Swing of the tilt in a run and in the exact motion, in the window in which they differ most.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SwingComparison {
-    /// Where the stretch begins and ends, s; `None` where it is the whole run.
+    /// Begin and end of the window, s. `None` if it is the whole run.
     pub stretch_s: Option<(f64, f64)>,
-    /// The run's least and greatest tilt in it, degrees.
+    /// Minimum and maximum tilt of the run in the window, degrees.
     pub run_deg: (f64, f64),
-    /// The exact motion's, degrees.
+    /// Minimum and maximum tilt of the exact motion in the window, degrees.
     pub exact_deg: (f64, f64),
-    /// How many times as far as the exact motion's the run's tilt goes up and down in all.
+    /// Ratio of the run's total path of the tilt, up and down, to the exact one.
     pub way: f64,
-    /// Whether the least or the greatest tilt is wrong.
+    /// True if the minimum or the maximum tilt is wrong.
     pub tilts_differ: bool,
-    /// The largest difference, in units of what is allowed.
+    /// Largest difference, in units of its tolerance.
     pub worst: f64,
 }
 
-/// cos|cos| of the tilt of an axle whose z is `cosine`: no root or arc has to be taken for it.
+/// Returns cos|cos| of the tilt of an axle whose z is `cosine`. It needs neither a root nor an arc.
 #[inline]
 pub(super) fn height(cosine: f64) -> f64 {
     cosine * cosine.abs()
 }
 
-/// The [height] of the axle in `state`, which may have lost its length. It changes by no more than the tilt does (rad).
+/// Returns the [height] of the axle in `state`, which may have lost its unit length. It changes by no more than the
+/// tilt does (rad).
 #[inline]
 pub(super) fn height_in(state: &State) -> f64 {
     let axle = state.axle();
@@ -92,12 +95,12 @@ fn tilt_deg(height: f64) -> f64 {
     libm::acos(cosine.clamp(-1.0, 1.0)).to_degrees()
 }
 
-/// Whether a tilt from `least` to `greatest` degrees swings.
+/// Returns true if a tilt from `least` to `greatest` degrees swings.
 fn swings((least, greatest): (f64, f64)) -> bool {
     greatest - least >= NO_SWING_DEG
 }
 
-/// By how much tilts may differ from the exact motion's, which swing so, degrees.
+/// Returns the tolerance on tilts next to the exact range `exact_deg`, degrees.
 fn allowed_deg(exact_deg: (f64, f64)) -> f64 {
     if swings(exact_deg) {
         SWING_TOLERANCE * (exact_deg.1 - exact_deg.0)
@@ -107,7 +110,7 @@ fn allowed_deg(exact_deg: (f64, f64)) -> f64 {
 }
 
 impl Swings {
-    /// Of a run that begins in `start`, as its exact motion does.
+    /// Creates the comparison for a run that begins in `start`, like its exact motion.
     pub fn new(start: &State) -> Self {
         let last = [height_in(start); 2];
         Self {
@@ -118,8 +121,8 @@ impl Swings {
         }
     }
 
-    /// Takes in steps of the run that follow each other, beside the [heights](height) of the exact motion's axle. However
-    /// many are taken in together, the numbers are the same.
+    /// Records consecutive steps of the run, with the [heights](height) of the exact motion's axle. The result does not
+    /// depend on how many are recorded at once.
     #[inline]
     pub fn record<const N: usize>(&mut self, states: &[State; N], exact: &[f64; N]) {
         let run = states.each_ref().map(height_in);
@@ -165,7 +168,7 @@ impl Swings {
         self.blocks.push(SwingBin::new(from_s, self.last));
     }
 
-    /// Both swings where they differ most.
+    /// Returns the comparison of the window in which the swings differ most.
     pub fn worst(&self) -> Option<SwingComparison> {
         let mut stretches: Vec<SwingBin> = Vec::new();
         for block in &self.blocks {
@@ -174,7 +177,7 @@ impl Swings {
                 _ => stretches.push(*block),
             }
         }
-        // What is left at the end belongs to the stretch before.
+        // Swings that remain at the end belong to the window before.
         if let [.., before, rest] = &mut stretches[..]
             && rest.ways[1].swings() < SWINGS_PER_WINDOW
         {
@@ -207,7 +210,7 @@ impl SwingBin {
         }
     }
 
-    /// Both of two blocks that follow each other.
+    /// Merges two consecutive bins.
     fn and(self, next: &Self) -> Self {
         let [run, exact] = self.ways;
         Self {
@@ -251,7 +254,7 @@ impl HeightRange {
         }
     }
 
-    /// How often it has gone up or down; 0 where it has not moved.
+    /// Returns how often the height has gone up or down; 0 if it has not changed.
     fn swings(&self) -> f64 {
         let range = self.greatest - self.least;
         if range > 0.0 {
@@ -261,31 +264,31 @@ impl HeightRange {
         }
     }
 
-    /// Least and greatest tilt, degrees: the height falls as the tilt grows.
+    /// Returns the minimum and maximum tilt, degrees. The height falls as the tilt grows.
     fn tilts_deg(&self) -> (f64, f64) {
         (tilt_deg(self.greatest), tilt_deg(self.least))
     }
 }
 
 impl SwingComparison {
-    /// Whether the run's swing is the exact motion's.
+    /// Returns true if the run's swing agrees with the exact one.
     pub fn is_right(&self) -> bool {
         self.worst <= 1.0
     }
 
-    /// Whether the exact motion's tilt swings at all.
+    /// Returns true if the exact motion's tilt swings at all.
     pub fn is_there(&self) -> bool {
         swings(self.exact_deg)
     }
 
-    /// Tilts in degrees, as many digits as tell them apart, of the run and of the exact motion.
+    /// Returns the tilts of the run and of the exact motion, degrees, with enough digits to tell them apart.
     fn tilts(&self) -> [String; 4] {
         let digits = -libm::log10(allowed_deg(self.exact_deg)).floor();
         let [(a, b), (c, d)] = [self.run_deg, self.exact_deg];
         [a, b, c, d].map(|tilt| fixed(tilt, digits.max(0.0) as usize))
     }
 
-    /// What is wrong, in few words: "tilt 29.690..30.000, truly 30.000..30.074".
+    /// Describes the error in few words: "tilt 29.690..30.000, truly 30.000..30.074".
     pub fn in_short(&self) -> String {
         if !self.tilts_differ {
             return format!("swings add up to {} times", short(self.way));
@@ -296,7 +299,7 @@ impl SwingComparison {
 }
 
 impl fmt::Display for SwingComparison {
-    /// What is wrong: "the tilt swings from 29.690 to 30.000 degrees, not from 30.000 to 30.074".
+    /// Describes the error: "the tilt swings from 29.690 to 30.000 degrees, not from 30.000 to 30.074".
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some((from_s, to_s)) = self.stretch_s {
             write!(f, "from {} to {} s ", short(from_s), short(to_s))?;
@@ -330,7 +333,8 @@ mod tests {
     use super::*;
     use nalgebra::{Rotation3, Vector3};
 
-    /// Ten thousand steps of a run whose tilt, degrees, is `tilt_of` the time, thirty to a second, beside a [wave] at 30 degrees.
+    /// Returns the comparison of ten thousand steps of a run, thirty per second, with a [wave] at 30 degrees. The run's
+    /// tilt at a time, degrees, is `tilt_of` the time.
     fn beside(tilt_of: impl Fn(f64) -> f64) -> SwingComparison {
         let state = |time_s: f64| State {
             time_s,
@@ -346,7 +350,7 @@ mod tests {
         swings.worst().unwrap()
     }
 
-    /// A nutation of a tenth of a degree and a second.
+    /// Returns a nutation of a tenth of a degree with a period of one second.
     fn wave(time: f64) -> f64 {
         0.05 * (1.0 - libm::cos(std::f64::consts::TAU * time))
     }
@@ -360,7 +364,7 @@ mod tests {
         assert!(!is_right(|time| 30.0 + 1.08 * wave(time)));
         assert!(!is_right(|time| 30.01 + wave(time)));
         assert!(!is_right(|time| 30.0 + wave(1.08 * time)));
-        // It dies so slowly that the whole run's least and greatest tilt are right.
+        // The nutation decays so slowly that the minimum and maximum tilt of the whole run are right.
         assert!(!is_right(
             |time| 30.05 - (0.05 - wave(time)) * libm::exp(-time / 300.0)
         ));

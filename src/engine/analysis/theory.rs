@@ -1,4 +1,4 @@
-//! What the textbook says of the top that is being run, from its exact motion.
+//! Textbook theory of the top that is being run, from its exact motion.
 //!
 //! Source: H. Goldstein, Classical Mechanics, section 5.7 (the heavy symmetrical top with one point fixed).
 
@@ -9,60 +9,66 @@ use nalgebra::Vector3;
 use std::f64::consts::PI;
 use std::fmt;
 
-/// The theory of one heavy symmetric top under its present loads, of which only gravity is vertical by right: under a
-/// tilted load (a sideways push on the axle) "vertical" is the direction opposite to it, and without a load that of L. A
-/// load along z, up or down, has +z for its vertical.
+/// Theory of one heavy symmetric top under its present loads.
+///
+/// "Vertical" is the direction opposite to the load. For gravity alone that is +z. Under a tilted load, such as a
+/// sideways push on the axle, it is another direction. For a load along z, up or down, it is +z. Without a load, it is
+/// the direction of L.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Theory {
-    /// The axis about which precession, tilts and path are meant.
+    /// Axis of precession, tilts and path.
     pub axis: TheoryAxis,
-    /// Moment of the load, N m: M g h for gravity alone, negative where it pulls the axle to +z.
+    /// Moment of the load, N m: M g h for gravity alone, negative if it pulls the axle to +z.
     pub load: f64,
-    /// L3 = L·axle, J s, a constant of the motion.
+    /// L3 = L·axle, J s. It is constant during the motion.
     pub axle_momentum: f64,
-    /// The fast top's precession mgl/L3, rad/s; `None` without spin.
+    /// Precession of a fast top, mgl/L3, rad/s. `None` without spin.
     pub fast_top_precession: Option<f64>,
-    /// Steady precession at this tilt, the slow root, rad/s; `None` where the top is too slow for it.
+    /// Slow steady precession at this tilt, rad/s. `None` if the top spins too slowly for it.
     pub slow_precession: Option<f64>,
-    /// The fast root, rad/s; `None` too for a level axle.
+    /// Fast steady precession at this tilt, rad/s. It is also `None` for a level axle.
     pub fast_precession: Option<f64>,
-    /// Mean precession of this very motion, rad/s; `None` where the axle passes through the vertical, and has no azimuth.
+    /// Mean precession of the exact motion, rad/s. `None` if the axle passes through the vertical, where it has no
+    /// azimuth.
     pub precession: Option<f64>,
-    /// The fast top's nutation L3/I1, rad/s.
+    /// Nutation of a fast top, L3/I1, rad/s.
     pub fast_top_nutation: f64,
-    /// The period in which the instantaneous axis goes round the figure axis as seen from the body, s: (I1/|I3 - I1|) 2π/ω3;
-    /// `None` where the body is not free, does not spin, or has no such motion because I3 = I1.
+    /// Period in which the instantaneous axis goes round the figure axis, seen from the body, s: (I1/|I3 - I1|) 2π/ω3.
+    /// `None` if the body is not free, does not spin, or has I3 = I1.
     pub body_cone_period_s: Option<f64>,
-    /// Nutation period of this very motion, s; `None` where nothing returns.
+    /// Nutation period of the exact motion, s. `None` if the motion does not repeat.
     pub nutation_period_s: Option<f64>,
-    /// Least and greatest tilt of this very motion, degrees.
+    /// Minimum and maximum tilt of the exact motion, degrees.
     pub tilt_range_deg: (f64, f64),
-    /// The least |L3| with which this top sleeps, J s: L3² > 4 I1 mgl; `None` where the load pulls the axle up, so that it
-    /// stands without spin.
+    /// Minimum |L3| with which this top sleeps, J s: L3² > 4 I1 mgl. `None` if the load pulls the axle up, so that it
+    /// is stable without spin.
     pub sleeping_limit: Option<f64>,
-    /// Tilt at which the axle stands still in azimuth, degrees: the height of the cusps; `None` where it never does.
+    /// Tilt at which the azimuth of the axle stops, degrees, which is the height of the cusps. `None` if it never
+    /// stops.
     pub cusp_tilt_deg: Option<f64>,
     pub path: AxlePath,
-    /// Whether there is friction: then all this is of the motion that would follow if it ceased now, and no part of the
-    /// motion that does follow, but for the rates at this moment.
+    /// True with friction. The theory then describes the motion that would follow if friction ceased now. Only the
+    /// rates at this moment are true of the real motion.
     pub is_of_a_moment: bool,
-    /// The [asymmetry](SymmetricTop::nearly) of the body: above 0 the theory is that of the mean moment across.
+    /// [Asymmetry](SymmetricTop::nearly) of the body. If it is above 0, the theory uses the mean moment of inertia
+    /// across the axle.
     pub asymmetry: f64,
 }
 
-/// The axis that a theory speaks of: its tilts are angles from it, its precession turns about it.
+/// Axis of a theory. Its tilts are angles from this axis, and its precession turns about it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TheoryAxis {
-    /// +z, from which the measured tilts and azimuths count too.
+    /// +z, which is also the axis of the measured tilts and azimuths.
     Z,
-    /// The direction opposite to a load that does not pull along -z; a unit vector, world frame.
+    /// Direction opposite to a load that does not pull along -z; a unit vector, world frame.
     AgainstLoad(Vector3<f64>),
-    /// The direction of L: there is no load.
+    /// Direction of L, if there is no load.
     Momentum,
 }
 
 impl TheoryAxis {
-    /// The axis that points along `up` (unit vector, world frame), opposite to a load or, without one, along L.
+    /// Returns the axis that points along `up` (unit vector, world frame): opposite to the load or, without a load,
+    /// along L.
     fn new(up: Vector3<f64>, is_loaded: bool) -> Self {
         if (up - Vector3::z()).norm() <= SAME_DIRECTION {
             Self::Z
@@ -91,13 +97,13 @@ impl fmt::Display for TheoryAxis {
 pub enum AxlePath {
     /// No nutation.
     Circle,
-    /// It comes to rest at one end of every nutation.
+    /// The axle stops at one end of every nutation.
     Cusps,
-    /// It goes backwards at one end of every nutation.
+    /// The axle goes backwards at one end of every nutation.
     Loops,
-    /// It always goes the same way.
+    /// The axle always goes in the same direction.
     Waves,
-    /// It passes through the vertical, or stays there.
+    /// The axle passes through the vertical, or stays there.
     ThroughVertical,
 }
 
@@ -123,24 +129,24 @@ impl fmt::Display for AxlePath {
     }
 }
 
-/// A swing of the tilt below this (degrees) is rounding, and so is a difference between two tilts.
+/// Swings and differences of the tilt below this are rounding, degrees.
 const SAME_DEG: f64 = 1e-6;
 
-/// Two directions nearer to each other than this (rad) are one but for rounding.
+/// Angle below which two directions are equal except for rounding, rad.
 const SAME_DIRECTION: f64 = 1e-9;
 
-/// An axle whose height is less than this part of its length is level: rounding and a scheme's error are more than that.
+/// Maximum height of a level axle, as a fraction of its length. It is larger than rounding and a scheme's error.
 const LEVEL: f64 = 1e-6;
 
-/// A spin below this part of the momenta that the motion is made of is rounding.
+/// Spins below this fraction of the momenta in the motion are rounding.
 const SAME_PART: f64 = 1e-12;
 
-/// An axle that comes so near to the vertical (rad) passes through it but for rounding.
+/// Angle from the vertical below which an axle passes through it, except for rounding, rad.
 const PASSES_RAD: f64 = 1e-7;
 
 impl Theory {
-    /// The theory of `top` whose exact motion is `motion`, as it is in `state`; `load` is the moment of the load, N m,
-    /// world frame, as [`Loads::on_axle`](crate::physics::Loads::on_axle) gives it.
+    /// Returns the theory of `top` in `state`, for the exact motion `motion`. `load` is the moment of the load, N m,
+    /// world frame, as [`Loads::on_axle`](crate::physics::Loads::on_axle) returns it.
     pub fn new(
         top: &SymmetricTop,
         load: &Vector3<f64>,
@@ -156,7 +162,7 @@ impl Theory {
         let momenta = state.momentum.norm() + (top.across * size).sqrt();
         let spins = spin.abs() > SAME_PART * momenta;
         let (low, high) = motion.tilt_range();
-        // What turns about -z turns the other way about +z, from which tilts and azimuths are measured.
+        // A rotation about -z is the opposite rotation about +z, from which tilts and azimuths are measured.
         let is_turned_over = (up + Vector3::z()).norm() <= SAME_DIRECTION;
         let (up, upward_load, way, (low, high)) = if is_turned_over {
             (-up, -size, -1.0, (PI - high, PI - low))
@@ -198,7 +204,7 @@ impl Theory {
         }
     }
 
-    /// Returns the same of a top that is in its unstable equilibrium: it stays there, and rounding alone would tip it over.
+    /// Returns the theory of a top in its unstable equilibrium: it stays there, and only rounding would tip it over.
     pub fn in_balance(self) -> Self {
         let tilt_deg = if self.load < 0.0 { 180.0 } else { 0.0 };
         Self {
@@ -209,24 +215,24 @@ impl Theory {
         }
     }
 
-    /// Returns in words how asymmetric the body is, and so of which top the theory is; `None` for a symmetric body.
+    /// Describes how asymmetric the body is, and the top that the theory describes. `None` for a symmetric body.
     pub fn of_mean_moment(&self) -> Option<String> {
         let percent = significant(100.0 * self.asymmetry, 2);
         (self.asymmetry > 0.0)
             .then(|| format!("{percent} %; theory is that of the mean moment across"))
     }
 
-    /// The time of one turn of the mean precession, s; `None` where there is none, or it does not turn.
+    /// Returns the time of one turn of the mean precession, s. `None` if there is no precession or its rate is 0.
     pub fn precession_period_s(&self) -> Option<f64> {
         let rate = self.precession?.abs();
         Some(2.0 * PI / rate).filter(|period_s| period_s.is_finite())
     }
 }
 
-/// The period of the body cone of `top` with L3 = `spin`, J s; `None` where the moment `load`, N m, of the forces is more than
-/// rounding, or the moments of inertia are the same but for that.
+/// Returns the period of the body cone of `top`, s. `spin` is L3, J s, and `load` is the moment of the forces, N m.
+/// `None` if `load` is more than rounding, or the moments of inertia are equal except for rounding.
 fn body_cone_period_s(top: &SymmetricTop, spin: f64, load: f64) -> Option<f64> {
-    // By this share of itself a load changes the period, in the order of its size.
+    // A load changes the period by a fraction of about load·I1/L3².
     let is_free = load * top.across <= SAME_DIRECTION * spin * spin;
     let difference = (top.along - top.across).abs();
     let differs = difference > SAME_DIRECTION * top.across;

@@ -1,4 +1,5 @@
-//! A symmetric top whose time steps are short enough to follow it: its turning points, found between the rows.
+//! Measures a symmetric top whose time steps are short enough to follow it, by finding its turning points between the
+//! rows.
 
 use super::equations::{AT_TURN, Crossing, Equations, StepEquation, TopMotion};
 use super::turns::{HEIGHT_SWING_ROUNDING, MeasuredNumber, StraightLine, Turns, WithoutNutation};
@@ -7,40 +8,41 @@ use crate::run::Step;
 use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
 
-/// A swing of the height below this part of the squared sine of the tilt is no nutation.
+/// Minimum swing of the height in a nutation, as a fraction of the squared sine of the tilt.
 const STEADY: f64 = 1e-9;
-/// No swing of the height is told from rounding below this.
+/// Swings of the height below this cannot be distinguished from rounding.
 const LEAST_SWING: f64 = 1e-14;
-/// An axle that comes nearer to the vertical than this (rad) has no azimuth to speak of.
+/// Angle from the vertical below which the azimuth of an axle is undefined, rad.
 const NO_AZIMUTH_RAD: f64 = 1e-7;
-/// Schemes of a finite order are followed between their rows while the body or its axle turns by less than this (rad).
+/// Maximum turn of the body or its axle per time step, up to which schemes of finite order are followed between rows,
+/// rad.
 const FOLLOWED_RAD: f64 = 1.0;
-/// A time step in which the axle may turn by more than this (rad), and by half a turn as it passes the vertical, may hide
-/// a whole turn of the azimuth though its rows are near to one another.
+/// If the axle may turn by more than this in a time step, rad, the step may hide a whole turn of the azimuth between
+/// two rows that are close together. So may half a turn near the vertical.
 const HIDES_RAD: f64 = 1.5;
-/// Axles that turn by more than this between two rows (rad) are not followed.
+/// Maximum turn of an axle between two rows, rad. A faster one is not followed.
 const MOST_TURN_RAD: f64 = 60.0;
 
-/// Least ratio of the rate at which a nutation moves the height to the error of a first-order scheme in that rate: below
-/// it the turning points are not where the rate changes its sign.
+/// Minimum ratio of the rate at which a nutation moves the height to the error of a first-order scheme in that rate.
+/// Below it, the turning points are not where the rate changes its sign.
 const BEYOND_ERROR: f64 = 2.0;
 
 #[derive(Clone, Debug)]
 pub struct TurningPoints {
-    /// One over the moment across the axle, 1/(kg m²).
+    /// One over the moment of inertia across the axle, 1/(kg m²).
     per_across: f64,
     equations: Equations,
-    /// The order of the scheme; `None` of the exact motion.
+    /// Order of the scheme. `None` if the scheme is exact.
     order: Option<u32>,
-    /// Whether the azimuth's way has to be followed in every time step.
+    /// True if the change of azimuth must be followed in every time step.
     may_turn_far: bool,
-    /// The greatest height of the axle, less the least, that the start leads to, where that counts as no swing.
+    /// Range of the axle's height predicted from the start, if it is too small to be a swing.
     steady_swing: Option<f64>,
-    /// The axle must have gone so far from a turning point to confirm it.
+    /// Distance from a turning point at which the turning point is confirmed.
     confirmed_by: f64,
     start: StepEquation,
     now: StepEquation,
-    /// Full turns of the azimuth that the rows miss.
+    /// Full turns of the azimuth that the rows do not show.
     missed: i64,
     is_rising: bool,
     heights: [f64; 2],
@@ -52,12 +54,12 @@ pub struct TurningPoints {
 }
 
 impl TurningPoints {
-    /// Instruments for the run that begins at `step`; `None` where its rows do not show the motion between them.
+    /// Creates instruments for a run that begins at `step`. `None` if its rows do not show the motion between them.
     pub fn new(step: &Step) -> Option<Self> {
         let body = &step.scenario().body.mechanics;
         let top = SymmetricTop::from_body(body)?;
         let load = step.loads().on_axle(body, &top)?;
-        // The equations of motion that are used here are those of a body without friction.
+        // The equations of motion used here hold for a body without friction.
         if !step.loads().friction.is_none() || libm::hypot(load.x, load.y) > 1e-12 * load.z.abs() {
             return None;
         }
@@ -106,7 +108,7 @@ impl TurningPoints {
 
     #[inline]
     pub fn record(&mut self, step: &Step) {
-        // Assigned at once: by way of a copy it would be stored in parts and read whole, for which processors wait.
+        // Assigned directly. A copy would be stored in parts and read as a whole, which stalls processors.
         let before = self.now;
         self.now = StepEquation::from_step(step, self.per_across);
         let (a, b) = (&before.swing.axle, &self.now.swing.axle);
@@ -130,8 +132,8 @@ impl TurningPoints {
         }
     }
 
-    /// Counts the candidate once the axle has truly gone away from it. A turning point of the same kind as the last is
-    /// rounding.
+    /// Counts the candidate once the axle has moved away from it by more than rounding. A turning point of the same
+    /// kind as the last one is rounding.
     fn confirm(&mut self) {
         let Some(candidate) = &self.candidate else {
             return;
@@ -164,11 +166,12 @@ impl TurningPoints {
         self.turns.line_to(*number, self.equations.turn(crossing))
     }
 
-    /// What the error of a scheme may do to a single turning point, s. Where the scheme lets the tilt drift, highest points
-    /// come late and lowest ones early, so that half nutations have another length than whole ones have halves.
+    /// Returns the possible effect of a scheme's error on a single turning point, s. If the scheme lets the tilt drift,
+    /// highest points come late and lowest ones early. Half nutations then differ in length from half the length of
+    /// whole ones.
     fn lag_s(&self, line: &StraightLine) -> f64 {
         if line.between >= 3 || self.order.is_none() {
-            return 0.0; // more of them show it
+            return 0.0; // their scatter shows it
         }
         if self.order == Some(1) {
             return 0.5 * self.equations.time_step_s;
@@ -176,7 +179,7 @@ impl TurningPoints {
         if line.intervals.is_multiple_of(2) {
             return 0.0;
         }
-        // The error of a step is known for the rate of the height; the drift of the height is larger by this factor.
+        // The error of a step is known for the rate of the height. The drift of the height is larger by this factor.
         let of_ends = libm::hypot(line.first.time_error_s, line.last.time_error_s);
         of_ends / (self.equations.rates[1] * self.equations.time_step_s)
     }
@@ -213,7 +216,7 @@ impl TurningPoints {
         })
     }
 
-    /// The whole way of the azimuth over the time, for an axle that keeps its height.
+    /// Returns the whole change of azimuth over the time, for an axle that keeps its height.
     fn steady_precession(&self, of_rates: f64) -> Option<MeasuredNumber> {
         let [lowest, highest] = self.heights;
         let swing = self.steady_swing?.max(highest - lowest);
@@ -237,8 +240,8 @@ impl TurningPoints {
     }
 }
 
-/// How the height of the axle swings from the state after `step` on, by nutation or, of a free top, as it turns about L: the
-/// period, s, and the greatest height less the least.
+/// Returns the period of the axle's height after `step`, s, and the maximum height minus the minimum. The height swings
+/// by nutation or, for a free top, because the axle turns about L.
 fn swing_of_height(
     step: &Step,
     top: &SymmetricTop,
@@ -261,8 +264,8 @@ fn swing_of_height(
     (period_s, if range.is_finite() { range } else { 0.0 })
 }
 
-/// Whether the time step is short enough to follow, by the equations of motion, what `scheme` computes from row to row; the
-/// height swings in `period_s` by `range`, and as `swing` at first.
+/// Returns true if the time step is short enough for the equations of motion to follow the results of `scheme` from row
+/// to row. The height swings by `range` in `period_s`, and begins with the motion `swing`.
 fn is_followed(
     scheme: &SchemeInfo,
     equations: &Equations,

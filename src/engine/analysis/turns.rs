@@ -1,19 +1,19 @@
-//! The turning points of the axle's height, and the straight line of time and azimuth through them.
+//! Stores the turning points of the axle's height, and fits a straight line of time and azimuth through them.
 
-/// How many turning points are kept at most, and every how manyth is left when there are more.
+/// Maximum number of turning points to keep, and the factor by which the interval between them grows beyond it.
 #[derive(Clone, Copy, Debug)]
 struct Thinning {
     most: usize,
     keeps_every: u64,
 }
 
-/// Of a symmetric body.
+/// For a symmetric body.
 const OF_ALIKE: Thinning = Thinning {
     most: 32,
     keeps_every: 2,
 };
-/// Of a lopsided one, whose beats must be seen. Often they turn the body by nearly half a turn from one nutation to the next:
-/// every second point would show one half of them alone.
+/// For a lopsided body, whose beats must be visible. The body often turns by nearly half a turn from one nutation to
+/// the next. Every second point would then show only one half of the beats.
 const OF_BEATS: Thinning = Thinning {
     most: 128,
     keeps_every: 3,
@@ -23,18 +23,20 @@ const OF_BEATS: Thinning = Thinning {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeasuredNumber {
     pub value: f64,
-    /// One standard error.
+    /// One standard error of the value.
     pub uncertainty: f64,
-    /// How many nutations it was taken from, a half one counted as one; 0 where there was none.
+    /// Number of nutations measured, with a half nutation counted as one. It is 0 if there was none.
     pub nutations: u64,
 }
 
 impl MeasuredNumber {
-    /// A value measured without whole nutations is settled once its relative uncertainty is at most this, one measured with
-    /// them once the uncertainty is at most half of the value. (An axle that passes through the vertical has nutations but no well-defined azimuth.)
+    /// Maximum relative uncertainty of a settled value that was measured without whole nutations.
+    ///
+    /// A value measured with nutations is settled if its uncertainty is at most half of it. (An axle that passes
+    /// through the vertical has nutations, but no well-defined azimuth.)
     const SETTLED: f64 = 0.05;
 
-    /// Whether the uncertainty is small enough for the value to be shown and gone by.
+    /// Returns true if the uncertainty is small enough for the value to be shown and used.
     pub fn is_settled(&self) -> bool {
         let within = if self.nutations > 0 {
             0.5
@@ -45,22 +47,22 @@ impl MeasuredNumber {
     }
 }
 
-/// Why a run has no nutation period to state.
+/// Reason why a run has no nutation period.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WithoutNutation {
     /// The axle keeps its tilt.
     Steady,
     TooFew,
-    /// It has swings so small beside the others that a rule would have to say whether they count.
+    /// Some swings are so small relative to the others that counting them would be a matter of convention.
     Uneven,
-    /// The body has not turned so far about its axle that all lengths of its nutations were seen.
+    /// The body has not turned far enough about its axle to show all lengths of its nutations.
     BeatUnseen,
     /// The rows may miss a turning point.
     RowsTooFarApart,
 }
 
 impl WithoutNutation {
-    /// The reason in words; empty where there is no nutation.
+    /// Returns the reason in words. It is empty if there is no nutation.
     pub fn words(self) -> &'static str {
         match self {
             Self::Steady => "",
@@ -72,32 +74,32 @@ impl WithoutNutation {
     }
 }
 
-/// A swing of the axle's height smaller than this is rounding, not nutation.
+/// Swings of the axle's height below this are rounding, and not nutation.
 pub(super) const HEIGHT_SWING_ROUNDING: f64 = 1e-9;
 
 /// One turning point of the axle's height.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct HeightExtreme {
     pub time_s: f64,
-    /// How far the time is off by its interpolation, s.
+    /// Error of the time from interpolation, s.
     pub time_off_s: f64,
-    /// Standard error of the time from all else, s.
+    /// Standard error of the time from all other causes, s.
     pub time_error_s: f64,
     /// Azimuth of the axle, full turns included, rad.
     pub azimuth: f64,
-    /// How far the azimuth is off by its interpolation, rad.
+    /// Error of the azimuth from interpolation, rad.
     pub azimuth_off: f64,
-    /// Standard error of the azimuth at a given time from all else, rad.
+    /// Standard error of the azimuth at a given time from all other causes, rad.
     pub azimuth_error: f64,
     /// Rate of the azimuth there, rad/s.
     pub azimuth_rate: f64,
     /// Sine of the tilt there.
     pub level: f64,
-    /// In which direction of the body the vertical is there, about the axle, rad.
+    /// Direction of the vertical about the axle, seen from the body, rad.
     pub phase: f64,
 }
 
-/// Turning points at even distances, in bounded memory, the first always among them.
+/// Equally spaced turning points, in bounded memory. The first one is always among them.
 #[derive(Clone, Debug)]
 pub(super) struct Turns {
     thinning: Thinning,
@@ -105,16 +107,16 @@ pub(super) struct Turns {
     stride: u64,
 }
 
-/// The straight line of time and azimuth from the first turning point to the last, and how far those between are off it.
+/// Straight line of time and azimuth from the first turning point to the last, and the scatter of the points between.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StraightLine {
     pub first: HeightExtreme,
     pub last: HeightExtreme,
-    /// How many intervals between two turning points there are from the first to the last.
+    /// Number of intervals between turning points, from the first to the last.
     pub intervals: u64,
-    /// Root mean square of the others' distance from even times, s.
+    /// Root mean square deviation of the points between from even times, s.
     pub time_scatter_s: f64,
-    /// The same of the azimuth at their times, rad.
+    /// Root mean square deviation of their azimuths from the line at their times, rad.
     pub azimuth_scatter: f64,
     pub between: usize,
 }
@@ -124,7 +126,7 @@ impl Turns {
         Self::thinned_as(OF_ALIKE)
     }
 
-    /// Keeps as many as it takes to see a lopsided body's beats.
+    /// Keeps enough turning points to show the beats of a lopsided body.
     pub fn of_beats() -> Self {
         Self::thinned_as(OF_BEATS)
     }
@@ -137,7 +139,7 @@ impl Turns {
         }
     }
 
-    /// Whether the turning point of this number is to be kept.
+    /// Returns true if the turning point of this number is to be kept.
     pub fn wants(&self, number: u64) -> bool {
         number.is_multiple_of(self.stride)
     }
@@ -151,16 +153,17 @@ impl Turns {
         }
     }
 
-    /// The turning points before that of this number, each with its own.
+    /// Returns the kept turning points before the one of this number, with their numbers.
     pub fn before(&self, number: u64) -> impl Iterator<Item = &(u64, HeightExtreme)> {
         self.kept.iter().take_while(move |(at, _)| *at < number)
     }
 
-    /// The line from the first turning point to `last`, which has this number; `None` if they are the same.
+    /// Returns the line from the first turning point to `last`, which has this number. `None` if they are the same
+    /// point.
     pub fn line_to(&self, number: u64, last: HeightExtreme) -> Option<StraightLine> {
         let (_, first) = *self.kept.first().filter(|_| number > 0)?;
         let (mut times, mut azimuths, mut between) = (0.0, 0.0, 0);
-        // What the interpolation is known to be off by does not count twice.
+        // The known error of the interpolation must not count twice.
         let [begin, end] = [&first, &last].map(|turn| turn.time_s - turn.time_off_s);
         let true_rate =
             (last.azimuth - last.azimuth_off - first.azimuth + first.azimuth_off) / (end - begin);
@@ -189,12 +192,12 @@ impl StraightLine {
         self.last.time_s - self.first.time_s
     }
 
-    /// Mean rate of the azimuth, rad/s.
+    /// Returns the mean rate of the azimuth, rad/s.
     pub fn rate(&self) -> f64 {
         (self.last.azimuth - self.first.azimuth) / self.time_s()
     }
 
-    /// Standard error of [`time_s`](Self::time_s), s, where the scatter counts `weight` times.
+    /// Returns the standard error of [`time_s`](Self::time_s), s, with the scatter multiplied by `weight`.
     pub fn time_error_s(&self, weight: f64) -> f64 {
         let [first, last] =
             [&self.first, &self.last].map(|turn| libm::hypot(turn.time_off_s, turn.time_error_s));
@@ -202,7 +205,7 @@ impl StraightLine {
         libm::hypot(ends, 2_f64.sqrt() * weight * self.time_scatter_s)
     }
 
-    /// Standard error of [`rate`](Self::rate), rad/s, likewise.
+    /// Returns the standard error of [`rate`](Self::rate), rad/s, with the scatter multiplied by `weight`.
     pub fn rate_error(&self, weight: f64) -> f64 {
         let rate = self.rate();
         let [first, last] = [&self.first, &self.last].map(|turn| {

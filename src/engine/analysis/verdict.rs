@@ -1,4 +1,4 @@
-//! The verdict on a run for one line of the screen: is it reliable, and if not, why not.
+//! The verdict on a run, in one line for the screen: whether it is reliable, and if not, why.
 
 use super::Health;
 use super::health::WheelPicture;
@@ -8,7 +8,7 @@ use crate::text::number::{exponent, rounded, short, steady};
 /// Distances below this are rounding errors, m.
 const ROUNDING_M: f64 = 1e-12;
 
-/// What a verdict says, in a few words.
+/// Result of a verdict, in a few words.
 #[derive(Clone, Debug, PartialEq)]
 pub enum VerdictWord {
     Reliable,
@@ -18,7 +18,7 @@ pub enum VerdictWord {
     Badge(String),
 }
 
-/// A part of a verdict, with a shorter form for narrow screens.
+/// Phrase of a verdict, with a shorter form for narrow screens.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Phrase {
     pub long: String,
@@ -34,12 +34,12 @@ impl Phrase {
     }
 }
 
-/// The verdict on a run, and the reasons for it, the most important first.
+/// Verdict on a run, and the reasons for it, the most important first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verdict {
     pub word: VerdictWord,
     pub reasons: Vec<Phrase>,
-    /// What a picture of the body would show wrongly, although the run is reliable.
+    /// Warning that a picture of the body is misleading although the run is reliable.
     pub hint: Option<Phrase>,
 }
 
@@ -112,7 +112,7 @@ fn unstable(equilibrium: Equilibrium) -> Phrase {
     }
 }
 
-/// Why the run leaves the exact motion, where that is known.
+/// Returns why the run departs from the exact motion, if this is known.
 fn cause(health: &Health) -> Option<Phrase> {
     let name = health.scheme.name;
     let (turns, body) = (steady(health.turns_per_step), body(health));
@@ -141,7 +141,7 @@ fn cause(health: &Health) -> Option<Phrase> {
     }
 }
 
-/// How the run differs from the exact motion.
+/// Describes how the run differs from the exact motion.
 fn disagreement(health: &Health) -> Option<Phrase> {
     let most = distance(health.most_distance_m?);
     if health.point_holds() == Some(false) {
@@ -171,7 +171,7 @@ fn agreement(health: &Health) -> Phrase {
     }
 }
 
-/// What a picture of the turning body would show wrongly.
+/// Describes how a picture of the turning body misleads.
 fn picture(health: &Health) -> Option<Phrase> {
     let body = body(health);
     let (long, short) = match health.picture {
@@ -192,7 +192,7 @@ fn body(health: &Health) -> &'static str {
     if health.has_rim { "wheel" } else { "body" }
 }
 
-/// A distance to two significant digits: `0.12 m`, `8.2e-6 m`.
+/// Formats a distance with two significant digits: `0.12 m`, `8.2e-6 m`.
 fn distance(meters: f64) -> String {
     match meters {
         m if m < ROUNDING_M => "0 m".to_owned(),

@@ -1,5 +1,5 @@
-//! From the file's shape to a [`Scenario`] whose numbers make sense together. Each `[[edit]]` in turn is written into the tables
-//! `motion` and `push`, and what it leaves there is held against the same rules as in a scenario.
+//! Turns the parsed file into a [`Scenario`] whose numbers are consistent. Each `[[edit]]` in turn is written into the
+//! tables `motion` and `push`, and the result must satisfy the same rules as a scenario.
 
 use super::dotted::{find, is_in, number_of_push, set_key};
 use super::file::{BodyFile, EditFile, MotionFile, PushFile, ScenarioFile};
@@ -18,7 +18,7 @@ use std::sync::Arc;
 use toml::{Table, Value};
 
 pub fn scenario(mut file: ScenarioFile) -> Result<Scenario, Problems> {
-    // Without a body nothing can be said of the rest; of that, each part is looked at by itself.
+    // Without a valid body, the rest cannot be checked. With one, each part is checked by itself.
     let mut body = read_body(&file.body)?;
     let motion = read_motion(&file.motion);
     let mut problems = Problems::default();
@@ -34,7 +34,7 @@ pub fn scenario(mut file: ScenarioFile) -> Result<Scenario, Problems> {
     };
     body.mechanics = spinning;
     if file.trace.is_none() && body.point(TOP).is_none() {
-        // What reads the file names the point.
+        // Readers of the file need the name of the point.
         let mut names = body.names().into_iter();
         let name = names.find(|name| body.point(name) == Some(trace));
         file.trace = name.map(str::to_owned);
@@ -58,7 +58,7 @@ pub fn scenario(mut file: ScenarioFile) -> Result<Scenario, Problems> {
     })
 }
 
-/// What spins, its state at the start, and the friction on it.
+/// Returns the body that spins, its state at the start, and the friction on it.
 fn read_start(
     file: &ScenarioFile,
     body: &NamedBody,
@@ -71,8 +71,8 @@ fn read_start(
     Ok((spinning, start, friction))
 }
 
-/// Adds the unknown names of points in `table` to the problems `found` with its keys, so that both are printed together.
-/// Where the body itself is wrong, its points are unknown and nothing is added.
+/// Adds the unknown names of points in `table` to the problems `found` with its keys, so that both are printed
+/// together. If the body itself is invalid, its points are unknown and nothing is added.
 pub fn check_names(table: &Table, found: &mut Problems) {
     if found.more > 0 || found.list.iter().any(|problem| is_in(&problem.key, "body")) {
         return;
@@ -97,7 +97,7 @@ pub fn check_names(table: &Table, found: &mut Problems) {
     }
 }
 
-/// Whether the first row of the run's CSV is made of finite numbers.
+/// Returns true if the first row of the run's CSV consists of finite numbers.
 fn is_readable(body: &NamedBody, trace: usize, start: &State, gravity: f64) -> bool {
     let mechanics = &body.mechanics;
     let energy = observables::kinetic_energy(mechanics, start)
@@ -106,8 +106,8 @@ fn is_readable(body: &NamedBody, trace: usize, start: &State, gravity: f64) -> b
     energy.is_finite() && traced.iter().all(|c| c.is_finite())
 }
 
-/// The point that is traced if the file names none: "top", else the named point farthest from the pivot, else the farthest
-/// point of all.
+/// Returns the point to trace if the file names none: "top", else the named point farthest from the pivot, else the
+/// farthest point of all.
 fn traced(body: &NamedBody) -> usize {
     if let Some(top) = body.point(TOP) {
         return top;
@@ -120,7 +120,7 @@ fn traced(body: &NamedBody) -> usize {
         .unwrap_or(0)
 }
 
-/// Returns the first of `places` whose point is the farthest from the pivot.
+/// Returns the first of `places` whose point is farthest from the pivot.
 fn farthest(points: &[PointMass], places: impl Iterator<Item = usize>) -> Option<usize> {
     places.reduce(|best, place| {
         if points[place].at.norm() > points[best].at.norm() {
@@ -131,7 +131,7 @@ fn farthest(points: &[PointMass], places: impl Iterator<Item = usize>) -> Option
     })
 }
 
-/// The edits of `file`, whose pushes are `pushes` and whose friction is `friction`.
+/// Reads the edits of `file`, which has the pushes `pushes` and the friction `friction`.
 fn read_edits(
     file: &ScenarioFile,
     body: &NamedBody,
@@ -169,25 +169,25 @@ fn read_edits(
 }
 
 fn tables(file: &ScenarioFile) -> Table {
-    // They hold nothing that TOML cannot write.
+    // The tables contain nothing that TOML cannot write.
     let motion = Value::try_from(&file.motion).unwrap_or(Value::Array(Vec::new()));
     let push = Value::try_from(&file.push).unwrap_or(Value::Array(Vec::new()));
     Table::from_iter([("motion".to_owned(), motion), ("push".to_owned(), push)])
 }
 
-/// Motion and pushes as the edits so far have left them.
+/// Motion and pushes after the edits so far.
 struct Progress<'a> {
     file: &'a ScenarioFile,
     body: &'a NamedBody,
     friction: &'a Friction,
-    /// `motion` and `push`, as a file would give them.
+    /// `motion` and `push` as a file would contain them.
     written: Table,
     motion: Motion,
     pushes: Pushes,
 }
 
 impl Progress<'_> {
-    /// Makes the edit `entry`. In a refusal the keys are those that it sets.
+    /// Makes the edit `entry`. Problems name the keys that it sets.
     fn edit(&mut self, entry: &EditFile) -> Result<Edit, Problems> {
         let mut set_pushes = BTreeSet::new();
         for (key, value) in &entry.set {
@@ -238,7 +238,7 @@ impl Progress<'_> {
         too_many(edits, bodies, pushes.len()).map_or(Ok(()), |problem| Err(problem.into()))
     }
 
-    /// The table at `key`, held against the keys.
+    /// Reads the table at `key`, after checking it against the known keys.
     fn read<T: DeserializeOwned>(&self, key: &str) -> Result<T, Problems> {
         let table = find(&self.written, key).unwrap_or(&Value::Boolean(false));
         keys::check_part(table, key).or(())?;

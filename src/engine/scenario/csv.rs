@@ -1,4 +1,4 @@
-//! A CSV with a header of `#` lines, taken apart: measured data, what other programs print, and the tables of sweeps,
+//! Parses CSV files with a header of `#` lines: measured data, output of other programs, and tables of sweeps,
 //! comparisons and fits.
 
 use super::head::{Head, bytes_of, utf8};
@@ -15,52 +15,52 @@ use std::path::Path;
 const LONGEST_CSV: u64 = 32 << 20;
 const CSV_TOO_LONG: &str = "is longer than 32 MiB, the most that is read: leave rows out";
 
-/// The most columns of a file; more would take minutes.
+/// Maximum number of columns in a file. More would take minutes.
 const MOST_CSV_COLUMNS: usize = 10_000;
 
-/// How archives begin: zip's, which spreadsheets are too.
+/// First bytes of a zip archive. Spreadsheet files are zip archives too.
 const ZIP: &[u8] = b"PK\x03\x04";
 
-/// What a file calls its columns.
+/// Names of the columns in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Naming {
-    /// The first line names them.
+    /// The first line contains the names.
     Names,
-    /// There is no such line: their names are their numbers, from 1.
+    /// There is no line of names. The columns are named by their numbers, from 1.
     Numbers,
 }
 
 #[derive(Clone, Debug)]
 pub struct Csv {
-    /// The lines that begin with `#` before the names, without that.
+    /// Lines that begin with `#` above the names, without the `#`.
     pub header: String,
     pub line_of_names: u64,
     pub names: Vec<String>,
-    /// The columns as the file has them, in the order of `names`.
+    /// The file's own columns, in the order of `names`.
     pub own: Vec<OwnColumn>,
     pub naming: Naming,
-    /// The cells of a line of titles above the names, as Tracker writes it; empty without such a line.
+    /// Cells of a line of titles above the names, as Tracker writes it. Empty without such a line.
     pub titles: Vec<String>,
-    /// What parts the cells; any number of blanks for a blank.
+    /// Separator of the cells. A blank means any number of blanks.
     pub separator: char,
-    /// The rows, each with its line and as many cells as there are names.
+    /// Rows, each with its line number and one cell per name.
     pub rows: Vec<(u64, Vec<String>)>,
 }
 
-/// A column as the file has it.
+/// A column before renaming.
 #[derive(Clone, Debug)]
 pub struct OwnColumn {
-    /// Its number in the file, from 1.
+    /// Number of the column in the file, from 1.
     pub number: usize,
     pub name: String,
-    /// Whether `--map` says what it is.
+    /// True if `--map` names the column.
     pub is_mapped: bool,
-    /// The factor by which its numbers were multiplied to be in the unit of its new name.
+    /// Factor by which its numbers were multiplied to convert them to the unit of the new name.
     pub factor: f64,
 }
 
 impl OwnColumn {
-    /// The name, or the number of a column without one.
+    /// Returns the name of the column, or its number if it has no name.
     pub fn shown(&self) -> String {
         match &*self.name {
             "" => format!("column {}", self.number),
@@ -69,13 +69,13 @@ impl OwnColumn {
     }
 }
 
-/// A column of a file, by name or by number from 1, and the name that it gets.
+/// A column of a file, by name or by number from 1, and its new name.
 pub type Renaming = (String, String);
 
-/// In place of a new name: the column is left out.
+/// Replaces the new name to leave the column out.
 pub const LEFT_OUT: &str = "-";
 
-/// Reads a renaming, `COLUMN=NAME`.
+/// Parses a renaming, `COLUMN=NAME`.
 pub fn renaming(text: &str) -> Result<Renaming, String> {
     let (column, name) = text
         .rsplit_once('=')
@@ -83,7 +83,7 @@ pub fn renaming(text: &str) -> Result<Renaming, String> {
     Ok((column.trim().to_owned(), name.trim().to_owned()))
 }
 
-/// The text of the file `path`.
+/// Reads the text of the file `path`.
 pub fn text(path: &Path) -> Result<String, Problem> {
     if path.is_dir() {
         return Err(Problem::at("", "is a folder: name a CSV file in it"));
@@ -92,7 +92,7 @@ pub fn text(path: &Path) -> Result<String, Problem> {
     text_from(file)
 }
 
-/// The text of a CSV that `file` holds, in UTF-8 or Latin-1.
+/// Reads the text of a CSV in UTF-8 or Latin-1.
 pub fn text_from(file: impl Read) -> Result<String, Problem> {
     let bytes = bytes_of(file, LONGEST_CSV, CSV_TOO_LONG)?;
     if bytes.starts_with(ZIP) {
@@ -120,12 +120,12 @@ fn cannot(error: &dyn fmt::Display) -> Problems {
     one(format!("cannot be read: {error}"))
 }
 
-/// What parts the cells of a file whose first line is `line`.
+/// Returns the separator of the cells in a file whose first line is `line`.
 fn separator(line: &str) -> char {
     let is_of_numbers = line
         .chars()
         .all(|c| c.is_ascii_digit() || "+-.,eE \t".contains(c));
-    // "0,5 1,2": the commas are of decimals.
+    // In "0,5 1,2" the commas are decimal commas.
     let has_decimal_commas = is_of_numbers && !line.contains(", ") && line.trim().contains(' ');
     if line.contains(';') {
         ';'
@@ -153,7 +153,7 @@ fn in_map(column: &str, name: &str, rule: String) -> Problem {
 }
 
 impl Csv {
-    /// Takes `text` apart, of at most `most` values (rows times columns).
+    /// Parses `text`, which may have at most `most` values (rows times columns).
     pub fn parse(text: &str, most: usize) -> Result<Self, Problems> {
         let head = Head::read(&mut text.as_bytes()).map_err(|error| cannot(&error))?;
         let mut csv = Self {
@@ -202,7 +202,7 @@ impl Csv {
     }
 
     fn read_rows(&mut self, text: &str, most: usize) -> Result<(), Problems> {
-        // With every line ended alike, the reader's own count of lines is right.
+        // With uniform line ends, the reader counts lines correctly.
         let lines: String = if self.separator == ' ' {
             text.lines()
                 .map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ") + "\n")
@@ -233,8 +233,8 @@ impl Csv {
             let filled = ends.find(|&end| !record[end - 1].is_empty()).unwrap_or(0);
             match self.names.len() {
                 0 => self.read_first(line, record.iter().take(filled.max(1))),
-                _ if filled == 0 => {} // as spreadsheet programs write empty rows
-                // Empty cells behind the last column do not count.
+                _ if filled == 0 => {} // spreadsheet programs write empty rows like this
+                // Empty cells after the last column do not count.
                 count if filled <= count && record.len() >= count => {
                     let cells = record.iter().take(count).map(str::to_owned);
                     self.rows.push((line, cells.collect()));
@@ -250,7 +250,7 @@ impl Csv {
         found.or(())
     }
 
-    /// Reads the first line with its cells: the names, or a row where it holds numbers alone.
+    /// Reads the cells of the first line. They are the names, or a row of data if they are all numbers.
     fn read_first<'a>(&mut self, line: u64, cells: impl Iterator<Item = &'a str>) {
         self.names = cells.map(str::to_owned).collect();
         if self.names.len() > 1 && self.names.iter().all(|name| is_number(name)) {
@@ -269,7 +269,7 @@ impl Csv {
         self.own = own.collect();
     }
 
-    /// A row of another number of values than there are names.
+    /// Returns the problem of a row whose number of values differs from the number of names.
     fn ragged(&self, count: usize) -> Problem {
         let names = self.names.len();
         let advice = if self.separator == ',' && count > names {
@@ -283,11 +283,12 @@ impl Csv {
         )
     }
 
-    /// Gives columns other names: each pair is the name or the number of a column, from 1, and its new name, or
-    /// [`LEFT_OUT`]. A new name in another unit, or a unit in the column's own name, converts the column's numbers.
+    /// Renames columns. Each pair is a column, by name or by number from 1, and its new name or [`LEFT_OUT`].
+    ///
+    /// A new name in another unit, or a unit in the column's old name, converts the column's numbers.
     ///
     /// # Errors
-    /// If there is no such column, or the new name is none that `may_be` accepts in any unit.
+    /// Returns an error if there is no such column, or if `may_be` does not accept the new name in any unit.
     pub fn rename(
         &mut self,
         map: &[Renaming],
@@ -345,7 +346,7 @@ impl Csv {
         Ok(())
     }
 
-    /// The place of a column, by its own name or its number from 1.
+    /// Returns the position of a column, given its own name or its number from 1.
     fn place_of(&self, column: &str) -> Result<usize, String> {
         let named: Vec<_> = self.own.iter().filter(|own| own.name == column).collect();
         match named[..] {
@@ -367,7 +368,7 @@ impl Csv {
         }
     }
 
-    /// Gives the column at `place` the name `name`, and multiplies its numbers by `factor`.
+    /// Renames the column at `place` to `name`, and multiplies its numbers by `factor`.
     pub fn name_column(&mut self, place: usize, name: &str, factor: f64) {
         name.clone_into(&mut self.names[place]);
         self.own[place].factor = factor;
@@ -387,7 +388,8 @@ impl Csv {
     }
 }
 
-/// The factor from the unit that the column's own name states to that of `ours`; 1 if it states none of the same kind.
+/// Returns the factor from the unit in the column's own name to the unit of `ours`. It is 1 if the name has no unit of
+/// the same kind.
 fn unit_between(own: &str, ours: &str) -> f64 {
     let units = Unit::split(own).zip(Unit::from_name(ours));
     let factor = units.and_then(|((_, stated), unit)| stated.times(unit));
@@ -403,8 +405,8 @@ fn remove<T>(items: &mut Vec<T>, places: &[usize]) {
     });
 }
 
-/// The number in `cell` times `factor`, written with as many significant digits or more, and without a decimal sign that the
-/// file might not use; `None` if it is no finite number.
+/// Returns the number in `cell` times `factor`, with at least as many significant digits, and without a decimal sign
+/// that the file might not use. `None` if it is not a finite number.
 fn multiplied(cell: &str, factor: f64, separator: char) -> Option<String> {
     let plain = if separator == ',' {
         cell.to_owned()
@@ -417,7 +419,7 @@ fn multiplied(cell: &str, factor: f64, separator: char) -> Option<String> {
         .filter(|number: &f64| number.is_finite())?;
     let power = libm::log10(factor).round();
     if (libm::pow(10.0, power) / factor - 1.0).abs() < 1e-12 {
-        // Another exponent keeps every digit.
+        // Changing only the exponent keeps every digit.
         let (mantissa, written) = cell.split_once(['e', 'E']).unwrap_or((cell, "0"));
         let exponent = written.parse::<i32>().ok()?.checked_add(power as i32)?;
         return Some(format!("{mantissa}e{exponent}"));

@@ -1,4 +1,7 @@
-//! A scenario's text, where it came from, and what `--set` changed in it.
+//! The text of a scenario, with its origin and the changes by `--set`.
+//!
+//! A document is parsed and checked here, and becomes a [`Scenario`]. Problems get the line or the `--set` argument
+//! that caused them.
 
 use super::checks;
 use super::dotted::{find, is_in, overlap, set_key};
@@ -28,13 +31,13 @@ pub struct Document {
 struct SetArgument {
     key: String,
     argument: String,
-    /// Why an array or a table is no TOML, and was taken as text.
+    /// Why an array or a table is not valid TOML, and was read as text.
     mistake: Option<String>,
 }
 
 impl Document {
-    /// Opens what SCENARIO names: a shipped preset, or else a file (scenario, run file, CSV with its run file in the header,
-    /// or figure).
+    /// Opens the argument SCENARIO: a shipped preset, or a file. The file is a scenario, a run file, a CSV with its run
+    /// file in the header, or a figure.
     pub fn open(scenario: &str) -> Result<Self, Problems> {
         if is_file(scenario) {
             return Self::read(Path::new(scenario));
@@ -43,7 +46,7 @@ impl Document {
             Some(preset) => {
                 let mut document =
                     Self::parse(&format!("{PRESETS_FOLDER}{scenario}.toml"), preset.text)?;
-                // What the preset's own test checks is of no use in the header of a user's CSV.
+                // Values for the preset's own test are of no use in the header of a user's CSV.
                 document.table.remove("expected");
                 Ok(document)
             }
@@ -51,14 +54,14 @@ impl Document {
         }
     }
 
-    /// Reads a scenario or run file, the header of a CSV, or a figure's run.
+    /// Reads a scenario or run file, the header of a CSV, or the run in a figure.
     pub fn read(path: &Path) -> Result<Self, Problems> {
         let origin = path.display().to_string();
         let text = read_text(path).map_err(|problem| Problems::one(&*origin, problem))?;
         Self::parse_found(&origin, text)
     }
 
-    /// Reads the same of a stream that is not a figure.
+    /// Reads the same from a stream, which cannot be a figure.
     pub fn read_from(origin: &str, reader: impl Read) -> Result<Self, Problems> {
         let text = text_of_stream(reader).map_err(|problem| Problems::one(origin, problem))?;
         Self::parse_found(origin, text)
@@ -74,7 +77,8 @@ impl Document {
         }
     }
 
-    /// The header of a CSV in which it was found, whose lines have lost their `# `; `None` of any other document.
+    /// Returns the header of the CSV in which the document was found, with `# ` removed from its lines. `None` for any
+    /// other document.
     pub fn header_of_csv(&self) -> Option<&str> {
         self.is_header_of_csv.then_some(&self.text)
     }
@@ -87,7 +91,7 @@ impl Document {
         &self.table
     }
 
-    /// The lines, from 1, at which the dotted `keys` stand in the text.
+    /// Returns the lines of the dotted `keys` in the text, from 1.
     pub fn lines_of(&self, keys: impl Iterator<Item = String>) -> Vec<Option<usize>> {
         let line = self.line_finder();
         keys.map(|key| line(&key)).collect()
@@ -102,13 +106,13 @@ impl Document {
         }
     }
 
-    /// Takes `text` as the scenario that `origin` holds.
+    /// Parses `text`, a scenario from `origin`.
     pub fn parse(origin: &str, text: &str) -> Result<Self, Problems> {
         limits::check_toml_size(text, 1).map_err(|problem| Problems::one(origin, problem))?;
         Self::parse_header(origin, text)
     }
 
-    /// The same for the header of a CSV, which may be twice as long.
+    /// Parses the header of a CSV, which may be twice as long.
     pub fn parse_header(origin: &str, text: &str) -> Result<Self, Problems> {
         let lines = text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
         match toml_within_limits(&lines) {
@@ -120,14 +124,14 @@ impl Document {
         }
     }
 
-    /// The document that `file` would be written as.
+    /// Returns the document that `file` would be written as.
     pub fn from_file(origin: &str, file: &ScenarioFile) -> Result<Self, Problems> {
         let table = toml::Table::try_from(file)
             .map_err(|error| Problems::one(origin, Problem::at("", error.to_string())))?;
         Ok(Self::from_table(origin, table))
     }
 
-    /// The scenario whose tables and keys are `table`, which is a part of the file `origin`.
+    /// Returns a document with the contents `table`, which is a part of the file `origin`.
     pub fn from_table(origin: &str, table: toml::Table) -> Self {
         Self {
             origin: origin.to_owned(),
@@ -138,7 +142,7 @@ impl Document {
         }
     }
 
-    /// Checks its size, and each key and value by itself.
+    /// Checks the size of the document, and each key and value by itself.
     pub fn check(&self) -> Result<(), Problems> {
         if let Some(problem) = limits::exceeded(&self.table) {
             return Err(self.placed(problem));
@@ -151,7 +155,7 @@ impl Document {
         Err(self.placed(problems))
     }
 
-    /// Carries out one `--set KEY=VALUE`: the value is TOML, or else text.
+    /// Applies one `--set KEY=VALUE`. The value is parsed as TOML, or else read as text.
     pub fn set(&mut self, argument: &str) -> Result<(), Problems> {
         let Some((key, value)) = argument.split_once('=') else {
             let rule = "must be KEY=VALUE, such as motion.time_step_s=0.05";
@@ -180,9 +184,9 @@ impl Document {
         set_key(&mut self.table, key, value)
     }
 
-    /// Writes `value` at the dotted `key`, without a place for problems. What the value changes is first written in the way
-    /// that it needs: a momentum where there is a spin, a spin where a momentum becomes steady, the dimensions of a part that
-    /// gets another shape.
+    /// Writes `value` at the dotted `key`; problems get no place. Other keys are converted first if the value requires
+    /// it. A spin becomes a momentum, a momentum becomes a spin when the start is made steady, and a part that gets
+    /// another shape gets its dimensions.
     pub fn write(&mut self, key: &str, value: Value) -> Result<(), Problems> {
         if start::is_other_way(&self.table, key, &value) {
             let now = self.scenario()?;
@@ -193,7 +197,7 @@ impl Document {
         written.map_err(|problem| self.placed(problem))
     }
 
-    /// Takes the scenario to another time step (s), holding its seconds: see [`rescale`].
+    /// Changes the time step of the scenario (s), and keeps its times in seconds; see [`rescale`].
     pub fn set_time_step(&mut self, time_step_s: f64) -> Result<(), Problems> {
         match rescale::at_time_step(&self.scenario()?.file, time_step_s) {
             Ok(file) => *self = Self::from_file(&self.origin, &file)?,
@@ -215,21 +219,21 @@ impl Document {
         checks::scenario(self.file()?).map_err(|problems| self.placed(problems))
     }
 
-    /// Whether it is a sweep's file, or the header of a sweep's CSV: no scenario has these keys.
+    /// Returns true if this is a sweep's file, or the header of a sweep's CSV. No scenario has these keys.
     pub fn is_sweep(&self) -> bool {
         ["scenario", "vary", "measure"]
             .iter()
             .any(|key| self.table.contains_key(*key))
     }
 
-    /// The file's shape; its numbers are not checked.
+    /// Returns the parsed file. Its numbers are not checked.
     pub fn file(&self) -> Result<ScenarioFile, Problems> {
         let file = self.table.clone().try_into();
         file.map_err(|error: toml::de::Error| self.placed(Problem::at("", error.message())))
     }
 
-    /// The last `--set` that wrote what a problem at `key` is about: the value, something in it or around it, or the
-    /// table that lacks it where the file has none such.
+    /// Returns the last `--set` behind a problem at `key`. It set the value, something inside or around it, or the
+    /// table without the value if that table is not in the file.
     fn setting_behind(&self, key: &str, written: &toml::Table) -> Option<&SetArgument> {
         let last =
             |wanted: &dyn Fn(&str) -> bool| self.set.iter().rev().find(|set| wanted(&set.key));
@@ -240,7 +244,7 @@ impl Document {
         })
     }
 
-    /// Which entries the file has, where `--set` alone began the entry (a push, a point) that lacks a key.
+    /// Describes the entries that the file has, if only `--set` created the entry (a push, a point) that lacks a key.
     fn that_are_there(problem: &Problem, written: &toml::Table) -> Option<String> {
         let (entry, _) = problem.key.rsplit_once('.')?;
         let (list, number) = entry.rsplit_once('.')?;
@@ -257,7 +261,7 @@ impl Document {
         Some(format!(": {entry} would be a new one, {there}"))
     }
 
-    /// Problems with the places at which the user wrote their keys, in the order of the file.
+    /// Adds to problems the places at which the user wrote their keys, and sorts them in the order of the file.
     pub fn placed(&self, found: impl Into<Problems>) -> Problems {
         let Problems { list, more, .. } = found.into();
         let line_of = self.line_finder();
@@ -281,7 +285,7 @@ impl Document {
                     (problem.value, problem.rule) = (String::new(), mistake.clone());
                 }
                 (_, Some(meant)) if problem.rule.starts_with(UNKNOWN_KEY) => {
-                    // The whole key: whoever typed the argument does not see the tables of a file.
+                    // Show the whole key, because the user who typed the argument does not see the tables of a file.
                     problem.key.clone_from(&setting.key);
                     problem.rule = format!("{UNKNOWN_KEY}: did you mean {meant}?");
                 }
@@ -300,7 +304,7 @@ impl Document {
     }
 }
 
-/// Parses `text`, the header of a CSV or shorter.
+/// Parses `text`, which is at most as long as the header of a CSV.
 fn toml_within_limits(text: &str) -> Result<toml::Table, Problem> {
     if text.len() as u64 > limits::LONGEST_HEADER {
         return Err(Problem::at("", limits::SCENARIO_TOO_LONG));
@@ -309,7 +313,7 @@ fn toml_within_limits(text: &str) -> Result<toml::Table, Problem> {
     text.parse().map_err(|error| syntax_problem(text, &error))
 }
 
-/// `text` as TOML, or else as text; and why an array or a table is no TOML.
+/// Parses `text` as TOML, or else as text. Also returns why an array or a table is not valid TOML.
 pub fn toml_or_text(text: &str) -> (Value, Option<String>) {
     match text.trim().parse() {
         Ok(value) => (value, None),
@@ -342,7 +346,7 @@ fn syntax_problem(text: &str, error: &toml::de::Error) -> Problem {
     let shown = if lines.clone().all(|line| line.len() <= WIDEST) {
         printable_lines(picture.trim_end()).into_owned()
     } else {
-        // A picture of a line that fills the screen shows nothing.
+        // An excerpt of a line that fills the screen shows nothing.
         let place = brief(lines.next().unwrap_or_default(), WIDEST);
         format!("{place}: {}", brief(error.message(), WIDEST))
     };
@@ -353,10 +357,11 @@ fn syntax_problem(text: &str, error: &toml::de::Error) -> Problem {
     at_line(line_at(text, span.start) as u64, Problem::at("", rule))
 }
 
-/// The tables of which a file may have several.
+/// Tables that may occur several times in a file.
 const REPEATED: [&str; 6] = ["do", "push", "edit", "expected", "body.point", "body.part"];
 
-/// What is wrong with the line at `offset`, where it begins one of these tables a second time as if it were the only one.
+/// Describes the problem in the line at `offset`, if it begins one of these tables for the second time in single
+/// brackets.
 fn repeated_table(text: &str, offset: usize) -> Option<String> {
     let line = text.lines().nth(line_at(text, offset) - 1)?.trim();
     let name = line.strip_prefix('[')?.strip_suffix(']')?.trim();
@@ -373,14 +378,15 @@ fn line_at(text: &str, offset: usize) -> usize {
         + 1
 }
 
-/// Where the dotted `key`, or as much of it as there is, stands in the text: a value's key, a table's head.
+/// Returns the position of the dotted `key` in the text, or of its longest part that exists: a value's key, or a
+/// table's head.
 fn offset_of(table: &DeTable<'_>, key: &str) -> Option<usize> {
     let quoted = key.strip_prefix('"').and_then(|key| key.strip_suffix('"'));
     let (name, rest) = match quoted {
         Some(name) => (name, ""),
         None => key.split_once('.').unwrap_or((key, "")),
     };
-    // What an edit sets has the whole path for its name.
+    // The keys that an edit sets are whole paths.
     let (found, value) = table
         .get_key_value(name)
         .or_else(|| table.get_key_value(key))?;
@@ -399,7 +405,7 @@ fn offset_inside(value: &DeValue<'_>, key: &str) -> Option<usize> {
     }
 }
 
-/// What is wrong with `value`, which begins as an array or a table and is no TOML.
+/// Describes why `value`, which begins like an array or a table, is not valid TOML.
 fn why_no_toml(value: &str, error: &toml::de::Error) -> Option<String> {
     if !value.starts_with(['[', '{']) {
         return None;

@@ -1,13 +1,15 @@
-//! Dotted keys: the way to a value in a table, with numbers from 0 for the places in arrays (`push.0.force_N`).
+//! Dotted keys: paths to values in a table, with numbers from 0 for positions in arrays (`push.0.force_N`).
 
 use super::problem::Problem;
 pub use super::problem::join;
 use toml::{Table, Value};
 
-/// The most names and numbers of a key: body.point.N.at_m.N has five. Tables nested without bound would exhaust the stack.
+/// Maximum number of names and numbers in a key. body.point.N.at_m.N has five. Unlimited nesting would exhaust the
+/// stack.
 const DEEPEST_KEY: usize = 5;
 
-/// Writes `value` at the dotted `key`; numbers lead into arrays, and the one past the end adds an element.
+/// Writes `value` at the dotted `key`. Numbers are positions in arrays, and a position one past the end adds an
+/// element.
 pub fn set_key(table: &mut Table, key: &str, value: Value) -> Result<(), Problem> {
     let names: Vec<&str> = key.split('.').collect();
     if names.len() > DEEPEST_KEY {
@@ -36,7 +38,7 @@ pub fn set_key(table: &mut Table, key: &str, value: Value) -> Result<(), Problem
     Ok(())
 }
 
-/// The empty value that has room for the names `inside`.
+/// Returns the empty value that can hold the names `inside`.
 fn empty(inside: &[&str]) -> Value {
     match inside.first().map(|name| name.parse::<usize>()) {
         Some(Ok(_)) => Value::Array(Vec::new()),
@@ -45,7 +47,7 @@ fn empty(inside: &[&str]) -> Value {
     }
 }
 
-/// What stands at place `name` of `array`; `empty` is put there first where that is one past the end.
+/// Returns the element of `array` at position `name`. If that is one past the end, `empty` is added first.
 fn place<'a>(
     array: &'a mut Vec<Value>,
     name: &str,
@@ -76,18 +78,18 @@ pub fn find<'a>(written: &'a Table, key: &str) -> Option<&'a Value> {
     })
 }
 
-/// Whether the dotted `key` is `table` or lies in it.
+/// Returns true if the dotted `key` is `table` or lies in it.
 pub fn is_in(key: &str, table: &str) -> bool {
     key.strip_prefix(table)
         .is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
 }
 
-/// Whether the dotted keys `one` and `other` write into the same value.
+/// Returns true if the dotted keys `one` and `other` write into the same value.
 pub fn overlap(one: &str, other: &str) -> bool {
     is_in(one, other) || is_in(other, one)
 }
 
-/// The number, from 0, of the push that the dotted `key` belongs to.
+/// Returns the number, from 0, of the push that the dotted `key` belongs to.
 pub fn number_of_push(key: &str) -> Option<usize> {
     key.strip_prefix("push.")?.split('.').next()?.parse().ok()
 }

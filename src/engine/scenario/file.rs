@@ -1,4 +1,5 @@
-//! The shape of scenario and run files, as serde reads and writes them. What each key means is in [`super::keys`].
+//! The structure of scenario and run files, as serde reads and writes them. The meaning of each key is in
+//! [`super::keys`].
 
 use super::dotted::join;
 use super::keys::{self, SCENARIO};
@@ -9,7 +10,7 @@ use serde::{Deserialize, Serialize, Serializer};
 use std::ops::{Deref, DerefMut};
 use toml::{Table, Value};
 
-/// A scenario file; with `gyrolab` and any number of edits, a run file.
+/// A scenario file. With `gyrolab` and any number of edits, it is a run file.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ScenarioFile {
     pub gyrolab: Option<String>,
@@ -32,7 +33,7 @@ pub struct ScenarioFile {
 }
 
 impl ScenarioFile {
-    /// Without its version, the outcome that it expects, and what is shown of it.
+    /// Returns the file without its version, its expected results, and its view.
     pub fn bare(self) -> Self {
         Self {
             gyrolab: None,
@@ -42,7 +43,7 @@ impl ScenarioFile {
         }
     }
 
-    /// What `[view]` says of `key`.
+    /// Returns the value of `key` in `[view]`.
     pub fn viewed(&self, key: &str) -> Option<&Value> {
         self.view.as_ref()?.get(key)
     }
@@ -101,14 +102,14 @@ pub struct StartFile {
     pub rotor: Option<String>,
 }
 
-/// The frame in which the start's momentum or angular velocity is given.
+/// Frame of the start's momentum or angular velocity.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum VectorFrame {
-    /// As it is: the report's Method 1.
+    /// World frame: the report's Method 1.
     #[default]
     World,
-    /// Turned with the body: the report's Method 2.
+    /// Body frame, turned with the body: the report's Method 2.
     Body,
 }
 
@@ -150,13 +151,13 @@ pub struct FrictionFile {
     pub swing_viscous_Nms: Option<f64>,
 }
 
-/// Some keys of `[view]` and their values, as a table. It is written in the order of [`keys::KEYS`].
+/// Keys of `[view]` and their values, as a table. They are written in the order of [`keys::KEYS`].
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(from = "Table")]
 pub struct ViewFile(Table);
 
 impl From<Table> for ViewFile {
-    /// `table` with floats in the place of whole numbers where a key holds a number.
+    /// Converts whole numbers in `table` to floats if their key has the type number.
     fn from(mut table: Table) -> Self {
         make_floats(&mut table, "view");
         Self(table)
@@ -196,7 +197,7 @@ impl Serialize for ViewFile {
     }
 }
 
-/// The table at a dotted path, to be written in the order of [`keys::KEYS`].
+/// The table at a dotted path, for writing in the order of [`keys::KEYS`].
 struct InOrder<'a>(&'a str, &'a Table);
 
 impl Serialize for InOrder<'_> {

@@ -1,4 +1,4 @@
-//! The lines of the summary of a run: which readout each belongs to, and how it is written.
+//! The lines of a run's summary: the readout of each line, and its text.
 
 use super::table::READOUTS;
 use super::{Readout, Readouts};
@@ -7,14 +7,14 @@ use crate::analysis::{MeasuredNumber, WithoutNutation, remarks};
 use crate::text::number::{NOT_AVAILABLE, counted, exponent, fixed, shortest, significant};
 use nalgebra::Vector3;
 
-/// Why a run shows no nutation although it has one.
+/// Reason why a run shows no nutation although it has one.
 const FAR_APART: &str = "the steps are too far apart to see it";
 
-/// The line of a readout in the summary; further readouts may be in the same line.
+/// Line of a readout in the summary. The line may contain further readouts.
 #[derive(Clone, Copy, Debug)]
 pub struct SummaryRow {
     pub part: SummaryPart,
-    /// Its place among the lines of its part.
+    /// Position among the lines of its part.
     pub place: u8,
     pub label: &'static str,
     text: fn(&Readouts) -> Option<String>,
@@ -45,13 +45,13 @@ pub(super) const fn summary(
 }
 
 impl SummaryRow {
-    /// Returns what the line says of `readouts`; `None` if this run has no such line.
+    /// Returns the text of the line for `readouts`. `None` if this run has no such line.
     pub fn read(&self, readouts: &Readouts) -> Option<String> {
         (self.text)(readouts)
     }
 }
 
-/// The lines of `part` with their readouts, in order.
+/// Returns the lines of `part` with their readouts, in order.
 pub fn summary_rows(part: SummaryPart) -> Vec<(&'static Readout, SummaryRow)> {
     let rows = READOUTS
         .iter()
@@ -100,7 +100,7 @@ pub(super) fn nutation(readouts: &Readouts) -> Option<String> {
     ))
 }
 
-/// Under friction no motion goes on as theory has it.
+/// Returns the theory, unless friction keeps the motion from following it.
 fn lasting_theory(readouts: &Readouts) -> Option<&Theory> {
     let theory = readouts.theory.as_ref();
     theory.filter(|theory| !theory.is_of_a_moment)
@@ -110,7 +110,8 @@ pub(super) fn asymmetry(readouts: &Readouts) -> Option<String> {
     readouts.theory.and_then(|any| any.of_mean_moment())
 }
 
-/// The mean force of the floor on the foot beside the weight; `None` under friction, and where nothing presses.
+/// Describes the mean force of the floor on the foot next to the weight. `None` with friction, and if nothing presses
+/// on the foot.
 pub(super) fn foot_force(readouts: &Readouts) -> Option<String> {
     let predicted = readouts.predicted_mean_foot_force?;
     let weight = readouts.weight;
@@ -140,9 +141,11 @@ pub(super) fn foot_force(readouts: &Readouts) -> Option<String> {
     Some(format!("M g {} N{pressed}, {measured}", fixed(weight, 3)))
 }
 
-/// A value by theory and as it was measured: "0.886033 rad/s by theory, 0.886033 +- 2.4e-9 rad/s in this run", with the axis
-/// where theory refers to another than +z. `is_strobed` says whether the steps are too far apart to see it, `unmeasured` why there is no number of the
-/// run although the motion may have one, or nothing where it has none.
+/// Describes a value by theory and by measurement: "0.886033 rad/s by theory, 0.886033 +- 2.4e-9 rad/s in this run".
+/// The axis is named if theory refers to another axis than +z.
+///
+/// `is_strobed` is true if the steps are too far apart to show the value. `unmeasured` is the reason why the run has no
+/// number although the motion may have one. It is empty if the motion has none.
 fn compared(
     readouts: &Readouts,
     unit: &str,
@@ -260,7 +263,7 @@ pub(super) fn steady_precession(readouts: &Readouts) -> Option<String> {
     })
 }
 
-/// Whether the axle would sleep upright.
+/// Describes whether the axle would sleep upright.
 pub(super) fn upright(readouts: &Readouts) -> Option<String> {
     readouts.kappa?;
     let theory = readouts.theory.as_ref()?;
@@ -331,7 +334,7 @@ fn vector(at: &Vector3<f64>, digits: usize) -> String {
     format!("{x}, {y}, {z}")
 }
 
-/// `word` and the axis where that is another than +z, else nothing.
+/// Returns `word` and the axis, or nothing if the axis is +z.
 fn on(word: &str, axis: &TheoryAxis) -> String {
     match axis {
         TheoryAxis::Z => String::new(),

@@ -1,4 +1,4 @@
-//! The table: a row for every readout, with its name, unit, source, meaning and formula.
+//! The table of readouts: a row for each, with its name, unit, source, meaning and formula.
 
 use super::summary_row::SummaryPart::{Further, Motion, State};
 use super::summary_row::{self, SummaryRow, summary};
@@ -13,27 +13,27 @@ use std::time::Duration;
 
 #[derive(Debug)]
 pub struct Readout {
-    /// The name, with the unit as it is written.
+    /// Name, which ends with the unit.
     pub name: &'static str,
-    /// The unit; empty for a pure number and for a text.
+    /// Unit; empty for a pure number and for a text.
     pub unit: &'static str,
     pub meaning: &'static str,
     pub source: ReadoutSource,
-    /// Whether it is a text, never a number.
+    /// True if the readout is a text, and never a number.
     pub is_text: bool,
     kind: ValueKind,
-    /// Its symbol in figures, as their markup; empty where it has none.
+    /// Symbol in figures, in their markup; empty if it has none.
     pub symbol: &'static str,
-    /// Its row in the lab's values pane; `None` if it has none.
+    /// Row in the lab's values pane, if any.
     pub row: Option<ValueRow>,
-    /// Its line in the summary of a run; `None` if it has none.
+    /// Line in the summary of a run, if any.
     pub summary: Option<SummaryRow>,
     get: fn(&Readouts) -> ReadoutValue,
 }
 
 const DEGREES_PER_RAD: f64 = 180.0 / PI;
 
-/// In the name of a readout that is the standard error of another.
+/// Part of the name of every readout that is the standard error of another.
 const ERROR: &str = "_uncertainty";
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,11 +48,11 @@ pub enum ReadoutSource {
     Measured,
     /// By a formula for the scheme at this time step.
     Scheme,
-    /// Beside the exact motion.
+    /// From the comparison with the exact motion.
     Exact,
     /// By the theory of the heavy symmetric top, for the exact motion under the present forces.
     Theory,
-    /// By the clock of the machine: it is another number each time.
+    /// From the clock of the machine. It differs from run to run.
     Clock,
 }
 
@@ -74,12 +74,12 @@ impl ReadoutSource {
 }
 
 impl Readout {
-    /// Whether it is the standard error of another readout.
+    /// Returns true if this is the standard error of another readout.
     pub fn is_uncertainty(&self) -> bool {
         self.name.contains(ERROR)
     }
 
-    /// The readout that is the standard error of this one.
+    /// Returns the readout that is the standard error of this one.
     pub fn uncertainty(&self) -> Option<&'static Self> {
         READOUTS
             .iter()
@@ -90,13 +90,14 @@ impl Readout {
             .filter(|_| !self.is_uncertainty())
     }
 
-    /// The readout in which theory says what this measured one should be.
+    /// Returns the readout with theory's prediction for this measured one.
     pub fn predicted(&self) -> Option<&'static Self> {
         let what = self.name.strip_prefix("measured_")?;
         find(&format!("predicted_{what}"))
     }
 
-    /// Whether it is of the body's position and momentum, which a scheme that has broken down does not leave.
+    /// Returns true if the readout depends on the body's position or momentum, which are lost when a scheme breaks
+    /// down.
     pub fn is_of_body(&self) -> bool {
         matches!(self.source, ReadoutSource::State | ReadoutSource::Exact)
     }
@@ -105,7 +106,7 @@ impl Readout {
         (self.get)(readouts)
     }
 
-    /// Parses `cell` of a CSV as a value of this readout; `None` where it is no such value.
+    /// Parses `cell` of a CSV as a value of this readout. `None` if it is not a valid value.
     pub fn parse(&self, cell: &str) -> Option<ReadoutValue> {
         match self.kind {
             _ if cell.is_empty() => Some(ReadoutValue::Nothing),
@@ -128,9 +129,9 @@ pub fn names() -> impl Iterator<Item = &'static str> + Clone {
     READOUTS.iter().map(|readout| readout.name)
 }
 
-/// For a refusal of `wrong`, which is no readout: "did you mean tilt_deg?", or the names there are.
+/// Returns a hint for the unknown readout `wrong`: "did you mean tilt_deg?", or the list of names.
 pub fn nearest(wrong: &str) -> String {
-    // Of "lowest_tilt_deg" it is not said whose it is: theory's, or the run's.
+    // A name such as "lowest_tilt_deg" lacks its prefix: theory's, or the run's.
     let fuller = names().filter(|name| {
         name.strip_suffix(wrong)
             .is_some_and(|kind| kind.ends_with('_'))
@@ -149,7 +150,7 @@ fn uncertainty(measured: Option<MeasuredNumber>) -> Option<f64> {
     measured.map(|measured| measured.uncertainty)
 }
 
-/// Whether the text readout `name` may have the value `text`.
+/// Returns true if `text` is a valid value of the text readout `name`.
 fn may_be(name: &str, text: &str) -> bool {
     match name {
         "path" => AxlePath::ALL.iter().any(|path| path.to_string() == text),
@@ -158,7 +159,7 @@ fn may_be(name: &str, text: &str) -> bool {
     }
 }
 
-/// The kind of value that a row's formula gives where it gives one.
+/// Kind of value that a row's formula returns, if it returns one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum ValueKind {
     Number,
@@ -167,7 +168,7 @@ enum ValueKind {
     Text,
 }
 
-/// What a row's formula gives: a number, yes or no, or a text.
+/// Result type of a row's formula: a number, a flag, or a text.
 trait IntoValue {
     const KIND: ValueKind;
 
@@ -216,7 +217,7 @@ impl<T: IntoValue> IntoValue for Option<T> {
     }
 }
 
-/// Returns the kind of value that this formula gives.
+/// Returns the kind of value that a formula returns.
 const fn kind<T: IntoValue>(_: &impl Fn(&Readouts) -> T) -> ValueKind {
     T::KIND
 }
@@ -230,9 +231,8 @@ macro_rules! optional {
     };
 }
 
-/// Makes a row of each line: name, unit, source, meaning, how it is got of the readouts `r`, the symbol where it has one,
-/// its row in the lab's values pane and its line in
-/// the summary if it has one.
+/// Makes a readout of each line. A line has the name, unit, source and meaning, and a formula for the value from the
+/// readouts `r`. The symbol, the row in the lab's values pane, and the line in the summary are optional.
 macro_rules! readouts {
     ($($name:literal, $unit:literal, $source:ident, $meaning:literal, |$r:ident| $get:expr $(, $symbol:literal)? $(=> $row:expr)? $(, summary $summary:expr)?;)*) => {
         pub const READOUTS: &[Readout] = &[

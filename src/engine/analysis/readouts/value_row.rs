@@ -1,4 +1,4 @@
-//! The rows of the lab's values pane: how each readout is shown, and beside which exact value.
+//! The rows of the lab's values pane: how each readout is shown, and the exact value next to it.
 
 use super::Readouts;
 use super::table::{READOUTS, Readout};
@@ -8,41 +8,41 @@ use crate::analysis::theory::{AxlePath, TheoryAxis};
 use crate::run::Moment;
 use crate::text::number::{exponent, fixed, rounded};
 
-/// Below this number of seconds a period is shown in milliseconds.
+/// Periods shorter than this are shown in milliseconds, s.
 const LEAST_SECONDS: f64 = 0.1;
-/// The part of the arm, and of a value itself, that it may be off.
+/// Tolerance as a fraction of the arm, or of the value itself.
 const OFF_PART: f64 = 0.01;
-/// In fewer columns a number has at most three decimals.
+/// Minimum width for all decimals. A narrower number has at most three.
 const FULL_DECIMALS_FROM: usize = 7;
 const NARROW_DECIMALS: usize = 3;
-/// A smaller difference from the exact value has an exponent.
+/// Differences from the exact value smaller than this are written with an exponent.
 const LEAST_DECIMAL_DIFFERENCE: f64 = 1e-4;
 
 /// The row of a readout in the values pane.
 #[derive(Clone, Copy, Debug)]
 pub struct ValueRow {
     pub group: ValueGroup,
-    /// Its place among the rows of its group.
+    /// Position among the rows of its group.
     pub place: u8,
     pub label: &'static str,
     /// The label in a narrow pane, at most 8 characters.
     pub short_label: &'static str,
-    /// If there is no room for all rows, those of the highest rank are left out first; rank 0 stays.
+    /// Rank in leaving the pane. If there is no room for all rows, the highest ranks leave first; rank 0 stays.
     pub rank: u8,
     unit: ShownUnit,
     digits: Digits,
     tolerance: Tolerance,
-    /// Reads it off a moment of the run, of the exact motion, or at the cursor.
+    /// Reads the value at a moment of the run, of the exact motion, or at the cursor.
     of_moment: Option<fn(&Moment) -> Option<f64>>,
     measured: Option<fn(&Readouts) -> Option<MeasuredNumber>>,
-    /// Whether the motion has no such value.
+    /// Returns true if the motion has no such value.
     has_none: fn(&Readouts) -> bool,
 }
 
 #[derive(Clone, Copy, Debug)]
 enum ShownUnit {
     OfReadout,
-    /// This unit, and the number by which the readout is multiplied.
+    /// A unit, and the factor by which the readout is multiplied.
     Scaled(&'static str, f64),
     OfEnergy,
 }
@@ -50,19 +50,19 @@ enum ShownUnit {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ValueGroup {
     Now,
-    /// Extremes, angles and distances, where there is room for more.
+    /// Extremes, angles and distances, shown if there is room.
     SoFar,
 }
 
 #[derive(Clone, Copy, Debug)]
 enum Digits {
-    /// Digits after the point.
+    /// Digits after the decimal point.
     Decimals(usize),
-    /// Four digits.
+    /// Four significant digits.
     Significant,
 }
 
-/// How far a value may be from the exact one before it is marked.
+/// Maximum difference from the exact value before a value is marked.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Tolerance {
     Any,
@@ -70,9 +70,9 @@ pub(super) enum Tolerance {
     OfArm,
     /// 1 % of the exact value.
     OfItself,
-    /// A difference, in the readout's unit.
+    /// A fixed difference, in the readout's unit.
     Of(f64),
-    /// In an unreliable run, this value may not be reached.
+    /// In an unreliable run, any value above this one is marked.
     UnlessReliable(f64),
 }
 
@@ -149,7 +149,7 @@ impl ValueRow {
     }
 }
 
-/// The rows of `group` with their readouts, in order.
+/// Returns the rows of `group` with their readouts, in order.
 pub fn value_rows(group: ValueGroup) -> Vec<(&'static Readout, ValueRow)> {
     let rows = READOUTS
         .iter()
@@ -159,23 +159,23 @@ pub fn value_rows(group: ValueGroup) -> Vec<(&'static Readout, ValueRow)> {
     of_group
 }
 
-/// What one row of the values pane shows: the run and the exact motion in one unit, now or at the cursor.
+/// Content of one row of the values pane: the run and the exact motion in one unit, now or at the cursor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShownValue {
     pub unit: &'static str,
-    /// The value of the run; `None` if there is none, or none yet.
+    /// Value of the run; `None` if there is none, or none yet.
     pub run: Option<f64>,
-    /// Its standard error, if it is measured.
+    /// Standard error of the run's value, if it is measured.
     pub uncertainty: Option<f64>,
     pub exact: Option<f64>,
-    /// Whether the run's value disagrees with the exact one.
+    /// True if the run's value disagrees with the exact one.
     pub is_off: bool,
-    /// Whether the motion has no such value: its axle passes through the vertical.
+    /// True if the motion has no such value because its axle passes through the vertical.
     pub has_none: bool,
 }
 
 impl ValueRow {
-    /// Reads the row of `readout`. `run` and `exact` are the moments that are shown.
+    /// Reads the row of `readout`. `run` and `exact` are the moments to show.
     pub fn read(
         &self,
         readout: &Readout,
@@ -196,7 +196,7 @@ impl ValueRow {
                 .predicted()
                 .and_then(|predicted| predicted.read_from(readouts).number()),
         };
-        // A scheme that has broken down leaves neither a position nor an energy of a rigid body.
+        // A scheme that has broken down yields neither the position nor the energy of a rigid body.
         let is_lost = readout.is_of_body() && !readouts.health.is_a_rotation;
         let known = value.filter(|value| !is_lost && value.is_finite());
         let (unit, factor) = self.unit_of(readout, readouts, known, exact_value);
@@ -210,7 +210,7 @@ impl ValueRow {
         }
     }
 
-    /// Returns whether it is read off one moment, not off the whole run.
+    /// Returns true if the value is read at one moment, and not from the whole run.
     pub fn is_of_moment(&self) -> bool {
         self.of_moment.is_some()
     }
@@ -247,7 +247,7 @@ impl ValueRow {
         number.is_some_and(|number| number > most)
     }
 
-    /// Writes `number` of this row on at most `width` columns.
+    /// Formats `number` for this row, in at most `width` columns.
     pub fn written(&self, number: f64, width: usize) -> String {
         let decimals = match self.digits {
             Digits::Decimals(decimals) => decimals,
@@ -266,7 +266,7 @@ impl ValueRow {
         }
     }
 
-    /// Writes a difference from the exact value on at most `width` columns.
+    /// Formats a difference from the exact value, in at most `width` columns.
     pub fn difference(&self, number: f64, width: usize) -> String {
         if number.abs() < LEAST_DECIMAL_DIFFERENCE {
             return four_digits(number, width);
@@ -281,8 +281,8 @@ pub(super) fn passes_through_vertical(readouts: &Readouts) -> bool {
     })
 }
 
-/// Writes `number` with four digits, at most four of them after the point, on at most `width` columns: with fewer digits, or
-/// with an exponent and two digits, if they do not fit.
+/// Formats `number` with four digits, at most four of them decimals, in at most `width` columns. If they do not fit, it
+/// uses fewer digits, or an exponent and two digits.
 pub fn four_digits(number: f64, width: usize) -> String {
     let size = rounded(number, 4).abs();
     let decimals = match size {
