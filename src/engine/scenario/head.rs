@@ -1,4 +1,5 @@
-//! Files as they are read: the whole of a scenario, or the head of a CSV, which holds the run file.
+//! Reads the text of a scenario from a file: the whole file, the run file in the head of a CSV, or the run file in a
+//! figure.
 
 use super::limits::{self, LONGEST_HEADER, LONGEST_SCENARIO_FILE};
 use super::problem::{Problem, at_line};
@@ -8,16 +9,16 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
 
-/// How the line of names begins in the CSV of a run with every column.
+/// Begin of the line of names in the CSV of a run with every column.
 const EVERY_COLUMN: &[u8] = b"step,t_s,";
 
-/// How the line begins that tells the version, in the head of every CSV that gyrolab writes.
+/// Begin of the version line, which is in the head of every CSV that gyrolab writes.
 const VERSION_LINE: &[u8] = b"# gyrolab = ";
 
-/// Some programs put it before the first line of a file.
+/// Mark that some programs write before the first line of a file.
 const BYTE_ORDER_MARK: &[u8] = "\u{feff}".as_bytes();
 
-/// The beginning of a file: the lines that begin with `#`, and the one after them, which names the columns of a CSV.
+/// Head of a file: the lines that begin with `#`, and the next one, which in a CSV names the columns.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Head {
     bytes: Vec<u8>,
@@ -25,7 +26,7 @@ pub struct Head {
 }
 
 impl Head {
-    /// Reads the head of a file from its beginning; of a longer one no more than the longest.
+    /// Reads the head of a file from its start, up to the maximum length.
     pub fn read(reader: &mut impl BufRead) -> io::Result<Self> {
         let mut head = reader.take(LONGEST_HEADER + 1);
         let (mut bytes, mut names) = (Vec::new(), 0);
@@ -44,18 +45,19 @@ impl Head {
         &self.bytes
     }
 
-    /// The line that names the columns of a CSV, without its end.
+    /// Returns the line that names the columns of a CSV, without its line end.
     pub fn names(&self) -> &[u8] {
         without_mark(&self.bytes[self.names..]).trim_ascii_end()
     }
 
-    /// The line of names, counted from 1.
+    /// Returns the number of the line of names, from 1.
     pub fn line_of_names(&self) -> u64 {
         let above = &self.bytes[..self.names];
         1 + above.iter().filter(|&&byte| byte == b'\n').count() as u64
     }
 
-    /// Whether it is the head of a CSV that gyrolab wrote. Nothing in TOML is a line of names without a value.
+    /// Returns true if this is the head of a CSV that gyrolab wrote. In TOML, no line consists of names without a
+    /// value.
     pub fn is_of_csv(&self) -> bool {
         let names = self.names();
         if names.starts_with(EVERY_COLUMN) {
@@ -68,12 +70,12 @@ impl Head {
         !names.is_empty() && are_names && comments.any(|line| line.starts_with(VERSION_LINE))
     }
 
-    /// The lines that begin with `#`, without a byte order mark.
+    /// Returns the lines that begin with `#`, without a byte order mark.
     fn comments(&self) -> &[u8] {
         without_mark(&self.bytes[..self.names])
     }
 
-    /// The lines above the line of names without their `# `: the run file of a CSV.
+    /// Returns the run file of a CSV: the lines above the line of names, without their `# `.
     pub fn run_file(&self) -> Result<String, Problem> {
         if self.comments().trim_ascii().is_empty() {
             let rule = "is a CSV with no run file in its header, the \"# \" lines that gyrolab writes, and other programs drop: name the file as gyrolab wrote it";
@@ -82,14 +84,14 @@ impl Head {
         self.header()
     }
 
-    /// The lines above the line of names without their `# `; none where there are none.
+    /// Returns the lines above the line of names, without their `# `. The result is empty if there are none.
     pub fn header(&self) -> Result<String, Problem> {
         let lines = utf8(self.comments().to_vec(), "")?;
         Ok(lines.split_inclusive('\n').map(uncommented).collect())
     }
 }
 
-/// `line` without the `# ` at its beginning.
+/// Returns `line` without the `# ` at its start.
 fn uncommented(line: &str) -> &str {
     let whole = line.trim_start_matches('\u{feff}');
     let comment = whole.strip_prefix('#').unwrap_or(whole);
@@ -100,7 +102,7 @@ fn without_mark(line: &[u8]) -> &[u8] {
     line.strip_prefix(BYTE_ORDER_MARK).unwrap_or(line)
 }
 
-/// Reads the text of the file at `path`. One of more than `most` bytes is refused as `too_long`.
+/// Reads the text of the file at `path`. A file of more than `most` bytes is an error with the message `too_long`.
 pub fn read_whole(path: &Path, most: u64, too_long: &str) -> Result<String, Problem> {
     if path.is_dir() {
         return Err(Problem::at("", "is a folder: name a file in it"));
@@ -109,15 +111,16 @@ pub fn read_whole(path: &Path, most: u64, too_long: &str) -> Result<String, Prob
     utf8(bytes_of(file, most, too_long)?, "")
 }
 
-/// The text of a scenario or a run file, as it was found.
+/// The text of a scenario or run file, by where it was found.
 pub(super) enum ScenarioText {
-    /// In a file of its own, or in a figure.
+    /// Found in a file of its own, or in a figure.
     Whole(String),
-    /// In the header of a CSV.
+    /// Found in the header of a CSV.
     Header(String),
 }
 
-/// The text of a scenario, the run file in the header of a CSV, of which no more is read, or the one in a figure.
+/// Reads the text of a scenario, the run file in a figure, or the run file in the header of a CSV. The rest of a CSV is
+/// not read.
 pub(super) fn read_text(path: &Path) -> Result<ScenarioText, Problem> {
     if path.is_dir() {
         return Err(Problem::at("", "is a folder: name a file in it"));
@@ -143,7 +146,8 @@ fn cannot_read(error: &io::Error) -> Problem {
     Problem::at("", unread(error))
 }
 
-/// The run file in a figure: of several the first, of a table the one in its header.
+/// Returns the run file in a figure. If there are several, it returns the first. For a table, it returns the run file
+/// in the table's header.
 fn run_of_figure(figure: &FigureFile) -> Result<String, Problem> {
     match figure.origin.files.first() {
         Some(file) if file.sha256.is_some() => {
@@ -161,13 +165,13 @@ fn run_of_figure(figure: &FigureFile) -> Result<String, Problem> {
     }
 }
 
-/// Whether SCENARIO names a file, and no preset.
+/// Returns true if the argument SCENARIO names a file, and not a preset.
 pub fn is_file(name: &str) -> bool {
     let endings = [".toml", ".csv", ".svg", ".pdf", ".png"];
     name.contains('/') || endings.iter().any(|ending| name.contains(ending))
 }
 
-/// The text of a scenario, or the run file in the header of a CSV, that `stream` holds.
+/// Reads the text of a scenario, or the run file in the header of a CSV, from `stream`.
 pub(super) fn text_of_stream(stream: impl Read) -> Result<ScenarioText, Problem> {
     let mut reader = BufReader::new(stream);
     let head = Head::read(&mut reader).map_err(|error| cannot_read(&error))?;
@@ -186,7 +190,7 @@ fn text_of_file(file: impl Read) -> Result<ScenarioText, Problem> {
     Ok(ScenarioText::Whole(text))
 }
 
-/// The bytes of `file` to its end, of which no more than `most` and one are read.
+/// Reads all bytes of `file`, but at most `most` and one.
 pub(super) fn bytes_of(file: impl Read, most: u64, too_long: &str) -> Result<Vec<u8>, Problem> {
     let mut bytes = Vec::new();
     let read = file.take(most + 1).read_to_end(&mut bytes);
@@ -197,7 +201,7 @@ pub(super) fn bytes_of(file: impl Read, most: u64, too_long: &str) -> Result<Vec
     Ok(bytes)
 }
 
-/// The text that `bytes` are; `words` are added after the name of the encoding.
+/// Decodes `bytes` as UTF-8. `words` follow the name of the encoding in the error message.
 pub(super) fn utf8(bytes: Vec<u8>, words: &str) -> Result<String, Problem> {
     String::from_utf8(bytes).map_err(|error| {
         let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];

@@ -1,6 +1,6 @@
-//! The schema of scenario and run files: what each key is called, what it may hold, in which unit, and what it means.
+//! The schema of scenario and run files: name, kind of value, unit and meaning of each key.
 //!
-//! `check` holds every file and every `--set` against it. Rules that need more than one value are in `checks` and `parts`.
+//! `check` compares every file and every `--set` with it. Rules for several values are in `checks` and `parts`.
 
 use super::kind::Range::{self, Any, NotNegative, Positive};
 use super::kind::ValueKind::{
@@ -17,29 +17,29 @@ use super::solids;
 use crate::physics::scheme;
 use toml::{Table, Value};
 
-/// The traced point where a scenario names none.
+/// Name of the traced point if a scenario names none.
 pub const TOP: &str = "top";
 
-/// What of `[motion]` may be edited as a run goes on.
+/// Keys of `[motion]` that can be edited during a run.
 pub const EDITABLE_MOTION: [&str; 3] = [
     "motion.gravity_m_per_s2",
     "motion.scheme",
     "motion.time_step_s",
 ];
 
-/// Gravity where a scenario gives none, m/s² (the report's figure).
+/// Default gravity, m/s² (the report's value).
 pub const GRAVITY: f64 = 9.8;
 
-/// Playback speed where a scenario gives none, simulated seconds a second.
+/// Default playback speed, simulated seconds per second.
 pub const DEFAULT_SPEED: f64 = 1.0;
 
-/// The highest number of a phase of a time step that can be chosen.
+/// Maximum number of a phase of a time step that can be selected.
 pub const MOST_PHASES: i64 = 1000;
 
-/// What `start.momentum_Js` is, and what may stand for it.
+/// Meaning of `start.momentum_Js`, and the keys that can replace it.
 pub(super) const STATED: &str = "angular momentum L about the pivot, J s; or give spin_rpm or spin_rad_per_s instead, or omega_rad_per_s, or Euler rates such as psi_dot_rad_per_s";
 
-/// Every key there is, in the order in which files are written.
+/// All keys, in the order in which files are written.
 #[rustfmt::skip]
 pub const KEYS: &[SchemaRow] = &[
     may("gyrolab", Line, "version of gyrolab that wrote the run file"),
@@ -124,7 +124,7 @@ pub const KEYS: &[SchemaRow] = &[
     must("edit.*.set", Settings, "dotted keys of motion or push and their new values"),
 ];
 
-/// Checks a length of the window of the traces, s.
+/// Checks the length of the traces' time window, s.
 fn is_window(value: &Value) -> Result<(), String> {
     match value.as_str() {
         Some(AUTO) => Ok(()),
@@ -140,8 +140,8 @@ const SCHEME_NAMES: [&str; scheme::SCHEMES.len()] = scheme::names();
 /// Scenario and run files.
 pub const SCENARIO: Schema = Schema(&[KEYS]);
 
-/// The row of the dotted `key`, numbers for places in arrays, and what a value there may be: of a number in a vector any
-/// finite number.
+/// Returns the row of the dotted `key`, with numbers for positions in arrays, and the kind of value allowed there. For
+/// a number in a vector, that is any finite number.
 pub fn find(key: &str) -> Result<(&'static SchemaRow, ValueKind), String> {
     if let Some(row) = SCENARIO.row(&pattern(key)) {
         return Ok((row, row.kind));
@@ -162,7 +162,7 @@ pub fn find(key: &str) -> Result<(&'static SchemaRow, ValueKind), String> {
     Err(format!("{UNKNOWN_KEY}: {near}"))
 }
 
-/// What the screen calls some values, and their keys.
+/// Names of some values on the screen, and their keys.
 const ON_SCREEN: [(&str, &str); 4] = [
     ("dt", "motion.time_step_s"),
     ("g", "motion.gravity_m_per_s2"),
@@ -170,8 +170,8 @@ const ON_SCREEN: [(&str, &str); 4] = [
     ("rpm", "start.spin_rpm"),
 ];
 
-/// The whole key of which the unknown `key` has a part: its name in another table, the name without its unit, or what the
-/// screen calls its value. `None` where it may be several, or none.
+/// Returns the whole key that the unknown `key` probably means. The unknown key may be a name from another table, a
+/// name without its unit, or the screen's name of the value. `None` if there are several candidates, or none.
 pub(super) fn meant(key: &str) -> Option<&'static str> {
     let name = key.rsplit('.').next().unwrap_or(key);
     let on_screen = ON_SCREEN.iter().find(|(word, _)| *word == name);
@@ -190,10 +190,10 @@ pub(super) fn meant(key: &str) -> Option<&'static str> {
         })
 }
 
-/// What setting a key does to a run.
+/// Effect of setting a key on a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effect {
-    /// It acts from the next step on.
+    /// The new value applies from the next step on.
     FromHere,
     NewRun,
     None,
@@ -230,7 +230,7 @@ pub fn check(table: &Table) -> Problems {
     problems
 }
 
-/// Checks `value`, a part of a file: the key or table at the dotted `path`.
+/// Checks `value`, the part of a file at the dotted `path`: a key or a table.
 pub fn check_part(value: &Value, path: &str) -> Problems {
     SCENARIO.check_part(value, path, path)
 }

@@ -1,4 +1,4 @@
-//! What a key may hold, and the rules by which a value is refused.
+//! Kinds of values that a key may have, and the rules for them.
 
 use super::problem::near;
 use super::screen;
@@ -15,7 +15,7 @@ pub const LONGEST_TEXT_LINE: usize = 1000;
 
 pub const LONGEST_PARAGRAPH: usize = 20_000;
 
-/// What a key may hold.
+/// Kind of value that a key may have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(
     unpredictable_function_pointer_comparisons,
@@ -27,16 +27,16 @@ pub enum ValueKind {
     /// Text that may have several lines.
     Paragraph,
     Number(Range),
-    /// A whole number, from the least to the most.
+    /// A whole number between a minimum and a maximum.
     Whole(i64, i64),
-    /// A whole number from 1 to the most, or one of these words.
+    /// A whole number from 1 to a maximum, or one of these words.
     WholeOr(i64, &'static [&'static str]),
     Vector,
     Flag,
     OneOf(&'static [&'static str]),
     /// The id of a pane, or one of these words.
     Pane(&'static [&'static str]),
-    /// A list of such.
+    /// A list of pane ids and these words.
     Panes(&'static [&'static str]),
     /// A table of dotted keys and their new values.
     Settings,
@@ -44,7 +44,7 @@ pub enum ValueKind {
     Lines,
     /// Text on one line that passes this check.
     Text(fn(&str) -> Result<(), String>),
-    /// What passes this check.
+    /// Any value that passes this check.
     By(fn(&Value) -> Result<(), String>),
 }
 
@@ -57,11 +57,11 @@ pub enum Range {
 }
 
 pub const ZOOM_RANGE: (f64, f64) = (0.5, 100.0);
-/// The least and the greatest height of the eye above the horizontal, degrees.
+/// Minimum and maximum height of the eye above the horizontal, degrees.
 pub const PITCH_DEG: (f64, f64) = (-90.0, 90.0);
 
 impl ValueKind {
-    /// Whether `value` is of this kind and in its range.
+    /// Checks that `value` is of this kind and in its range.
     pub fn check(self, value: &Value) -> Result<(), String> {
         match self {
             Line => text(value).and_then(check_line),
@@ -87,7 +87,7 @@ impl ValueKind {
 }
 
 impl ValueKind {
-    /// The words that are of this kind.
+    /// Returns the words that are values of this kind.
     pub fn words(self) -> Vec<&'static str> {
         match self {
             OneOf(words) | WholeOr(_, words) => words.to_vec(),
@@ -199,7 +199,7 @@ fn check_vector(value: &Value) -> Result<(), String> {
     check_each(numbers, |item| number(item).map(drop))
 }
 
-/// Checks the two ends of an axis, or the word for those that the data have.
+/// Checks the two ends of an axis, or the word for ends that follow the data.
 pub(super) fn check_range(value: &Value) -> Result<(), String> {
     let wanted = "two numbers in brackets, the lower one first, or \"auto\"";
     if value.as_str() == Some(screen::AUTO) {
@@ -240,7 +240,7 @@ fn check_word(word: &str, words: &[&str]) -> Result<(), String> {
     })
 }
 
-/// `vector` as the value of a key that holds one.
+/// Returns `vector` as the value of a key.
 pub fn vector(vector: &Vector3<f64>) -> Value {
     Value::Array(vector.iter().map(|&number| Value::Float(number)).collect())
 }

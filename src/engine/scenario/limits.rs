@@ -1,16 +1,16 @@
-//! How large a scenario or run file may be. A larger one is refused in one line, and nothing else of it is checked.
+//! Limits on the size of a scenario or run file. A larger file gets one error message, and is not checked further.
 
 use super::dotted::find;
 use super::problem::Problem;
 use toml::{Table, Value};
 
-/// The longest scenario or run file, bytes.
+/// Maximum length of a scenario or run file, bytes.
 pub const LONGEST_SCENARIO_FILE: u64 = 4_000_000;
 
 pub const SCENARIO_TOO_LONG: &str = "is longer than 4 MB (4000000 bytes), the most that a scenario or run file may have: leave some of it out";
 
-/// The longest header of a CSV, bytes. The run file in it is longer than the scenario was: it gives every number in full,
-/// and each line begins with "# ".
+/// Maximum length of a CSV's header, bytes. Its run file is longer than the scenario, because it writes every number in
+/// full and begins each line with "# ".
 pub(super) const LONGEST_HEADER: u64 = 4 * LONGEST_SCENARIO_FILE;
 
 pub const MOST_POINTS: i64 = 100_000;
@@ -18,23 +18,24 @@ pub const MOST_POINTS: i64 = 100_000;
 pub const MOST_PUSHES: usize = 10_000;
 pub const MOST_EDITS: usize = 10_000;
 
-/// The most that the number of edits times that of points, parts and pushes may be.
+/// Maximum product of the number of edits and the number of points, parts and pushes.
 pub const MOST_PRODUCT: usize = 1_000_000;
 
-/// The most tables that a file may ask for. A few letters ask for one, and it takes 2 kB.
+/// Maximum number of tables in a file. A few letters create a table, which takes 2 kB.
 const MOST_TABLES: usize = 120_000;
 
-/// The most lines and elements of arrays that a file may have.
+/// Maximum number of lines and array elements in a file.
 const MOST_FILE_VALUES: usize = 800_000;
 
-/// Refuses a `text` that has more than `times` the tables or values of a file: they would take far more memory than a usual
-/// scenario of its length. The header of a CSV may have twice as many: it writes on several lines what its scenario may have on one.
+/// Checks that `text` has at most `times` the tables and values of a file. More would take far more memory than a usual
+/// scenario of its length. The header of a CSV may have twice as many, because it writes on several lines what a
+/// scenario may have on one.
 pub fn check_toml_size(text: &str, times: usize) -> Result<(), Problem> {
     let (most_tables, most_values) = (times * MOST_TABLES, times * MOST_FILE_VALUES);
     let (mut tables, mut values, mut heading) = (0, 0, "");
     for line in text.lines().map(str::trim_start) {
         if line.starts_with('[') {
-            // Around the second [[body.point]] no further table is made.
+            // The second [[body.point]] creates no further tables around it.
             tables += 1 + if line == heading { 0 } else { dots(line) };
             heading = line;
         } else {
@@ -54,13 +55,13 @@ pub fn check_toml_size(text: &str, times: usize) -> Result<(), Problem> {
     Err(Problem::at("", rule))
 }
 
-/// The dots in `part` of a line; one in quotes is part of a name.
+/// Counts the dots in `part` of a line. A dot in quotes is part of a name.
 fn dots(part: &str) -> usize {
     let unquoted = part.split(['"', '\'']).step_by(2);
     unquoted.map(|text| text.matches('.').count()).sum()
 }
 
-/// What of the file in `table` is too large.
+/// Returns the limit that the file in `table` exceeds, if any.
 pub(super) fn exceeded(table: &Table) -> Option<Problem> {
     let rim = find(table, "body.rim.points").and_then(Value::as_integer);
     let bodies = usize::try_from(rim.unwrap_or(0))
@@ -75,7 +76,8 @@ fn length(table: &Table, key: &str) -> usize {
     list.map_or(0, Vec::len)
 }
 
-/// What there is against so many edits of a body of `bodies` points and parts, with so many pushes.
+/// Returns the problem if there are too many `edits` of a body of `bodies` points and parts, with this number of
+/// `pushes`.
 pub(super) fn too_many(edits: usize, bodies: usize, pushes: usize) -> Option<Problem> {
     for (key, name, count, most) in [
         ("push", "pushes", pushes, MOST_PUSHES),

@@ -1,9 +1,11 @@
-//! Scenarios: from a TOML file, or a run's own CSV, to numbers that have been checked.
+//! Reads a scenario from a TOML file, or from the CSV of a run, and checks its numbers.
 //!
-//! A [`Document`] is the text with its `--set` overrides; [`keys`] is the [`schema`] of every key a file may hold;
-//! [`file`](mod@file) is the file's shape as serde reads and writes it; `parts`, `solids` and `start` make
-//! checked numbers of its tables, and `checks` a [`Scenario`] of those. What is refused comes back as [`Problems`], each
-//! with place, key, value and rule. [`csv`] reads the other CSVs: measured data and tables.
+//! - [`Document`]: the text with its `--set` overrides.
+//! - [`keys`]: the [`schema`] of every key that a file may have. A new key begins there.
+//! - [`file`](mod@file): the structure of the file, as serde reads and writes it.
+//! - `parts`, `solids`, `start`: turn its tables into checked numbers. `checks` makes a [`Scenario`] of these.
+//! - [`Problems`]: errors, each with place, key, value and rule.
+//! - [`csv`]: reads other CSV files: measured data and tables.
 
 mod checks;
 pub mod csv;
@@ -31,7 +33,7 @@ pub use kind::{float, vector};
 pub use model::{Edit, Motion, NamedBody, Push, Pushes, Scenario, Window};
 pub use problem::{Problem, Problems};
 
-/// The scenario of the preset `name` in which these values are set, for tests.
+/// Returns the scenario of the preset `name` with these values set, for tests.
 #[cfg(test)]
 pub fn preset(name: &str, sets: &[&str]) -> std::sync::Arc<Scenario> {
     let mut document = Document::open(name).unwrap();

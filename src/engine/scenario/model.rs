@@ -1,4 +1,4 @@
-//! A scenario whose numbers have been checked: what a run is made from.
+//! A scenario with checked numbers, from which a run is made.
 
 use super::file::ScenarioFile;
 use super::keys::TOP;
@@ -12,9 +12,9 @@ use std::sync::Arc;
 /// A scenario, or a run with its edits, whose numbers have been checked.
 #[derive(Clone, Debug)]
 pub struct Scenario {
-    /// The file it came from, as it is written again.
+    /// The file, as it would be written again.
     pub file: ScenarioFile,
-    /// What turns, with the names of its points.
+    /// The body that turns, with the names of its points.
     pub body: Arc<NamedBody>,
     /// Index of the point whose path is shown.
     pub trace: usize,
@@ -23,23 +23,23 @@ pub struct Scenario {
     pub friction: Friction,
     pub motion: Motion,
     pub steps: u64,
-    /// The time step for which its step counts were written, s.
+    /// Time step for which its step counts were written, s.
     pub written_for_s: f64,
     pub pushes: Pushes,
-    /// What the user changed during the run, in the order of the steps.
+    /// Changes by the user during the run, in the order of the steps.
     pub edits: Vec<Edit>,
 }
 
 /// The body, its solid parts, and the names of its points.
 #[derive(Clone, Debug)]
 pub struct NamedBody {
-    /// The mechanics: the points of the rim, the points, and then those that stand for the parts.
+    /// The mechanics. Its points are those of the rim, then the named points, then those of the parts.
     pub mechanics: physics::Body,
     pub parts: Vec<PlacedSolid>,
     pub names: HashMap<String, usize>,
 }
 
-/// Gravity, scheme and time step: what edits may change as the run goes on.
+/// Gravity, scheme and time step, which edits may change during the run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion {
     /// Acceleration of gravity along −z, m/s².
@@ -48,46 +48,47 @@ pub struct Motion {
     pub time_step_s: f64,
 }
 
-/// A force on one point for a while.
+/// A force that acts on one point for a while.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Push {
     pub point: usize,
     /// Force, world frame, N.
     pub force: Vector3<f64>,
     pub window: Window,
-    /// Whether it is the report's line taken literally: j times the force on its j-th step, and kept to the end.
+    /// True for the report's line taken literally: j times the force on its j-th step, and kept to the end.
     pub accumulates: bool,
 }
 
-/// When a push acts.
+/// Time window of a push.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Window {
-    /// On `count` steps from step `first` on; step 1 ends at t = dt.
+    /// Acts on `count` steps, beginning with step `first`. Step 1 ends at t = dt.
     Steps { first: u64, count: u64 },
-    /// From one time on, for a length of time.
+    /// Acts for a length of time from a given time on.
     Time { from_s: f64, for_s: f64 },
 }
 
-/// The pushes that a run has at one time. Edits that set no push share the list of the edit before.
+/// Pushes of a run at one time. Edits that set no push share the list of the previous edit.
 pub type Pushes = Arc<Vec<Push>>;
 
-/// A change during the run: made at `step`, it acts from the next step on.
+/// A change during the run. It is made at `step` and applies from the next step on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Edit {
     pub step: u64,
-    /// How the body moves from then on.
+    /// Gravity, scheme and time step from then on.
     pub motion: Motion,
     pub pushes: Pushes,
-    /// The numbers of the pushes that it set, each once, in order.
+    /// Numbers of the pushes that the edit set, each once, in order.
     pub set_pushes: Vec<usize>,
-    /// Whether it set the time step: t is counted anew from here, and pushes keep their seconds.
+    /// True if the edit set the time step. Steps then count from here with the new length, and pushes keep their times
+    /// in seconds.
     pub sets_time_step: bool,
-    /// Whether it set the time step, the scheme or gravity.
+    /// True if the edit set the time step, the scheme or gravity.
     pub begins_segment: bool,
 }
 
 impl Edit {
-    /// The pushes that it set, as they are from then on.
+    /// Returns the pushes that the edit set, with their new values.
     pub fn pushes_set(&self) -> impl Iterator<Item = &Push> {
         self.set_pushes
             .iter()
@@ -96,12 +97,12 @@ impl Edit {
 }
 
 impl NamedBody {
-    /// How many points stand before those of the parts.
+    /// Returns the number of points before those of the parts.
     pub fn points_before_parts(&self) -> usize {
         self.mechanics.points().len() - part::POINTS_PER_PART * self.parts.len()
     }
 
-    /// The indices of the points of the part of this index.
+    /// Returns the indices of the points of the part with this index.
     pub fn points_of_part(&self, part: usize) -> Range<usize> {
         let first = self.points_before_parts() + part * part::POINTS_PER_PART;
         first..first + part::POINTS_PER_PART
@@ -111,7 +112,7 @@ impl NamedBody {
         self.names.get(name).copied()
     }
 
-    /// The names of the points that have one, in the order in which the body lists them.
+    /// Returns the names of the named points, in the order of the body's list.
     pub fn names(&self) -> Vec<&str> {
         let mut names: Vec<&str> = self.names.keys().map(String::as_str).collect();
         names.sort_by_cached_key(|name| self.names[*name]);
@@ -122,7 +123,7 @@ impl NamedBody {
         self.point(name).ok_or_else(|| self.no_point(key, name))
     }
 
-    /// The problem that no point has the `name`, which stands at `key`.
+    /// Returns the problem that no point has the `name`, which is the value of `key`.
     pub(super) fn no_point(&self, key: &str, name: &str) -> Problem {
         let near = nearest(name, self.names().into_iter());
         let value = toml::Value::String(name.to_owned());
@@ -131,12 +132,12 @@ impl NamedBody {
 }
 
 impl Scenario {
-    /// Distance of the traced point from the pivot, m: the measure of how far off a run may be.
+    /// Returns the distance of the traced point from the pivot, m. The error of a run is measured relative to it.
     pub fn arm_m(&self) -> f64 {
         self.body.mechanics.points()[self.trace].at.norm()
     }
 
-    /// Whether the point "top" is traced because the file names none.
+    /// Returns true if the point "top" is traced because the file names none.
     pub fn traces_top(&self) -> bool {
         self.file.trace.is_none() && self.body.point(TOP).is_some()
     }
@@ -150,11 +151,11 @@ impl Scenario {
         self.file.trace.as_deref().unwrap_or(unnamed)
     }
 
-    /// The shortest time step by which a run of it is stepped, edits included, s.
+    /// Returns the shortest time step of a run, edits included, s.
     pub fn least_time_step_s(&self) -> f64 {
         let (mut least_s, mut since, mut now_s) = (f64::INFINITY, 0, self.motion.time_step_s);
         for edit in &self.edits {
-            // No step is taken between edits at the same one.
+            // No steps lie between edits at the same step.
             if edit.step > since {
                 least_s = least_s.min(now_s);
             }
@@ -163,14 +164,14 @@ impl Scenario {
         least_s.min(now_s)
     }
 
-    /// The rate at which the body, or of it the rotor alone, spins about the axle in `state`, rad/s: ω3.
+    /// Returns the rate ω3 at which the body (or only its rotor) spins about the axle in `state`, rad/s.
     pub fn spin_rad_per_s(&self, state: &State) -> f64 {
         let omega = observables::angular_velocity(&self.body.mechanics, state);
         state.axle().dot(&omega)
     }
 
-    /// The name of the point of this index, for a point of a part with its direction from the part's centre: "wheel +x";
-    /// `None` for a point of the rim.
+    /// Returns the name of the point with this index. A point of a part adds its direction from the part's center:
+    /// "wheel +x". `None` for a point of the rim.
     pub fn point_name(&self, index: usize) -> Option<String> {
         const OFF_CENTRE: [&str; part::POINTS_PER_PART] =
             ["", " +x", " -x", " +y", " -y", " +z", " -z"];
@@ -183,21 +184,22 @@ impl Scenario {
         Some(point.name.clone())
     }
 
-    /// Index of the part that alone spins, where there is one.
+    /// Returns the index of the part that spins alone, if any.
     pub fn rotor(&self) -> Option<usize> {
         let name = self.file.start.rotor.as_ref()?;
         let parts = &self.file.body.part;
         parts.iter().position(|part| part.name == *name)
     }
 
-    /// The run file: the scenario with its edits, and the version that wrote it. Reading it gives this scenario again.
+    /// Returns the run file: the scenario with its edits and the version of the program. Reading it restores this
+    /// scenario.
     pub fn to_toml(&self) -> String {
         let version = Some(env!("CARGO_PKG_VERSION").to_owned());
         let file = ScenarioFile {
             gyrolab: version,
             ..self.file.clone()
         };
-        // A checked file holds nothing that TOML cannot write.
+        // A checked file contains nothing that TOML cannot write.
         toml::to_string(&file).unwrap_or_default()
     }
 }

@@ -1,10 +1,12 @@
-//! Numbers as they are nudged and typed: steps of 1, 2 and 5 times a power of ten, free of binary noise, and units.
+//! Arithmetic for numbers that are nudged or typed: steps of 1, 2 and 5 times a power of ten without binary noise, and
+//! units.
 
 use super::schema::Nudge;
 use crate::text::nice_numbers::{at_or_below, climbed};
 use crate::text::printable::brief;
 
-/// `value` nudged `times` times by the rule `nudge`, its size being `size`; `None` where the rule is not one for numbers.
+/// Nudges `value` by the rule `nudge`, `times` times. `size` is the size that the rule refers to. `None` if the rule is
+/// not for numbers.
 pub fn number(value: f64, size: f64, nudge: Nudge, times: i32) -> Option<f64> {
     match nudge {
         Nudge::By(step) => Some(added(value, step, times)),
@@ -14,14 +16,14 @@ pub fn number(value: f64, size: f64, nudge: Nudge, times: i32) -> Option<f64> {
     }
 }
 
-/// `value` nudged `times` times in whole numbers.
+/// Nudges the whole number `value`, `times` times.
 pub fn whole(value: i64, times: i32) -> i64 {
     let hundredth = hundredth(value.unsigned_abs() as f64);
     let step = hundredth.unwrap_or(1.0).max(1.0) as i64;
     value.saturating_add(step.saturating_mul(i64::from(times)))
 }
 
-/// `value` + `times` · `step`, with no more decimals than the two have: 0.1 + 0.2 is 0.3.
+/// Returns `value` + `times` · `step` with no more decimals than the two have: 0.1 + 0.2 is 0.3.
 fn added(value: f64, step: f64, times: i32) -> f64 {
     let sum = value + step * f64::from(times);
     let most = decimals(value).max(decimals(step));
@@ -29,14 +31,14 @@ fn added(value: f64, step: f64, times: i32) -> f64 {
     clean + 0.0 // no -0
 }
 
-/// Decimals of the shortest number that is read back as `value`.
+/// Returns the number of decimals in the shortest text that parses as `value`.
 fn decimals(value: f64) -> usize {
     let text = value.to_string();
     text.split_once('.').map_or(0, |(_, behind)| behind.len())
 }
 
-/// The element `times` places after the one that `is_now`; after the last comes the first. Where none is, the first follows and
-/// the last precedes it. `None` for an empty list.
+/// Returns the element `times` positions after the one for which `is_now` is true. The list is cyclic. If there is no
+/// such element, counting begins before the first, or after the last if `times` is negative. `None` for an empty list.
 pub fn cycled<T>(list: &[T], is_now: impl Fn(&T) -> bool, times: i32) -> Option<&T> {
     let count = i64::try_from(list.len()).ok().filter(|count| *count > 0)?;
     let now = match list.iter().position(is_now) {
@@ -47,13 +49,13 @@ pub fn cycled<T>(list: &[T], is_now: impl Fn(&T) -> bool, times: i32) -> Option<
     list.get((now + i64::from(times)).rem_euclid(count) as usize)
 }
 
-/// The largest rung not above a hundredth of `size`; `None` where that is nothing.
+/// Returns the largest rung that is not above a hundredth of `size`. `None` if that is 0.
 fn hundredth(size: f64) -> Option<f64> {
     let step = at_or_below(size / 100.0);
     (step > 0.0).then_some(step)
 }
 
-/// The number at the beginning of `text`, which may be followed by its unit `unit`.
+/// Parses the number at the beginning of `text`, which its unit `unit` may follow.
 pub fn typed(text: &str, unit: &str) -> Result<f64, String> {
     let text = text.trim();
     let wrong = || match text {
@@ -77,10 +79,10 @@ pub fn typed(text: &str, unit: &str) -> Result<f64, String> {
     }
 }
 
-/// Characters of a typed number that are looked at: its unit is not longer.
+/// Maximum length of a typed number, characters.
 const LONGEST_TYPED_NUMBER: usize = 400;
 
-/// A unit whichever way it is written.
+/// Normalizes the spelling of a unit.
 fn plain(unit: &str) -> String {
     unit.replace([' ', '^', '*', '·'], "")
         .replace('²', "2")

@@ -1,5 +1,5 @@
-//! The parts of a scenario, each from its table in the file: points that exist, an inertia that can be inverted, pushes
-//! that say how long they act.
+//! Checks the tables of a scenario one by one: points that exist, an inertia that can be inverted, pushes that have a
+//! duration.
 
 use super::file::{BodyFile, FrictionFile, MotionFile, PartFile, PushFile, StartFile};
 use super::keys::GRAVITY;
@@ -15,12 +15,12 @@ use std::collections::HashMap;
 use std::f64::consts::TAU;
 use toml::Value;
 
-/// The points that each part counts as, held against the most that there may be.
+/// Number of points that each part counts as, towards the maximum number of points.
 const OF_PART: usize = 6;
-/// The largest coefficient of friction, divided by the least moment of the body, whose effect is still finite.
+/// Maximum ratio of a friction coefficient to the smallest moment of the body. Up to it, the effect is finite.
 const MOST_RATE: f64 = 1e100;
-/// A direction, a place or a moment is on or about the axle to this part of its size, as for
-/// [`SymmetricTop`]: less is the rounding of a scenario's digits.
+/// Tolerance for a direction, position or moment to be on or about the axle, relative to its size, as in
+/// [`SymmetricTop`]. Smaller deviations come from rounded digits in a scenario.
 const AXLE_TOLERANCE: f64 = 1e-9;
 
 pub(super) fn read_body(file: &BodyFile) -> Result<NamedBody, Problems> {
@@ -73,7 +73,7 @@ fn check_point_count(file: &BodyFile) -> Result<(), Problem> {
     Err(Problem::at("body", rule))
 }
 
-/// The names of points and parts as they are found, each with the index of its point, and what is wrong with them.
+/// Names of points and parts, each with the index of its point, and the problems with them.
 #[derive(Default)]
 struct PointNames {
     names: HashMap<String, usize>,
@@ -81,7 +81,7 @@ struct PointNames {
 }
 
 impl PointNames {
-    /// Names the point `point`; the name stands in the table of this kind, `point` or `part`, with this index.
+    /// Names the point `point`. The name is in the table of this `kind`, `point` or `part`, with this `index`.
     fn add(&mut self, name: &str, point: usize, kind: &str, index: usize) {
         if self.names.insert(name.to_owned(), point).is_some() {
             self.problems.add(|| {
@@ -96,7 +96,7 @@ impl PointNames {
         }
     }
 
-    /// What is wrong with the part of this index, whose keys are those in its table.
+    /// Adds the problems of the part with this `index`. Their keys are relative to its table.
     fn refuse(&mut self, problems: Problems, index: usize) {
         let place = format!("body.part.{index}");
         self.problems.add_all(problems.inside(&place));
@@ -122,7 +122,7 @@ pub(super) fn read_motion(file: &MotionFile) -> Motion {
     let named = file.scheme.as_deref().and_then(SchemeInfo::find);
     Motion {
         gravity: file.gravity_m_per_s2.unwrap_or(GRAVITY),
-        scheme: named.unwrap_or(&physics::scheme::SCHEMES[0]), // an unknown name has been refused by the keys
+        scheme: named.unwrap_or(&physics::scheme::SCHEMES[0]), // keys::check has rejected unknown names
         time_step_s: file.time_step_s,
     }
 }
@@ -131,7 +131,7 @@ pub(super) fn read_pushes(files: &[PushFile], body: &NamedBody) -> Result<Pushes
     let mut found = Problems::default();
     let mut pushes = Vec::with_capacity(files.len());
     for (index, file) in files.iter().enumerate() {
-        // The nearest name is sought for the problems that are listed: there may be 100 000 points.
+        // Look for the nearest name only for listed problems: there may be 100 000 points.
         if found.is_full() && body.point(&file.point).is_none() {
             found.more += 1;
         } else {
@@ -215,7 +215,7 @@ pub(super) fn read_friction(
     Err(Problem::with_value(key, &Value::Float(*rate), rule))
 }
 
-/// Refuses a `scheme` that is not true to `friction`.
+/// Checks that `scheme` can model `friction`.
 pub(super) fn check_scheme(
     scheme: &'static SchemeInfo,
     friction: &Friction,
@@ -229,11 +229,12 @@ pub(super) fn check_scheme(
     Err(Problem::with_value("motion.scheme", &value, rule))
 }
 
-/// What turns: `body`, of which the part that `file` names as the rotor spins alone, in a frame that does not.
+/// Returns the body that spins. If `file` names a rotor, only that part of `body` spins, in a frame that does not.
 ///
-/// The axle moves by the moments across of all that tilts, by L along the axle, and by the torque. Where the frame is
-/// symmetric too and turns freely about the axle, the gyroscope therefore moves as a rigid body whose moment about the axle
-/// is the rotor's: that is the body which is computed, and its spin, its energy and the work of friction are the rotor's.
+/// The motion of the axle depends on the moments across of all that tilts, on L along the axle, and on the torque. If
+/// the frame is symmetric too, and turns freely about the axle, the gyroscope moves like a rigid body with the rotor's
+/// moment about the axle. The program computes this body. Its spin, its energy and the work of friction are those of
+/// the rotor.
 pub(super) fn spinning_body(
     file: &StartFile,
     body: &NamedBody,
@@ -251,7 +252,7 @@ pub(super) fn spinning_body(
 /// Returns the mechanics of `body` with the part called `name` as its rotor.
 ///
 /// # Errors
-/// Why that part is no rotor.
+/// Returns why that part cannot be a rotor.
 fn with_rotor(name: &str, body: &NamedBody, parts: &[PartFile]) -> Result<physics::Body, String> {
     let whole = &body.mechanics;
     let Some(index) = parts.iter().position(|part| part.name == *name) else {
@@ -268,7 +269,7 @@ fn with_rotor(name: &str, body: &NamedBody, parts: &[PartFile]) -> Result<physic
     turning.map_err(|error| error.to_string())
 }
 
-/// The moment about the axle of a `part` that can spin alone about it, kg m².
+/// Returns the moment of inertia about the axle of a `part` that can spin alone about it, kg m².
 fn moment_alone(part: &PlacedSolid) -> Result<f64, &'static str> {
     let moments = part.moments();
     let axis = part.directions.column(2);

@@ -1,12 +1,13 @@
-//! The shipped presets, compiled in.
+//! The presets that are compiled into the program. [`PRESETS`] lists them.
 
 /// A scenario that comes with the program.
 #[derive(Clone, Copy, Debug)]
 pub struct Preset {
-    /// Its name on the command line; `presets/NAME.toml` in the source.
+    /// Name on the command line. The file is `presets/NAME.toml` in the source.
     pub name: &'static str,
     pub text: &'static str,
-    /// What to try after its run, one line. It is no part of the file, which stands in the header of every CSV of its run.
+    /// Suggestion for the time after its run, one line. It is not in the file, because the file is in the header of
+    /// every CSV of the run.
     pub next: &'static str,
 }
 
@@ -20,7 +21,7 @@ macro_rules! presets {
     };
 }
 
-/// Every preset: the report's first, in the report's order, then the textbook's, then famous motions of solid bodies.
+/// All presets: first the report's, in the report's order, then the textbook's, then famous motions of solid bodies.
 pub const PRESETS: &[Preset] = presets![
     "method-1": "o opens method-1-steeper: L further from the axle, and a wider circle."
     "method-1-steeper": "t draws the exact motion: how far apart are the two at the end?"

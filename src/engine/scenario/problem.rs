@@ -1,23 +1,23 @@
-//! What is wrong with a scenario, in words that one who has never seen the code can act on.
+//! Error messages about a scenario, in words for users who have never seen the code.
 
 use crate::text::printable::{brief, printable};
 use std::fmt;
 
-/// One thing refused: where, which key, what it holds, and the rule it breaks.
+/// One error: the place, the key, its value, and the rule that it breaks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
-    /// Dotted key, numbers for places in arrays (`push.0.force_N`); empty where the whole file is meant.
+    /// Dotted key, with numbers for positions in arrays (`push.0.force_N`). Empty for an error of the whole file.
     pub key: String,
-    /// The value as the file writes it, shortened; empty where there is none.
+    /// Value as the file writes it, shortened. Empty if there is none.
     pub value: String,
-    /// The rule, and the remedy where there is one ("must be greater than zero").
+    /// The rule, with the remedy if there is one ("must be greater than zero").
     pub rule: String,
-    /// Where it stands, once known: `line 12` or `--set KEY=VALUE`.
+    /// Place in the input, once known: `line 12` or `--set KEY=VALUE`.
     pub place: Option<String>,
 }
 
 impl Problem {
-    /// A problem with the value found at `key`.
+    /// Creates a problem with the value at `key`.
     pub fn with_value(
         key: impl Into<String>,
         value: &toml::Value,
@@ -29,7 +29,7 @@ impl Problem {
         }
     }
 
-    /// A problem with `key` that no single value tells.
+    /// Creates a problem with `key` that is not caused by a single value.
     pub fn at(key: impl Into<String>, rule: impl Into<String>) -> Self {
         Self {
             key: key.into(),
@@ -39,14 +39,14 @@ impl Problem {
         }
     }
 
-    /// The same problem, with its key below the key `outer`.
+    /// Returns the same problem with its key below the key `outer`.
     #[must_use]
     pub fn inside(self, outer: &str) -> Self {
         let key = join(outer, &self.key).trim_end_matches('.').to_owned();
         Self { key, ..self }
     }
 
-    /// The problem in words, without its place.
+    /// Returns the problem in words, without its place.
     fn bare(&self) -> String {
         let (key, value, rule) = (brief(&self.key, 80), &self.value, &self.rule);
         match (self.key.is_empty(), value.is_empty()) {
@@ -66,31 +66,31 @@ impl fmt::Display for Problem {
     }
 }
 
-/// A problem in `line`.
+/// Sets the place of `problem` to `line`.
 pub fn at_line(line: u64, mut problem: Problem) -> Problem {
     problem.place = Some(format!("line {line}"));
     problem
 }
 
-/// The most problems of one file that are told one by one: more of them help nobody.
+/// Maximum number of listed problems of one file. More would not help anybody.
 const MOST_PROBLEMS: usize = 100;
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Problems {
-    /// The file; empty while they are found.
+    /// Name of the file. Empty while the problems are being collected.
     pub origin: String,
-    /// The first hundred; at the end in the order of the file.
+    /// The first hundred problems, finally sorted in the order of the file.
     pub list: Vec<Problem>,
     pub more: usize,
 }
 
 impl Problems {
-    /// The one `problem` of the file `origin`.
+    /// Creates the list with the single `problem` of the file `origin`.
     pub fn one(origin: impl Into<String>, problem: Problem) -> Self {
         Self::from(problem).in_file(origin)
     }
 
-    /// The same, as those of the file `origin`.
+    /// Returns the same problems with `origin` as their file.
     pub fn in_file(self, origin: impl Into<String>) -> Self {
         Self {
             origin: origin.into(),
@@ -98,7 +98,7 @@ impl Problems {
         }
     }
 
-    /// Adds a problem; beyond the first hundred they are only counted.
+    /// Adds a problem. Beyond the first hundred, problems are only counted.
     pub fn add(&mut self, problem: impl FnOnce() -> Problem) {
         if self.is_full() {
             self.more += 1;
@@ -107,7 +107,7 @@ impl Problems {
         }
     }
 
-    /// Whether further problems are only counted.
+    /// Returns true if further problems are only counted.
     pub fn is_full(&self) -> bool {
         self.list.len() >= MOST_PROBLEMS
     }
@@ -118,12 +118,12 @@ impl Problems {
         self.more += more;
     }
 
-    /// What was `made`; where it was not, its problems are added.
+    /// Returns the value in `made`. If it is an error, adds its problems and returns `None`.
     pub fn kept<T>(&mut self, made: Result<T, impl Into<Self>>) -> Option<T> {
         made.map_err(|problems| self.add_all(problems)).ok()
     }
 
-    /// `made` where there are no problems.
+    /// Returns `Ok(made)` if there are no problems.
     pub fn or<T>(self, made: T) -> Result<T, Self> {
         if self.list.is_empty() {
             Ok(made)
@@ -132,7 +132,7 @@ impl Problems {
         }
     }
 
-    /// The same problems, with their keys below the key `outer`.
+    /// Returns the same problems with their keys below the key `outer`.
     #[must_use]
     pub fn inside(self, outer: &str) -> Self {
         let list = self.list.into_iter();
@@ -147,7 +147,8 @@ impl Problems {
         place.starts_with("--") && self.origin.starts_with(PRESETS_FOLDER)
     }
 
-    /// The first of them in one line, without file, line or `--set`: `motion.time_step_s (-0.1) must be greater than zero`.
+    /// Returns the first problem in one line, without file, line or `--set`: `motion.time_step_s (-0.1) must be greater
+    /// than zero`.
     pub fn in_one_line(&self) -> String {
         let first = self.list.first().map(Problem::bare);
         first.unwrap_or_default().replace('\n', " ")
@@ -187,24 +188,24 @@ impl From<Vec<Problem>> for Problems {
     }
 }
 
-/// The folder that the presets have in the source, and so the beginning of their origin.
+/// Folder of the presets in the source, with which their origin begins.
 pub(super) const PRESETS_FOLDER: &str = "presets/";
 
-/// How many problems are printed before the rest is only counted.
+/// Number of problems that are printed. The rest is only counted.
 const SHOWN: usize = 12;
 
 impl fmt::Display for Problems {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (index, problem) in self.list.iter().take(SHOWN).enumerate() {
             let newline = if index == 0 { "" } else { "\n" };
-            // A line's number belongs to the file's name (`file.toml:12: ...`), as editors and compilers write it.
+            // The line number follows the file's name (`file.toml:12: ...`), as editors and compilers write it.
             let place = problem.place.as_deref();
             match place.and_then(|place| place.strip_prefix("line ")) {
                 Some(line) => {
                     let bare = problem.bare();
                     write!(f, "{newline}{}:{line}: {bare}", printable(&self.origin))?;
                 }
-                // What is wrong with an option is none of a preset's file, which the user has not named.
+                // An error in an option does not belong to the preset's file, which the user has not named.
                 None if self.origin.is_empty() || self.is_about_option(problem) => {
                     write!(f, "{newline}{problem}")?;
                 }
@@ -220,7 +221,7 @@ impl fmt::Display for Problems {
 
 impl std::error::Error for Problems {}
 
-/// A value on one line, at most 40 characters of it.
+/// Returns a value on one line, at most 40 characters of it.
 fn shown(value: &toml::Value) -> String {
     match value {
         toml::Value::Table(_) => "a table".to_owned(),
@@ -231,7 +232,7 @@ fn shown(value: &toml::Value) -> String {
     }
 }
 
-/// The names one after the other, the first dozen of them.
+/// Lists the names, at most the first twelve.
 pub fn listed<'a>(names: impl Iterator<Item = &'a str> + Clone) -> String {
     const MOST_SUGGESTED_NAMES: usize = 12;
     let first = names.clone().take(MOST_SUGGESTED_NAMES);
@@ -246,12 +247,12 @@ pub fn listed<'a>(names: impl Iterator<Item = &'a str> + Clone) -> String {
     list.join(", ")
 }
 
-/// The longest name that is compared: nothing longer is a slip of the pen.
+/// Maximum length of a name that is compared. Nothing longer is a typing mistake.
 const LONGEST_COMPARED_NAME: usize = 80;
-/// The most names that are compared: the body may have 100 000 points.
+/// Maximum number of names that are compared. The body may have 100 000 points.
 const MOST_COMPARED: usize = 2000;
 
-/// "did you mean ...?" for a name that is not in `known`, or the list of them where none is near.
+/// Returns "did you mean ...?" for a name that is not in `known`, or the list of known names if none is near.
 pub fn nearest<'a>(wrong: &str, known: impl Iterator<Item = &'a str> + Clone) -> String {
     if wrong.len() > LONGEST_COMPARED_NAME {
         return format!("there is {}", listed(known));
@@ -260,7 +261,7 @@ pub fn nearest<'a>(wrong: &str, known: impl Iterator<Item = &'a str> + Clone) ->
     if let Some(name) = closest(wrong, &bare, known.clone().take(MOST_COMPARED)) {
         return format!("did you mean {}?", brief(name, LONGEST_COMPARED_NAME));
     }
-    // Of "precession" all that have to do with it.
+    // For "precession", list all names that contain it.
     let having_it = known
         .clone()
         .filter(|name| bare.len() > 2 && letters(name).contains(&bare));
@@ -270,7 +271,7 @@ pub fn nearest<'a>(wrong: &str, known: impl Iterator<Item = &'a str> + Clone) ->
     }
 }
 
-/// The name among `known` that is so near to `name` that it was probably meant.
+/// Returns the name among `known` that was probably meant by `name`.
 pub fn near<'a>(name: &str, known: impl Iterator<Item = &'a str> + Clone) -> Option<&'a str> {
     let is_short = name.len() <= LONGEST_COMPARED_NAME;
     is_short
@@ -278,14 +279,14 @@ pub fn near<'a>(name: &str, known: impl Iterator<Item = &'a str> + Clone) -> Opt
         .flatten()
 }
 
-/// The name of `known` that is so near to `wrong`, whose letters are `bare`, that it was meant.
+/// Returns the name in `known` that was probably meant by `wrong`. `bare` are the letters and digits of `wrong`.
 fn closest<'a>(
     wrong: &str,
     bare: &str,
     known: impl Iterator<Item = &'a str> + Clone,
 ) -> Option<&'a str> {
-    // A name that lacks its unit ("radius" for "radius_m", "L_z" for "Lz_Js") is near however long the unit; nearer is one
-    // that differs in no letter and no digit ("method2" for "method-2", and not for "method-2-slow").
+    // A name without its unit ("radius" for "radius_m", "L_z" for "Lz_Js") is near, however long the unit. A name with
+    // the same letters and digits is nearer ("method2" for "method-2", and not for "method-2-slow").
     if !bare.is_empty() {
         let found = known
             .clone()
@@ -299,7 +300,7 @@ fn closest<'a>(
     let length = lower.chars().count();
     let distances = known.filter_map(|name| {
         let furthest = 2.max(name.len() / 3);
-        // A name that differs in length by more than this differs in as many letters.
+        // If two names differ in length by more than this, they differ in at least this many letters.
         let may_be_near = name.len() <= LONGEST_COMPARED_NAME
             && name.chars().count().abs_diff(length) <= furthest;
         may_be_near.then(|| {
@@ -311,7 +312,7 @@ fn closest<'a>(
     (distance <= furthest).then_some(name)
 }
 
-/// The letters and digits of `name`, in lower case.
+/// Returns the letters and digits of `name`, in lower case.
 fn letters(name: &str) -> String {
     let all = name.chars().filter(|c| c.is_alphanumeric());
     all.flat_map(char::to_lowercase).collect()
@@ -345,7 +346,7 @@ mod tests {
             (3..8, "l_z_js", "did you mean Lz_Js?"),
             (3..8, "Laxle", "did you mean L_axle_Js?"),
             (3..8, "tilt", "there is predicted_lowest_tilt_deg"),
-            // A name that differs in no letter is nearer than one that only begins so.
+            // A name with the same letters is nearer than one that only begins with them.
             (8..11, "method2", "did you mean method-2?"),
             (8..11, "Method_2", "did you mean method-2?"),
             (8..11, "method 2", "did you mean method-2?"),

@@ -1,11 +1,11 @@
-//! The same scenario at another time step, as a file: what was counted in steps is given in seconds.
+//! Changes the time step of a scenario file. Step counts become seconds.
 
 use super::file::{PushFile, ScenarioFile};
 use super::problem::Problem;
 use super::{Edit, Scenario};
 use crate::text::number::decimal;
 
-/// `file` at the time step `time_step_s` (s): as long in seconds, and its pushes at the same times.
+/// Returns `file` with the time step `time_step_s` (s). Its duration and the times of its pushes stay the same.
 pub fn at_time_step(file: &ScenarioFile, time_step_s: f64) -> Result<ScenarioFile, Problem> {
     let written_for_s = file.motion.time_step_s;
     if !file.edit.is_empty() {
@@ -35,19 +35,19 @@ pub fn at_time_step(file: &ScenarioFile, time_step_s: f64) -> Result<ScenarioFil
     Ok(other)
 }
 
-/// Whether seconds can replace every number of steps in `file`.
+/// Returns true if seconds can replace every number of steps in `file`.
 pub fn can_be_rescaled(file: &ScenarioFile) -> bool {
     file.edit.is_empty() && !file.push.iter().any(|push| push.accumulates == Some(true))
 }
 
-/// Whether a push of `scenario` accumulates step by step: at another time step it is another force.
+/// Returns true if a push of `scenario` accumulates per step. At another time step, its force would be different.
 pub fn accumulates(scenario: &Scenario) -> bool {
     let edited = scenario.edits.iter().flat_map(Edit::pushes_set);
     let mut pushes = scenario.pushes.iter().chain(edited);
     pushes.any(|push| push.accumulates)
 }
 
-/// The most steps a run may be given by a length in seconds: whole numbers are exact up to here.
+/// Maximum number of steps in a run whose length is given in seconds. Whole numbers are exact up to here.
 pub const MOST_RUN_STEPS_BY_TIME: f64 = 9e15;
 
 fn hold_seconds(push: &mut PushFile, written_for_s: f64) -> Result<(), &'static str> {

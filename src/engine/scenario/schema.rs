@@ -1,8 +1,8 @@
-//! The schema of a table of TOML: a row for each key, and the check of a table against its rows.
+//! Schema of a TOML table: a row for each key, and the check of a table against its rows.
 //!
-//! Scenario files, commands, sweeps, lesson blocks and settings have their own rows, and this one check: an unknown name
-//! or a wrong value is refused in the same words everywhere. Rules that need more than one value are checked where the
-//! values are used.
+//! Scenario files, commands, sweeps, lesson blocks and settings each have their own rows, but share this check. The
+//! same mistake therefore gets the same message everywhere. Rules for several values are checked where the values are
+//! used.
 
 use super::dotted::{is_in, join};
 use super::kind::ValueKind;
@@ -10,52 +10,52 @@ use super::problem::{Problem, Problems, nearest};
 use std::fmt;
 use toml::{Table, Value};
 
-/// One key that a table may hold.
+/// A key of a table.
 #[derive(Debug, PartialEq)]
 pub struct SchemaRow {
-    /// Dotted path; `*` stands for any place in an array.
+    /// Dotted path, with `*` for any position in an array.
     pub path: &'static str,
     pub kind: ValueKind,
-    /// The unit as the lab shows it; empty for a value without one.
+    /// Unit as the lab shows it; empty for a value without one.
     pub unit: &'static str,
-    /// The value if the key is absent, where that is always the same.
+    /// Value of an absent key, if it is always the same.
     pub default: Option<DefaultValue>,
-    /// Whether its table is incomplete without it.
+    /// True if the table must have this key.
     pub required: bool,
-    /// Names in its table any of which stands for it: with one of them it is not required.
+    /// Names of keys in the same table that can replace this one. With any of them, it is not required.
     pub instead: &'static [&'static str],
     /// Meaning and unit, in one line.
     pub about: &'static str,
-    /// How the lab shows and changes it; `None` where it does not.
+    /// Row in the lab's list of values, if any.
     pub lab: Option<LabValue>,
 }
 
-/// How the lab shows and changes a value.
+/// Label and nudge of a value in the lab.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LabValue {
-    /// Short name; of a vector the stem to which x, y or z is added.
+    /// Short name. For a vector, the stem to which x, y or z is added.
     pub label: &'static str,
     pub nudge: Nudge,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Nudge {
-    /// Adds so much.
+    /// Adds this amount.
     By(f64),
-    /// Adds the largest of 1, 2 and 5 times a power of ten that is not above a hundredth of the size (of a vector: of
-    /// its norm), or so much where the size is 0.
+    /// Adds the largest of 1, 2 and 5 times a power of ten that is not above a hundredth of the size (for a vector: of
+    /// its norm). If the size is 0, it adds the given amount.
     Hundredth(f64),
-    /// The same in whole numbers, 1 at the least.
+    /// The same in whole numbers, at least 1.
     WholeHundredth,
-    /// To the next of ..., 1, 2, 5, 10, 20, ...
+    /// Goes to the next of ..., 1, 2, 5, 10, 20, ...
     Ladder,
-    /// To the next choice, after the last one the first again.
+    /// Goes to the next choice, and from the last to the first.
     Turn,
-    /// Nothing: it is typed.
+    /// Does nothing: the value must be typed.
     Typed,
 }
 
-/// The value of an absent key.
+/// Value of an absent key.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DefaultValue {
     Number(f64),
@@ -86,7 +86,7 @@ impl fmt::Display for DefaultValue {
     }
 }
 
-/// A key that its table must hold.
+/// Returns the row of a key that its table must have.
 pub const fn must(path: &'static str, kind: ValueKind, about: &'static str) -> SchemaRow {
     SchemaRow {
         required: true,
@@ -94,7 +94,7 @@ pub const fn must(path: &'static str, kind: ValueKind, about: &'static str) -> S
     }
 }
 
-/// A key that its table may lack.
+/// Returns the row of a key that its table may have.
 pub const fn may(path: &'static str, kind: ValueKind, about: &'static str) -> SchemaRow {
     SchemaRow {
         path,
@@ -120,7 +120,7 @@ impl SchemaRow {
         self
     }
 
-    /// Not required if the table has one of `names`.
+    /// Makes the key optional if the table has one of `names`.
     pub(super) const fn unless(mut self, names: &'static [&'static str]) -> Self {
         self.instead = names;
         self
@@ -131,7 +131,7 @@ impl SchemaRow {
         self
     }
 
-    /// Meaning, unit and default, in one line.
+    /// Returns meaning, unit and default, in one line.
     pub fn description(&self) -> String {
         match self.default {
             Some(default) => format!("{} (default: {default})", self.about),
@@ -140,7 +140,7 @@ impl SchemaRow {
     }
 }
 
-/// The rows of a table and of the tables in it, in groups, in the order in which files are written.
+/// Rows of a table and of the tables in it, in groups, in the order in which files are written.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Schema(pub &'static [&'static [SchemaRow]]);
 
@@ -149,19 +149,19 @@ impl Schema {
         self.0.iter().copied().flatten()
     }
 
-    /// Returns the row of this path.
+    /// Returns the row with this path.
     pub fn row(self, path: &str) -> Option<&'static SchemaRow> {
         self.rows().find(|row| row.path == path)
     }
 
-    /// Checks the whole `table`: unknown names, wrong types, numbers out of range, missing keys.
+    /// Checks the whole `table` for unknown names, wrong types, numbers out of range, and missing keys.
     pub fn check(self, table: &Table) -> Problems {
         let mut problems = Problems::default();
         self.check_table(table, "", "", &mut problems);
         problems
     }
 
-    /// Checks `value`, which the file has at `path`, as the key or the table `under` of this schema.
+    /// Checks `value`, which is at `path` in the file, as the key or table `under` of this schema.
     pub fn check_part(self, value: &Value, under: &str, path: &str) -> Problems {
         let mut problems = Problems::default();
         let place = pattern(under);
@@ -178,7 +178,7 @@ impl Schema {
         problems
     }
 
-    /// Checks `table`, whose keys begin with the pattern `under`, and which the file has at `path`.
+    /// Checks `table`, which is at `path` in the file. The patterns of its keys begin with `under`.
     fn check_table(self, table: &Table, under: &str, path: &str, problems: &mut Problems) {
         let names = self.names(under);
         for (name, value) in table {
@@ -197,9 +197,9 @@ impl Schema {
         }
     }
 
-    /// The problem that the table at `path`, whose keys are `names`, has no key `name`.
+    /// Returns the problem that the table at `path`, with the keys `names`, has no key `name`.
     fn unknown(self, name: &str, names: &[&'static str], path: &str) -> Problem {
-        // It may belong into another table.
+        // The key may belong to another table.
         let home = self.only(|last| last == name).filter(|home| *home != name);
         let near = match home {
             Some(home) => format!("did you mean {home}?"),
@@ -241,14 +241,14 @@ impl Schema {
         }
     }
 
-    /// Whether the dotted `key` leads to a table of keys, or to an element of an array of tables.
+    /// Returns true if the dotted `key` leads to a table of keys, or to an element of an array of tables.
     pub fn is_table(self, key: &str) -> bool {
         let table = pattern(key);
         self.rows()
             .any(|row| row.path != table && is_in(row.path, &table))
     }
 
-    /// Returns the names that a table of the pattern `under` may hold, each once.
+    /// Returns the names of the keys that a table with the pattern `under` may have, each once.
     pub fn names(self, under: &str) -> Vec<&'static str> {
         let mut names: Vec<_> = self
             .below(under)
@@ -259,7 +259,7 @@ impl Schema {
         names
     }
 
-    /// The rows below the pattern `under`, and the rest of their paths.
+    /// Returns the rows below the pattern `under`, with the rest of their paths.
     fn below(self, under: &str) -> impl Iterator<Item = (&'static str, &'static SchemaRow)> {
         let begin = match under {
             "" => String::new(),
@@ -269,7 +269,7 @@ impl Schema {
             .filter_map(move |row| Some((row.path.strip_prefix(&begin)?, row)))
     }
 
-    /// Returns the one path outside of arrays whose last name fulfils `is_it`.
+    /// Returns the path outside of arrays for whose last name `is_it` is true, if it is the only one.
     pub(super) fn only(self, is_it: impl Fn(&str) -> bool) -> Option<&'static str> {
         let mut found = self
             .rows()
@@ -282,7 +282,7 @@ impl Schema {
 
 pub const UNKNOWN_KEY: &str = "unknown key";
 
-/// The dotted `key` with `*` in the place of each number.
+/// Returns the dotted `key` with each number replaced by `*`.
 pub(super) fn pattern(key: &str) -> String {
     let names = key.split('.').map(|name| {
         let is_number = !name.is_empty() && name.bytes().all(|byte| byte.is_ascii_digit());
@@ -291,7 +291,7 @@ pub(super) fn pattern(key: &str) -> String {
     names.collect::<Vec<_>>().join(".")
 }
 
-/// `key` as a TOML table has it as one key: in quotes where it has dots.
+/// Returns `key` as a single key of a TOML table: in quotes if it contains dots.
 pub fn quoted(key: &str) -> String {
     if key.contains('.') {
         format!("\"{key}\"")

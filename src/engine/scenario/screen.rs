@@ -1,27 +1,28 @@
-//! The names of what the lab's screen shows, as `[view]` of a scenario and commands have them.
+//! Names of the parts of the lab's screen, as used in `[view]` of a scenario and in commands.
 
 use crate::physics::workings::PhaseName;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// The pane of the traces over time, and the figure of the same name.
+/// Id of the pane with the traces over time, and of its figure.
 pub const TRACES: &str = "traces";
-/// The pane of the path from above, and its figure.
+/// Id of the pane with the path from above, and of its figure.
 pub const ABOVE: &str = "above";
-/// The pane of the scene in space, and its figure.
+/// Id of the pane with the scene in space, and of its figure.
 pub const THREE_D: &str = "3d";
 
-/// Makes the enum of the panes, the list of all, and their ids from one table.
+/// Makes the enum of panes, the list of all panes, and their ids from one table.
 macro_rules! panes {
     ($($(#[$about:meta])* $name:ident = $id:expr,)*) => {
-        /// A pane of the screen. Its id is the word for it in commands, in `[view]` and in sessions. `tui` has a row for each.
+        /// A pane of the screen. Its id names it in commands, in `[view]` and in sessions. `tui` has a row for each
+        /// pane.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum Pane {
             $($(#[$about])* $name,)*
         }
 
         impl Pane {
-            /// Every pane, from left to right on the screen; the focus goes through them in this order.
+            /// All panes, from left to right on the screen. The focus moves in this order.
             pub const ALL: [Self; [$($id),*].len()] = [$(Self::$name),*];
 
             pub const fn id(self) -> &'static str {
@@ -34,7 +35,7 @@ macro_rules! panes {
 }
 
 panes! {
-    /// The page of a lesson. It is shown as long as there is one.
+    /// The page of a lesson, shown while a lesson is open.
     Lesson = "lesson",
     /// x, y, z and tilt over time.
     Traces = TRACES,
@@ -49,12 +50,12 @@ panes! {
 }
 
 impl Pane {
-    /// Whether it is shown only where it is asked for; the others are shown where there is room.
+    /// Returns true if the pane is shown only on request. The others are shown if there is room.
     pub const fn is_on_request(self) -> bool {
         matches!(self, Self::Step)
     }
 
-    /// Returns the pane of that name in files and commands.
+    /// Returns the pane with this id in files and commands.
     pub fn named(id: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|pane| pane.id() == id)
     }
@@ -73,12 +74,12 @@ impl<'de> Deserialize<'de> for Pane {
     }
 }
 
-/// What of the screen can be hidden besides panes: the line about the numbers' health, the numbers that theory predicts,
-/// the line that says what there is to see, the arrows of the 3-D view.
+/// Parts of the screen that can be hidden in addition to panes: the line about reliability, the predicted numbers, the
+/// line `look_at`, and the arrows of the 3-D view.
 pub const HIDEABLE: [&str; 4] = ["health", "predicted", "look_at", "arrows"];
 
-/// What the fourth strip of the traces can show: distance is how far the run is from the exact motion; auto is that, or the
-/// tilt, if the screen is large; the others after it are columns of the run's CSV.
+/// Choices for the fourth strip of the traces. `distance` is the distance from the exact motion. `auto` is the
+/// distance, or the tilt, if the screen is large. The names with a unit are columns of the run's CSV.
 #[rustfmt::skip]
 pub const DETAILS: [&str; 21] = [
     AUTO, "none", "x", "y", "z", "tilt", "distance",
@@ -87,13 +88,13 @@ pub const DETAILS: [&str; 21] = [
 ];
 pub const AUTO: &str = "auto";
 
-/// The page of the step pane after those of the phases.
+/// Page of the step pane after the phases.
 pub const WHY: &str = "why";
-/// The last phase of a step, whatever it is called.
+/// The last phase of a step, whatever its name.
 pub const LAST_PHASE: &str = "last";
 pub const ALL_ROWS: &str = "all";
 
-/// What the step pane can show besides a phase by its number.
+/// Choices for the step pane in addition to the number of a phase.
 pub const PHASES: [&str; PhaseName::ALL.len() + 2] = {
     let mut all = [LAST_PHASE; PhaseName::ALL.len() + 2];
     let mut at = 0;

@@ -1,4 +1,5 @@
-//! The solid parts of a body: from `[[body.part]]` to [`PlacedSolid`], with the dimensions that each shape has.
+//! Solid parts of a body: makes a [`PlacedSolid`] of each `[[body.part]]`, with the dimensions of its shape. A new
+//! shape is a row of `FORMS`.
 
 use super::kind::vector;
 use super::problem::{Problem, Problems};
@@ -29,19 +30,19 @@ pub struct PartFile {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum About {
-    /// Its center of mass.
+    /// The part's center of mass.
     Center,
-    /// The pivot: about the axes through it that are parallel to the part's own.
+    /// The pivot. The axes through it are parallel to the part's own.
     Pivot,
 }
 
-/// A shape as a file names it, and its dimensions.
+/// A shape with its name in files, and its dimensions.
 pub(super) struct SolidShape {
     name: &'static str,
-    /// The dimensions without which there is no such solid.
+    /// Required dimensions.
     needs: &'static [&'static str],
     may_have: &'static [&'static str],
-    /// The shape of a part that has the dimensions.
+    /// Makes the shape of a part that has the dimensions.
     make: fn(&PartFile) -> Shape,
 }
 
@@ -74,7 +75,7 @@ pub(super) static FORMS: [SolidShape; 9] = [
     form("moments", &["moments_kg_m2"], &["about"], |file| Shape::Moments(Vector3::from(file.moments_kg_m2.unwrap_or_default()) / file.mass_kg)),
 ];
 
-/// The dimensions of any shape, in the order of the table of keys, and the point that moments are about.
+/// Dimensions of all shapes, in the order of the table of keys, and the reference point of moments.
 const DIMENSIONS: [&str; 7] = [
     "radius_m",
     "inner_radius_m",
@@ -100,10 +101,9 @@ pub fn has_dimension(shape: &str, name: &str) -> bool {
     form.is_some_and(|form| form.needs.contains(&name) || form.may_have.contains(&name))
 }
 
-/// The part that `file` describes.
-/// In a refusal the keys are those in the part's table.
+/// Reads the part that `file` describes. In error messages, the keys are relative to the part's table.
 pub(super) fn read_part(file: &PartFile) -> Result<PlacedSolid, Problems> {
-    // An unknown shape has been refused by the keys.
+    // keys::check has rejected unknown shapes.
     let known = FORMS.iter().find(|form| form.name == file.shape);
     let form = known.unwrap_or(&FORMS[0]);
     Problems::from(wrong_dimensions(form, file)).or(())?;
@@ -136,8 +136,8 @@ pub(super) fn read_part(file: &PartFile) -> Result<PlacedSolid, Problems> {
     })?)
 }
 
-/// Names a mass and a center that the part of `file` may have instead: a heavier one, nearer to the pivot by the factor
-/// `nearer` or less.
+/// Suggests a mass and a center of mass that the part of `file` may have instead. The mass is larger, and nearer to the
+/// pivot by at least the factor `nearer`.
 fn moves_alike(file: &PartFile, nearer: f64) -> String {
     let factor = at_or_below(nearer);
     let mass = file.mass_kg / factor;
@@ -151,7 +151,7 @@ fn moves_alike(file: &PartFile, nearer: f64) -> String {
     )
 }
 
-/// The dimensions that are missing, and those that a solid of this form has not.
+/// Returns problems for the dimensions that are missing, and for those that a solid of this shape does not have.
 fn wrong_dimensions(form: &SolidShape, file: &PartFile) -> Vec<Problem> {
     let written = Table::try_from(file).unwrap_or_default();
     let all = [form.needs, form.may_have].concat().join(", ");
@@ -173,7 +173,7 @@ fn wrong_dimensions(form: &SolidShape, file: &PartFile) -> Vec<Problem> {
     problems
 }
 
-/// Refuses dimensions that no solid of this form has.
+/// Checks that a solid of this shape can have the dimensions.
 fn check_dimensions(form: &SolidShape, file: &PartFile) -> Result<(), Problem> {
     let refused =
         |name: &str, value: Value, rule: &str| Err(Problem::with_value(name, &value, rule));
@@ -203,8 +203,8 @@ fn check_dimensions(form: &SolidShape, file: &PartFile) -> Result<(), Problem> {
     Ok(())
 }
 
-/// Prepares the file's `table` for a new `value` at `key`. Where a part is to have another shape, or a direction that its file
-/// does not give, its table gets the dimensions that the value asks for, as near to the old ones as there are.
+/// Prepares the file's `table` for a new `value` at `key`. If a part gets another shape, or a part of a direction that
+/// its file does not give, the required keys are added. They stay as near to the old values as possible.
 pub(super) fn prepare(table: &mut Table, key: &str, value: &Value) {
     let mut names = key.split('.');
     let (Some("body"), Some("part")) = (names.next(), names.next()) else {
@@ -234,8 +234,8 @@ pub(super) fn prepare(table: &mut Table, key: &str, value: &Value) {
     }
 }
 
-/// The dimensions that a part of the shape `shape` has in the place of `old`; none where there is no such shape, or no such
-/// part.
+/// Returns the dimensions of a part of shape `shape` that resembles `old`. The result is empty if the shape is unknown
+/// or the part invalid.
 fn dimensions(old: &PartFile, shape: &str) -> Table {
     let Ok(part) = read_part(old) else {
         return Table::new();
@@ -246,7 +246,7 @@ fn dimensions(old: &PartFile, shape: &str) -> Table {
         Shape::Tube { inner, .. } => inner,
         _ => 0.5 * radius,
     };
-    // A rod or a cone without length is nothing.
+    // A rod or a cone must have a length.
     let length = match (length > 0.0, shape) {
         (false, "rod" | "cone") => 2.0 * radius,
         _ => length,
@@ -259,7 +259,7 @@ fn dimensions(old: &PartFile, shape: &str) -> Table {
         vector(&size),
         vector(&part.moments()),
     ];
-    // Moments are then about the center, which needs no saying.
+    // The moments are then about the center, which is the default.
     DIMENSIONS
         .into_iter()
         .zip(values)
@@ -268,7 +268,7 @@ fn dimensions(old: &PartFile, shape: &str) -> Table {
         .collect()
 }
 
-/// How long a solid is along its x, its y and its axis, m.
+/// Returns the size of a solid along its x, its y and its axis, m.
 fn size_of(shape: &Shape) -> Vector3<f64> {
     match *shape {
         Shape::Ring { radius } => round(radius, 0.0),
@@ -287,7 +287,7 @@ fn round(radius: f64, length: f64) -> Vector3<f64> {
     Vector3::new(2.0 * radius, 2.0 * radius, length)
 }
 
-/// The sides of the block that has these moments divided by the mass, m.
+/// Returns the sides of the block with these moments per mass, m.
 fn block_of(moments: &Vector3<f64>) -> Vector3<f64> {
     let [a, b, c] = (*moments).into();
     Vector3::new(b + c - a, a + c - b, a + b - c).map(|twice| (6.0 * twice.max(0.0)).sqrt())

@@ -1,5 +1,5 @@
-//! The start: orientation, and momentum. A file gives the momentum itself, the spin about the axle, the angular velocity,
-//! or the Euler rates.
+//! Orientation and momentum at the start. A file gives the momentum itself, the spin about the axle, the angular
+//! velocity, or Euler rates.
 
 use super::dotted::find;
 use super::file::{StartFile, VectorFrame};
@@ -15,13 +15,13 @@ use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::TAU;
 use toml::{Table, Value};
 
-/// An Euler rate below this share of the angular velocity is rounding.
+/// Fraction of the angular velocity below which an Euler rate is rounding.
 const RATE_ROUNDING: f64 = 1e-15;
 
-/// rad/s of one revolution a minute.
+/// One revolution per minute in rad/s.
 const RPM: f64 = TAU / 60.0;
 
-/// The state at t = 0 under the gravity `gravity`, m/s²; pushes do not count.
+/// Returns the state at t = 0. `gravity`, m/s², matters for a steady precession; pushes do not.
 pub(super) fn start_state(
     file: &StartFile,
     body: &physics::Body,
@@ -53,7 +53,7 @@ pub(super) fn start_state(
     })
 }
 
-/// The world's components of `vector`, which is given in `frame`.
+/// Returns the world components of `vector`, which is given in `frame`.
 fn in_world(
     vector: [f64; 3],
     frame: Option<VectorFrame>,
@@ -65,12 +65,12 @@ fn in_world(
     }
 }
 
-/// The same in revolutions a minute.
+/// Converts rad/s to revolutions per minute.
 pub fn rpm(rad_per_s: f64) -> f64 {
     rad_per_s / RPM
 }
 
-/// Rz(turn) Rx(tilt) Rz(roll); an angle of 0 leaves every bit of the others alone.
+/// Returns Rz(turn) Rx(tilt) Rz(roll). An angle of 0 leaves every bit of the others unchanged.
 fn written_orientation(file: &StartFile) -> Matrix3<f64> {
     let [tilt, turn, roll] = [file.tilt_deg, file.turn_deg, file.roll_deg]
         .map(|degrees| degrees.unwrap_or(0.0).to_radians());
@@ -84,11 +84,11 @@ fn written_orientation(file: &StartFile) -> Matrix3<f64> {
     orientation
 }
 
-/// Returns the angular velocity, body frame, rad/s, of the Euler rates in `file`, of which the missing ones are 0: the rates of
-/// the turn φ, the tilt θ and the roll ψ of `orientation` = Rz(φ) Rx(θ) Rz(ψ).
+/// Returns the angular velocity, body frame, rad/s, from the Euler rates in `file`. Missing rates are 0. They are the
+/// rates of the turn φ, the tilt θ and the roll ψ of `orientation` = Rz(φ) Rx(θ) Rz(ψ).
 ///
-/// It is φ' z + θ' n + ψ' e3, n the line of nodes (H. Goldstein, Classical Mechanics, section 4.9). Of a vertical axle too: then
-/// φ' and ψ' are about the same axis.
+/// The angular velocity is φ' z + θ' n + ψ' e3, where n is the line of nodes (H. Goldstein, Classical Mechanics,
+/// section 4.9). This also holds for a vertical axle, where φ' and ψ' are about the same axis.
 fn of_euler_rates(file: &StartFile, orientation: &Matrix3<f64>) -> Vector3<f64> {
     let vertical = orientation.row(2).transpose();
     let (nodes, _) = nodes(file);
@@ -97,15 +97,15 @@ fn of_euler_rates(file: &StartFile, orientation: &Matrix3<f64>) -> Vector3<f64> 
         + file.psi_dot_rad_per_s.unwrap_or(0.0) * Vector3::z()
 }
 
-/// Returns the line of nodes and the direction across it and the axle, body frame; with the latter the vertical is
-/// (the direction) sin θ + e3 cos θ.
+/// Returns the line of nodes, and the direction perpendicular to it and to the axle, body frame. The vertical is sin θ
+/// times that direction, plus e3 cos θ.
 fn nodes(file: &StartFile) -> (Vector3<f64>, Vector3<f64>) {
     let (sin, cos) = libm::sincos(file.roll_deg.unwrap_or(0.0).to_radians());
     (Vector3::new(cos, -sin, 0.0), Vector3::new(sin, cos, 0.0))
 }
 
-/// Returns precession, nutation and psi-dot, rad/s, at the start of `now`; `None` where the axle is vertical and turns out of
-/// the plane in which they can tilt it.
+/// Returns precession, nutation and psi-dot, rad/s, at the start of `now`. `None` if the axle is vertical and turns out
+/// of the plane in which Euler rates can tilt it.
 fn euler_rates(now: &Scenario) -> Option<[f64; 3]> {
     let start = &now.start;
     let in_world = angular_velocity(&now.body.mechanics, start);
@@ -123,7 +123,7 @@ fn euler_rates(now: &Scenario) -> Option<[f64; 3]> {
         omega.dot(&nodes),
         omega.z - precession * vertical.z,
     ];
-    // What is left of a zero by the turn into the body frame is rounding.
+    // The turn into the body frame leaves a rounding error in place of a zero.
     let rounding = RATE_ROUNDING * omega.norm();
     Some(rates.map(|exact| if exact.abs() <= rounding { 0.0 } else { exact }))
 }
@@ -172,8 +172,8 @@ fn is_told_once(file: &StartFile) -> Result<(), Problem> {
     Ok(())
 }
 
-/// The angular velocity, body frame, rad/s, that the spin `spin` (rad/s) lacks for a steady precession: φ'(z − (z·e3)e3),
-/// φ' the slow root.
+/// Returns the angular velocity, body frame, rad/s, that must be added to the spin `spin` (rad/s) for a steady
+/// precession. It is φ'(z − (z·e3)e3), where φ' is the slow root.
 fn steady(
     body: &physics::Body,
     orientation: &Matrix3<f64>,
@@ -201,7 +201,7 @@ fn steady(
     }
 }
 
-/// The least spin with a steady precession, rad/s: I3² ω3² = 4 I1 cos θ M g l.
+/// Returns the minimum spin for a steady precession, rad/s: I3² ω3² = 4 I1 cos θ M g l.
 fn least_spin(top: &SymmetricTop, cosine: f64, load: f64) -> f64 {
     2.0 * (top.across * cosine).abs().sqrt() * load.abs().sqrt() / top.along
 }
@@ -218,13 +218,13 @@ fn too_slow(least: f64) -> String {
     format!("has no steady precession at this tilt: {why}")
 }
 
-/// A number of four digits not below `number`, and hardly above it.
+/// Rounds `number` up to four significant digits.
 fn above(number: f64) -> String {
     let up = number * (1.0 + 6e-4);
     number::significant(up, 4)
 }
 
-/// The keys of which a start has one, or several of the last three.
+/// Keys that give the momentum. A start has one of them, or several of the last three.
 const WAYS_TO_TELL: [&str; 7] = [
     "momentum_Js",
     "spin_rpm",
@@ -234,8 +234,8 @@ const WAYS_TO_TELL: [&str; 7] = [
     "nutation_rad_per_s",
     "psi_dot_rad_per_s",
 ];
-/// The keys that replace another way to tell the momentum when they are set. Precession and nutation do not: with one of them
-/// alone the spin would be lost.
+/// Keys that replace another form of the momentum when they are set. Precession and nutation do not, because with one
+/// of them alone the spin would be lost.
 const REPLACING: [&str; 5] = [
     "momentum_Js",
     "spin_rpm",
@@ -243,25 +243,25 @@ const REPLACING: [&str; 5] = [
     "omega_rad_per_s",
     "psi_dot_rad_per_s",
 ];
-/// The ways to tell the momentum: the keys of each.
+/// Forms of the momentum, with the keys of each.
 const START_KEYS: [&[&str]; 4] = [&MOMENTUM_KEYS, &SPIN, &OMEGA_KEYS, &EULER];
 const MOMENTUM_KEYS: [&str; 2] = ["momentum_Js", "momentum_frame"];
 const SPIN: [&str; 3] = ["spin_rpm", "spin_rad_per_s", "steady"];
 const OMEGA_KEYS: [&str; 2] = ["omega_rad_per_s", "omega_frame"];
-/// The Euler rates; a start has one or more of them.
+/// The Euler rates. A start in this form has one or more of them.
 pub const EULER: [&str; 3] = [
     "precession_rad_per_s",
     "nutation_rad_per_s",
     "psi_dot_rad_per_s",
 ];
 
-/// The keys of the way that the key `name` of the start belongs to.
+/// Returns the keys of the form to which the key `name` of the start belongs.
 fn way_of(name: &str) -> Option<&'static [&'static str]> {
     START_KEYS.into_iter().find(|way| way.contains(&name))
 }
 
-/// The keys of the start that a new value at the key `name` of the start replaces: the other ways to give the momentum, or
-/// the other spin.
+/// Returns the keys of the start that a new value at its key `name` replaces: the other forms of the momentum, or the
+/// other spin.
 fn replaced(name: &str) -> Vec<&'static str> {
     let own = way_of(name).unwrap_or_default();
     let others = START_KEYS
@@ -273,14 +273,15 @@ fn replaced(name: &str) -> Vec<&'static str> {
     others.flatten().chain(spins).copied().collect()
 }
 
-/// Whether a file can have only one of the dotted keys `one` and `other`, since both tell the momentum at the start.
+/// Returns true if a file can have only one of the dotted keys `one` and `other`, because both give the momentum at the
+/// start.
 pub fn exclude_each_other(one: &str, other: &str) -> bool {
     let [one, other] = [one, other].map(|key| key.strip_prefix("start.")?.split('.').next());
     one.zip(other)
         .is_some_and(|(one, other)| replaced(one).contains(&other))
 }
 
-/// Removes from the file's `table` what a new value at `key` replaces.
+/// Removes the keys from the file's `table` that a new value at `key` replaces.
 pub(super) fn make_room(table: &mut Table, key: &str) {
     let name = key.strip_prefix("start.").unwrap_or_default();
     if REPLACING.contains(&name) {
@@ -294,7 +295,7 @@ fn remove(table: &mut Table, names: &[&str]) {
     }
 }
 
-/// Whether a new `value` at `key` is about a way of telling the momentum that `table` does not use.
+/// Returns true if a new `value` at `key` needs a form of the momentum that `table` does not use.
 pub(super) fn is_other_way(table: &Table, key: &str, value: &Value) -> bool {
     let name = key.strip_prefix("start.").unwrap_or_default();
     let ways: &[&str] = match name.split_once('.').map_or(name, |(vector, _)| vector) {
@@ -311,11 +312,11 @@ pub(super) fn is_other_way(table: &Table, key: &str, value: &Value) -> bool {
         .all(|way| start.is_none_or(|start| start.get(way).is_none()))
 }
 
-/// Tells the momentum in `table` in the way that `key` is about, as it is at the start of `now`; where `value` is a frame,
-/// in that frame, and else in the world's.
+/// Converts the momentum in `table` to the form that `key` belongs to, as it is at the start of `now`. If `value` is a
+/// frame, the result is in that frame, otherwise in the world frame.
 ///
 /// # Errors
-/// Where the key is an Euler rate, and there are none that give this start.
+/// Returns an error if the key is an Euler rate, and no Euler rates give this start.
 pub(super) fn tell_other_way(
     table: &mut Table,
     key: &str,
@@ -359,5 +360,5 @@ pub(super) fn tell_other_way(
     Ok(())
 }
 
-/// Why a start cannot be stated by Euler rates.
+/// Error message if a start cannot be given by Euler rates.
 const NO_RATES: &str = "cannot be set alone: the axle is vertical, and no Euler rates give its present angular velocity; tilt it, or write all rates into the file";

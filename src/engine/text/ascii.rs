@@ -1,6 +1,6 @@
 //! Formulas in ASCII, for terminals whose locale is not UTF-8: `0.8²` becomes `0.8^2`, `κ` becomes `kappa`.
 
-/// Raised and lowered digits and signs, each with what it is on the line.
+/// Superscript and subscript digits and signs, each followed by its normal form.
 const RAISED: &str = "⁰0¹1²2³3⁴4⁵5⁶6⁷7⁸8⁹9⁻-⁺+ᵀT";
 const LOWERED: &str = "₀0₁1₂2₃3₄4₅5₆6₇7₈8₉9";
 
@@ -45,13 +45,13 @@ const ASCII_WORDS: [(char, &str); 38] = [
     ('ü', "ue"),
 ];
 
-/// The character on the line that `c` is in `pairs`.
+/// Returns the normal form of `c` in `pairs`.
 fn on_line(pairs: &str, c: char) -> Option<char> {
     let mut all = pairs.chars();
     all.find(|other| *other == c).and_then(|_| all.next())
 }
 
-/// `text` with the meaning of each character that is not ASCII; one without a meaning stays as it is.
+/// Replaces each character of `text` that is not ASCII by its meaning. Characters without a known meaning stay.
 pub fn in_ascii(text: &str) -> String {
     let mut ascii = String::with_capacity(text.len() + 16);
     let mut sign = ' ';
@@ -69,7 +69,7 @@ pub fn in_ascii(text: &str) -> String {
         }
         sign = ' ';
         match ASCII_WORDS.iter().find(|(known, _)| *known == c) {
-            // Two names of numbers in a row are a product.
+            // Two names of quantities in a row are a product.
             Some((_, word))
                 if word.len() > 1
                     && ascii.ends_with(char::is_alphanumeric)

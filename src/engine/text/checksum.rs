@@ -1,6 +1,6 @@
-//! The CRC-32 of PNG, gzip and the files of sessions.
+//! The CRC-32 of PNG, gzip and session files.
 
-/// Returns the CRC-32 of `bytes`. It takes eight shifts a byte: enough for files of some megabytes.
+/// Returns the CRC-32 of `bytes`. Eight shifts per byte are fast enough for files of some megabytes.
 pub fn crc32(bytes: &[u8]) -> u32 {
     let mut crc = u32::MAX;
     for &byte in bytes {

@@ -1,8 +1,8 @@
-//! Why a file that the user has named cannot be read or written, with what to do about it.
+//! Error messages for files that cannot be read or written, with advice.
 
 use std::io::{Error, ErrorKind};
 
-/// What to say where reading a file fails with `error`.
+/// Returns the message for an `error` of reading a file.
 pub fn unread(error: &Error) -> String {
     match error.kind() {
         ErrorKind::NotFound => {
@@ -15,7 +15,7 @@ pub fn unread(error: &Error) -> String {
     }
 }
 
-/// What to say where writing a file fails with `error`: the system's words, and what would help.
+/// Returns the message for an `error` of writing a file: the system's words and advice.
 pub fn unwritten(error: &Error) -> String {
     let advice = match error.kind() {
         ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
@@ -30,7 +30,7 @@ pub fn unwritten(error: &Error) -> String {
     format!("{error}: {advice}")
 }
 
-/// `error` of writing a file, with what would help.
+/// Returns the `error` of writing a file with advice added to its message.
 pub fn advised(error: &Error) -> Error {
     Error::new(error.kind(), unwritten(error))
 }

@@ -1,4 +1,4 @@
-//! Numbers and words as people read them: what every other room writes with. It knows nothing of gyroscopes.
+//! Numbers and words as people read them. All other modules write with this one, and it knows nothing of gyroscopes.
 //!
 //! - [`ascii`]: formulas for terminals without UTF-8.
 //! - [`checksum`]: the CRC-32 of a file's content.

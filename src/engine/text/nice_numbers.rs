@@ -1,18 +1,19 @@
-//! The ladder ..., 0.1, 0.2, 0.5, 1, 2, 5, 10, ...: round numbers about twice apart, numbered by rungs; rung 0 is 1.
+//! Round numbers ..., 0.1, 0.2, 0.5, 1, 2, 5, 10, ..., each about twice the one before. They are rungs of a ladder, and
+//! rung 0 is 1.
 
 /// Relative differences below this are rounding: 0.01 · 100 is 1.
 const RUNG_ROUNDING: f64 = 1e-12;
 
-/// The number on rung `number`: the one nearest to its decimal.
+/// Returns the number on rung `number`: the float nearest to its decimal value.
 pub fn rung(number: i64) -> f64 {
     let digit = ["1", "2", "5"][number.rem_euclid(3) as usize];
     let text = format!("{digit}e{}", number.div_euclid(3));
     text.parse().unwrap_or_default()
 }
 
-/// Number of the largest rung that is not above `value` (> 0).
+/// Returns the number of the largest rung that is not above `value` (> 0).
 pub fn rung_below(value: f64) -> i64 {
-    const FARTHEST_DECADE: i64 = 400; // decades; beyond them there are no numbers
+    const FARTHEST_DECADE: i64 = 400; // there are no floats beyond
     let decade = (libm::log10(value).floor() as i64).clamp(-FARTHEST_DECADE, FARTHEST_DECADE);
     let top = 3 * decade + 3;
     (top - 4..=top)
@@ -21,12 +22,13 @@ pub fn rung_below(value: f64) -> i64 {
         .unwrap_or(top - 4)
 }
 
-/// The largest number of the ladder that is not above `value`; 0 where there is none above zero.
+/// Returns the largest number of the ladder that is not above `value`. It is 0 if no positive number is.
 pub fn at_or_below(value: f64) -> f64 {
     rung(rung_below(value))
 }
 
-/// `value` moved `times` rungs up, or down where `times` is negative; a value between two rungs goes to the next.
+/// Moves `value` up by `times` rungs, or down if `times` is negative. A value between two rungs moves to the next one
+/// first.
 pub fn climbed(value: f64, times: i32) -> f64 {
     let below = rung_below(value);
     let is_between = value > rung(below) * (1.0 + RUNG_ROUNDING);

@@ -1,17 +1,18 @@
-//! Numbers in as few digits as a reader needs. Whatever the number, the text is short, and it is never NaN or inf: what
-//! is not a finite number is "n/a". Counts and sizes are `indicatif`'s `HumanCount` and `DecimalBytes`.
+//! Formats numbers with as few digits as a reader needs. The text is short for any number, and never NaN or inf: a
+//! number that is not finite is "n/a". Counts and sizes use `indicatif`'s `HumanCount` and `DecimalBytes`.
 
 use std::fmt;
 
-/// In place of a number that there is not.
+/// Text for a missing number.
 pub const NOT_AVAILABLE: &str = "n/a";
 
-/// From this size on a number is written with an exponent: digits before the point are no longer read.
+/// Size from which on a number is written with an exponent.
 const LARGE_NUMBER: f64 = 1e9;
-/// Digits after the point of a number that is written with an exponent where decimals were asked for.
+/// Maximum decimals of a number that is written with an exponent although decimals were requested.
 const MOST_EXPONENT_DIGITS: usize = 6;
 
-/// `number` with `decimals` digits after the point: `0.886033`. What is rounded to zero has no sign: `0.000000`.
+/// Formats `number` with `decimals` digits after the point: `0.886033`. A number that rounds to zero has no sign:
+/// `0.000000`.
 pub fn fixed(number: f64, decimals: usize) -> String {
     if number.abs() < LARGE_NUMBER {
         return without_minus_zero(format!("{number:.decimals$}"));
@@ -19,7 +20,7 @@ pub fn fixed(number: f64, decimals: usize) -> String {
     exponent(number, decimals.min(MOST_EXPONENT_DIGITS))
 }
 
-/// `text` without the sign of a zero: a negative number that is rounded to 0 is written as 0 is.
+/// Removes the sign of a zero from `text`, so that a negative number that rounds to 0 is written like 0.
 pub fn without_minus_zero(text: String) -> String {
     match text.strip_prefix('-') {
         Some(rest) if rest.chars().all(|c| matches!(c, '0' | '.')) => rest.to_owned(),
@@ -27,7 +28,7 @@ pub fn without_minus_zero(text: String) -> String {
     }
 }
 
-/// As [`fixed`], with its sign: `+0.1160`, `+0.0000`.
+/// Formats `number` like [`fixed`], with its sign: `+0.1160`, `+0.0000`.
 pub fn signed(number: f64, decimals: usize) -> String {
     with_sign(fixed(number, decimals))
 }
@@ -40,7 +41,7 @@ fn with_sign(text: String) -> String {
     }
 }
 
-/// `number` with an exponent and `digits` digits after the point: `2.4e-9`.
+/// Formats `number` with an exponent and `digits` digits after the point: `2.4e-9`.
 pub fn exponent(number: f64, digits: usize) -> String {
     if number.is_finite() {
         format!("{:.digits$e}", number + 0.0) // adding 0 makes 0 of -0
@@ -49,12 +50,12 @@ pub fn exponent(number: f64, digits: usize) -> String {
     }
 }
 
-/// As [`exponent`], with its sign: `+2.4e-9`.
+/// Formats `number` like [`exponent`], with its sign: `+2.4e-9`.
 pub fn signed_exponent(number: f64, digits: usize) -> String {
     with_sign(exponent(number, digits))
 }
 
-/// The shortest text that is read back as `number`: 0.1, 1e308.
+/// Returns the shortest text that parses as `number`: 0.1, 1e308.
 pub fn shortest(number: f64) -> String {
     if !number.is_finite() {
         return NOT_AVAILABLE.to_owned();
@@ -63,7 +64,7 @@ pub fn shortest(number: f64) -> String {
     text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
 }
 
-/// `number` to `digits` significant digits, without zeros at its end: 42.1, 3.333333e-10.
+/// Formats `number` with `digits` significant digits, without trailing zeros: 42.1, 3.333333e-10.
 pub fn significant(number: f64, digits: usize) -> String {
     shortest(rounded(number, digits) + 0.0) // adding 0 makes 0 of -0
 }
@@ -74,8 +75,8 @@ pub fn rounded(number: f64, digits: usize) -> f64 {
     text.parse().unwrap_or(number)
 }
 
-/// `number` to six decimals at most, without zeros at its end: 230, 0.002, and not 0.30000000000000004; from a million on
-/// with an exponent and three decimals.
+/// Formats `number` with at most six decimals, without trailing zeros: 230, 0.002, and not 0.30000000000000004. From a
+/// million on, it uses an exponent and three decimals.
 pub fn decimal(number: f64) -> String {
     match number.abs() {
         // Adding 0 makes 0 of -0.
@@ -84,7 +85,7 @@ pub fn decimal(number: f64) -> String {
     }
 }
 
-/// Three digits, without a train of zeros: `0.389`, `34.4`, `1.2e-7`.
+/// Formats `number` with three digits, without a row of zeros: `0.389`, `34.4`, `1.2e-7`.
 pub fn short(number: f64) -> String {
     match number.abs() {
         0.0 => "0".to_owned(),
@@ -96,7 +97,8 @@ pub fn short(number: f64) -> String {
     }
 }
 
-/// A number that is not negative with about three digits, in as many characters while its size does not change.
+/// Formats a number that is not negative with about three digits. Its width stays the same while its size does not
+/// change.
 pub fn steady(number: f64) -> String {
     match number {
         n if n >= 1e6 => exponent(n, 1),
@@ -106,24 +108,24 @@ pub fn steady(number: f64) -> String {
     }
 }
 
-/// A number whose uncertainty stands behind it in parentheses, in units of its last two digits: 0.886033(24) is
-/// 0.886033 ± 0.000024 (JCGM 100:2008, 7.2.2).
+/// A number followed by its uncertainty in parentheses, in units of its last two digits: 0.886033(24) is 0.886033 ±
+/// 0.000024 (JCGM 100:2008, 7.2.2).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Uncertain {
     /// The digits, such as `8.86033(24)`.
     pub digits: String,
-    /// The power of ten by which they are multiplied; 0 where the number is written without one.
+    /// Power of ten by which they are multiplied. It is 0 if the number is written without one.
     pub exponent: i32,
 }
 
-/// `number` with its `uncertainty`; `None` where one of them is not finite, or the uncertainty is not above 0. An
-/// uncertainty below the rounding of `number` is stated as that rounding.
+/// Returns `number` with its `uncertainty`. `None` if one of them is not finite, or the uncertainty is not positive. An
+/// uncertainty below the rounding error of `number` is replaced by it.
 pub fn uncertain(number: f64, uncertainty: f64) -> Option<Uncertain> {
     if !(number.is_finite() && uncertainty.is_finite() && uncertainty > 0.0) {
         return None;
     }
     let stated = uncertainty.max(number.abs() * f64::EPSILON);
-    // As "2.4e-5": its first digit stands at 10^-5, its second, the last one to be written, at 10^-6.
+    // In "2.4e-5", the first digit is at 10^-5. The second, which is the last to be written, is at 10^-6.
     let (leading, first) = scientific(stated, 1);
     let last = first - 1;
     let two_digits = leading.replace('.', "");
@@ -143,7 +145,7 @@ pub fn uncertain(number: f64, uncertainty: f64) -> Option<Uncertain> {
     let decimals = (top - last).unsigned_abs() as usize;
     let digits = match scientific(number, decimals) {
         (digits, at) if at == top => digits,
-        // It is smaller than its uncertainty, or is rounded up to the next power of ten.
+        // The number is smaller than its uncertainty, or rounds up to the next power of ten.
         _ => {
             let scaled = number / libm::exp10(f64::from(top));
             without_minus_zero(format!("{scaled:.decimals$}"))
@@ -155,8 +157,8 @@ pub fn uncertain(number: f64, uncertainty: f64) -> Option<Uncertain> {
     })
 }
 
-/// Returns the two digits of an uncertainty whose last one is so many places behind the point. Of one such as 1.2 the point
-/// stands between them.
+/// Returns the two digits of an uncertainty in parentheses. Its last digit is `decimals` digits after the point. With
+/// one decimal, as in 1.2, the point is between the two digits.
 fn in_brackets(two_digits: &str, decimals: usize) -> String {
     match decimals {
         1 => format!("({}.{})", &two_digits[..1], &two_digits[1..]),
@@ -164,7 +166,7 @@ fn in_brackets(two_digits: &str, decimals: usize) -> String {
     }
 }
 
-/// The digits of `number`, `decimals` of them after the point, and its power of ten.
+/// Returns the digits of `number`, with `decimals` of them after the point, and its power of ten.
 fn scientific(number: f64, decimals: usize) -> (String, i32) {
     let text = format!("{number:.decimals$e}");
     match text.split_once('e') {
@@ -174,7 +176,7 @@ fn scientific(number: f64, decimals: usize) -> (String, i32) {
 }
 
 impl Uncertain {
-    /// `number` with the same last digit and the same power of ten.
+    /// Formats `number` with the same last digit and the same power of ten.
     pub fn to_the_same_digit(&self, number: f64) -> String {
         let digits = self.digits.split('(').next().unwrap_or_default();
         let decimals = digits.split_once('.').map_or(0, |(_, after)| after.len());
@@ -197,7 +199,7 @@ impl fmt::Display for Uncertain {
     }
 }
 
-/// `1 row`, `2 rows`.
+/// Returns a count with its noun: `1 row`, `2 rows`.
 pub fn counted(count: u64, one: &str) -> String {
     match count {
         1 => format!("1 {one}"),
@@ -205,7 +207,7 @@ pub fn counted(count: u64, one: &str) -> String {
     }
 }
 
-/// How many times one number is another, without digits that only flicker.
+/// Formats a ratio for "... times", without digits that only flicker.
 pub fn times(ratio: f64) -> String {
     match ratio {
         r if r >= 1e6 => exponent(r, 1),

@@ -1,15 +1,17 @@
-//! Text that is safe to print: a name or a message can neither steer the terminal that shows it nor look like another.
+//! Makes text safe to print. A name or message can then neither control the terminal that shows it, nor look like
+//! another one.
 //!
-//! Everything that goes to a screen and does not come from the program itself passes through here: the arguments, the
-//! names of files, users and machines, and the values in files.
+//! All text for the screen that does not come from the program itself passes through here: arguments, names of files,
+//! users and machines, and values in files.
 
 use std::borrow::Cow;
 use std::fmt;
 use std::path::Path;
 
-/// Whether `c` is a control character, turns the direction of text, ends a line, or takes no room and cannot be seen:
-/// what holds such a character does not look like what it is. The selectors of variants (U+FE00 to U+FE0F) choose
-/// between pictures of the character before them, and are allowed.
+/// Returns true if `c` is a control character, changes the direction of text, ends a line, or is invisible. A text with
+/// such a character does not look like its contents.
+///
+/// Variation selectors (U+FE00 to U+FE0F) choose between pictures of the character before them, and are allowed.
 pub fn is_steering(c: char) -> bool {
     let bidirectional = matches!(c,
         '\u{061c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
@@ -22,12 +24,12 @@ pub fn is_steering(c: char) -> bool {
     c.is_control() || bidirectional || line_separator || invisible
 }
 
-/// `text` on one line, with escapes such as `\u{1b}` and `\n` in the place of steering characters.
+/// Returns `text` on one line, with steering characters replaced by escapes such as `\u{1b}` and `\n`.
 pub fn printable(text: &str) -> Cow<'_, str> {
     escaped(text, |_| false)
 }
 
-/// `text` with its line ends, and escapes in the place of all other steering characters.
+/// Returns `text` with its line ends, and with all other steering characters replaced by escapes.
 pub fn printable_lines(text: &str) -> Cow<'_, str> {
     escaped(text, |c| c == '\n')
 }
@@ -48,7 +50,7 @@ fn escaped(text: &str, is_allowed: impl Fn(char) -> bool) -> Cow<'_, str> {
     Cow::Owned(safe)
 }
 
-/// A path as it is printed: [`printable`], and with U+FFFD for what is not text.
+/// A path for printing: [`printable`], and with U+FFFD for bytes that are not text.
 #[derive(Clone, Copy, Debug)]
 pub struct PrintablePath<'a>(pub &'a Path);
 
@@ -58,7 +60,7 @@ impl fmt::Display for PrintablePath<'_> {
     }
 }
 
-/// `text` made printable, at most `most` characters of it: a message is for reading, however long what it is about.
+/// Returns `text` made printable and cut to at most `most` characters, because a message must stay readable.
 pub fn brief(text: &str, most: usize) -> String {
     let end = text.char_indices().nth(most).map(|(at, _)| at);
     let beginning = &text[..end.unwrap_or(text.len())];
@@ -66,7 +68,8 @@ pub fn brief(text: &str, most: usize) -> String {
     printable(beginning).into_owned() + rest
 }
 
-/// Text for an element or an attribute in double quotes. What XML cannot hold is spelled out or becomes U+FFFD.
+/// Escapes `text` for an XML element or an attribute in double quotes. Characters that XML cannot contain are written
+/// as escapes or become U+FFFD.
 pub fn xml(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
     for c in printable(text).chars() {

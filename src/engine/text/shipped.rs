@@ -1,4 +1,4 @@
-//! Files that come with the program, compiled in.
+//! Files that are compiled into the program.
 
 #[derive(Clone, Copy, Debug)]
 pub struct Shipped {
@@ -12,7 +12,7 @@ impl Shipped {
     }
 }
 
-/// The files `FOLDER/NAME.END`, with the folder's path from the file that calls it:
+/// Includes the files `FOLDER/NAME.END`. The folder's path is relative to the calling file:
 /// `shipped!["../../presets/lessons", "md": "first" "second"]`.
 #[macro_export]
 macro_rules! shipped {

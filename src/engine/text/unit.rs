@@ -1,19 +1,21 @@
-//! Units as they stand at the end of a name (`tilt_deg`, `time_step_s`): what they are called, how other programs write them
-//! (`x (cm)`, `gx_dps`), and how one becomes another.
+//! Units at the end of a name (`tilt_deg`, `time_step_s`): their names, their spellings in other programs (`x (cm)`,
+//! `gx_dps`), and conversions.
+//!
+//! A new unit is a row of `OURS` if a name of gyrolab ends with it, otherwise of `OTHER_UNITS`.
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unit {
-    /// The end of the name, its underscore included.
+    /// Ending of the name, with its underscore.
     pub end: &'static str,
-    /// The unit as it is written in text.
+    /// Unit as written in text.
     pub name: &'static str,
-    /// What it measures: two units of one kind can be converted.
+    /// Quantity that it measures. Two units of one kind can be converted.
     pub kind: UnitKind,
-    /// How many of the SI's unit one of it is.
+    /// Size of this unit in SI units.
     in_si: f64,
 }
 
-/// What a unit measures.
+/// Quantity that a unit measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UnitKind {
     Time,
@@ -27,7 +29,7 @@ pub enum UnitKind {
     Torque,
     Force,
     Energy,
-    /// One that nothing else is converted to.
+    /// A quantity with a single unit, which cannot be converted.
     Alone(u8),
 }
 
@@ -42,7 +44,7 @@ const fn unit(end: &'static str, name: &'static str, kind: UnitKind, in_si: f64)
 
 use std::f64::consts::TAU;
 
-/// The units of the names that gyrolab uses; where one end is the end of another, the longer one comes first.
+/// Units in the names that gyrolab uses. If one ending ends with another, the longer one comes first.
 const OURS: [Unit; 16] = [
     unit("_rad_per_s", "rad/s", UnitKind::Rate, 1.0),
     unit("_m_per_s2", "m/s2", UnitKind::Acceleration, 1.0),
@@ -62,7 +64,7 @@ const OURS: [Unit; 16] = [
     unit("_ns", "ns", UnitKind::Time, 1e-9),
 ];
 
-/// Units in which people measure, and in which no name of gyrolab is.
+/// Units that people measure in, but which are not in any name of gyrolab.
 const OTHER_UNITS: [Unit; 30] = [
     unit("_deg_per_s", "deg/s", UnitKind::Rate, TAU / 360.0),
     unit("_dps", "deg/s", UnitKind::Rate, TAU / 360.0),
@@ -97,19 +99,19 @@ const OTHER_UNITS: [Unit; 30] = [
 ];
 
 impl Unit {
-    /// The unit at the end of `name`, of those that gyrolab uses.
+    /// Returns the unit at the end of `name`, among the units of gyrolab's names.
     pub fn from_name(name: &str) -> Option<&'static Self> {
         OURS.iter().find(|unit| name.ends_with(unit.end))
     }
 
-    /// The unit at the end of `name`, of those that anybody uses: the one whose end is the longest.
+    /// Returns the unit at the end of `name`, among all known units. The longest ending wins.
     pub fn anybodys(name: &str) -> Option<&'static Self> {
         let known = OURS.iter().chain(&OTHER_UNITS);
         let fits = known.filter(|unit| name.ends_with(unit.end));
         fits.max_by_key(|unit| unit.end.len())
     }
 
-    /// The unit that `text` is, as people write it: `s`, `m/s2`, `°/s`, `deg s^-1`, `1/min`.
+    /// Parses a unit as people write it: `s`, `m/s2`, `°/s`, `deg s^-1`, `1/min`.
     pub fn written(text: &str) -> Option<&'static Self> {
         let name = plain(text);
         let mut known = OURS.iter().chain(&OTHER_UNITS);
@@ -129,8 +131,7 @@ impl Unit {
             })
     }
 
-    /// Splits the name of a column into the name alone and the unit that it states: `x (cm)`, `t [ms]`, `x / cm`, `x in cm`,
-    /// `gx_dps`.
+    /// Splits the name of a column into the bare name and its unit: `x (cm)`, `t [ms]`, `x / cm`, `x in cm`, `gx_dps`.
     pub fn split(text: &str) -> Option<(&str, &'static Self)> {
         let name = text.trim();
         let (stem, unit) = Self::in_brackets(name)
@@ -158,7 +159,7 @@ impl Unit {
     }
 
     fn at_end(name: &str) -> Option<(&str, &'static Self)> {
-        // The first of them has the longest unit behind it: "rad_per_s" and not "s".
+        // The first separator leaves the longest unit after it: "rad_per_s" and not "s".
         let mut separators = name.match_indices(['_', '-', '.', ' ']);
         separators.find_map(|(at, _)| {
             let unit = name[at + 1..].replace(['-', '.', ' '], "_");
@@ -170,13 +171,13 @@ impl Unit {
         })
     }
 
-    /// By what a number in this unit is multiplied to be one in `other`; `None` where they do not measure the same.
+    /// Returns the factor from this unit to `other`. `None` if they measure different quantities.
     pub fn times(&self, other: &Self) -> Option<f64> {
         (self.kind == other.kind).then(|| self.in_si / other.in_si)
     }
 }
 
-/// Other words for units, in lower case and without blanks, and the ends of the names that these units have here.
+/// Other names of units, in lower case and without blanks, and the ending that each unit has here.
 const ALIASES: [(&str, &str); 23] = [
     ("newton", "_N"),
     ("newtons", "_N"),
@@ -203,7 +204,7 @@ const ALIASES: [(&str, &str); 23] = [
     ("u/min", "_rpm"),
 ];
 
-/// `text` without blanks, with the letters of a keyboard in place of signs, and `per s` or `s^-1` as `/s`.
+/// Returns `text` without blanks, with ASCII letters for signs, and with `per s` or `s^-1` as `/s`.
 fn plain(text: &str) -> String {
     let mut plain = text
         .trim()
@@ -243,11 +244,11 @@ fn plain(text: &str) -> String {
     plain
 }
 
-/// Returns the number that a person has typed for an answer in `unit` (empty: a pure number), in that unit. A unit may
-/// follow the number, also another of the same kind; a comma may be the decimal point.
+/// Parses a number that a person typed as an answer in `unit` (empty: a pure number), and returns it in that unit. A
+/// unit of the same kind may follow the number, and a comma may be the decimal point.
 ///
 /// # Errors
-/// What is wrong with it.
+/// Returns a message if it is not such a number.
 pub fn number_in(unit: &str, typed: &str) -> Result<f64, String> {
     let plain_text = typed.trim().replace(',', ".").replace('−', "-");
     let ends = plain_text.char_indices().map(|(at, c)| at + c.len_utf8());
@@ -272,7 +273,7 @@ pub fn number_in(unit: &str, typed: &str) -> Result<f64, String> {
     })
 }
 
-/// The name among those that `is_known` accepts that is `name` in a unit of its own, and the factor to that unit:
+/// Returns the name that `is_known` accepts and that equals `name` in another unit, with the factor to that unit:
 /// `t_ms` is `t_s` times 0.001.
 pub fn in_known_unit(name: &str, is_known: impl Fn(&str) -> bool) -> Option<(String, f64)> {
     if is_known(name) {
@@ -291,8 +292,8 @@ pub fn in_known_unit(name: &str, is_known: impl Fn(&str) -> bool) -> Option<(Str
     })
 }
 
-/// `name` with `word` before its unit: `tilt_deg` becomes `tilt_uncertainty_deg`. Of the parts of a vector, whose names end
-/// with a number, the unit stands before that.
+/// Returns `name` with `word` inserted before its unit: `tilt_deg` becomes `tilt_uncertainty_deg`. Components of a
+/// vector have a number after their unit.
 pub fn with_word(name: &str, word: &str) -> String {
     let (name, place) = match name.rsplit_once('.') {
         Some((name, place)) if place.parse::<usize>().is_ok() => (name, format!(".{place}")),
@@ -320,7 +321,7 @@ mod tests {
             assert_eq!(Unit::anybodys(name).map(|found| found.name), Some(unit));
         }
         assert_eq!(Unit::from_name("kappa"), None);
-        // Found first, it is found right.
+        // The first match must be the correct one.
         for end in OURS.iter().map(|unit| unit.end).chain(["spin_rad_per_s"]) {
             assert_eq!(Unit::from_name(end), Unit::anybodys(end), "{end}");
         }

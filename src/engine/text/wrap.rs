@@ -1,4 +1,4 @@
-//! Text in lines of a width, in columns of a terminal: a Chinese or Japanese character takes two.
+//! Wraps text to a width in columns of a terminal. A Chinese or Japanese character takes two columns.
 
 use textwrap::{Options, WordSeparator, WordSplitter, WrapAlgorithm};
 use unicode_width::UnicodeWidthStr;
@@ -7,8 +7,8 @@ pub fn columns(text: &str) -> usize {
     text.width()
 }
 
-/// `text` in lines of at most `width` columns, broken between words; a word wider than that, or a text of a script without
-/// spaces, is broken where the line ends. An empty text is one empty line.
+/// Wraps `text` into lines of at most `width` columns, broken between words. A wider word, or a text in a script
+/// without spaces, is broken at the end of the line. An empty text gives one empty line.
 pub fn wrapped(text: &str, width: usize) -> Vec<String> {
     let words: Vec<&str> = text.split_whitespace().collect();
     let joined = words.join(" ");
