@@ -1,4 +1,4 @@
-//! Arguments that several commands have, and the scenario that they mean.
+//! Arguments shared by several commands, and the scenario that they describe.
 
 use super::argument_values::{frames, length, one_or_more, positive, setting, steps};
 use crate::class::rehearsal::MOST_PLAYERS;
@@ -19,7 +19,7 @@ use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub(super) struct ScenarioArgs {
-    /// A preset's name, or a file: a scenario, a run file (.toml), a CSV or a figure that gyrolab wrote
+    /// Preset name, or a file: scenario or run file (.toml), or a CSV or figure of gyrolab
     pub(super) scenario: String,
 
     #[command(flatten)]
@@ -28,19 +28,19 @@ pub(super) struct ScenarioArgs {
 
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct SetArgs {
-    /// Change a value first: start.tilt_deg=30; may be repeated
+    /// Change a value of the scenario, such as start.tilt_deg=30; can be repeated
     ///
-    /// KEY is one that gyrolab keys lists, VALUE is TOML: push.0.force_N=[0,0,-50].
+    /// gyrolab keys lists the keys. VALUE is TOML: push.0.force_N=[0,0,-50].
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
     pub(super) set: Vec<String>,
 
-    /// The time step, s; length and pushes keep their seconds
+    /// Time step in s; the run and its pushes keep their length in seconds
     ///
-    /// With --set motion.time_step_s they keep their numbers of steps.
+    /// With --set motion.time_step_s they keep their number of steps instead.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = positive)]
     pub(super) time_step: Option<f64>,
 
-    /// The numerical scheme
+    /// Numerical scheme
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(scheme::names()))]
     pub(super) scheme: Option<String>,
 }
@@ -53,26 +53,26 @@ impl SetArgs {
 
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct WorkbenchArgs {
-    /// A preset's name, or a file: a scenario, a run file (.toml), a CSV or a figure that gyrolab wrote [default: method-2]
+    /// Preset name, or a file: scenario or run file (.toml), or a CSV or figure of gyrolab [default: method-2]
     pub(super) scenario: Option<String>,
 
     #[command(flatten)]
     pub(super) changes: SetArgs,
 
-    /// Come back to a session: the newest, or NAME
+    /// Reopen a session at its step: the newest that is not open, or NAME
     ///
-    /// To the step where it was left; the newest that is not in use, or the one that gyrolab sessions calls NAME.
+    /// gyrolab sessions lists the names.
     #[arg(long, value_name = "NAME", num_args = 0..=1, default_missing_value = "",
           conflicts_with_all = ["scenario", "set", "time_step", "scheme", "at"])]
     pub(super) resume: Option<String>,
 
-    /// Read and write in this folder and nowhere else
+    /// Restrict all file access to this folder
     ///
-    /// Whatever is typed: SCENARIO is a preset or a file in it, and sessions are kept in its folder .gyrolab.
+    /// SCENARIO is then a preset or a file in DIR, and sessions are kept in DIR/.gyrolab.
     #[arg(long, value_name = "DIR")]
     pub(super) folder: Option<PathBuf>,
 
-    /// Ask for a seat of the class in DIR, and open its lab: what ForceCommand runs for a student
+    /// Ask for a seat in the class of DIR and open its lab (for ForceCommand in sshd_config)
     #[arg(long, requires = "folder",
           conflicts_with_all = ["scenario", "set", "time_step", "scheme", "at", "resume", "measured", "commands"])]
     pub(super) seat: bool,
@@ -80,7 +80,7 @@ pub(super) struct WorkbenchArgs {
     #[command(flatten)]
     pub(super) beside: MeasuredArgs,
 
-    /// Open with the run standing still
+    /// Open with the run paused
     #[arg(long)]
     pub(super) paused: bool,
 
@@ -88,27 +88,27 @@ pub(super) struct WorkbenchArgs {
     #[arg(long, value_name = "STEP", allow_negative_numbers = true, value_parser = steps)]
     pub(super) at: Option<u64>,
 
-    /// Carry out the commands in this file, or of stdin for -
+    /// Run the commands in this file; - is standard input
     ///
-    /// The file holds [[do]] tables, which gyrolab man lists.
+    /// The file has [[do]] tables; gyrolab man lists the commands.
     #[arg(long = "do", value_name = "FILE")]
     pub(super) commands: Option<PathBuf>,
 
     #[command(flatten)]
     pub(super) look: DisplayArgs,
 
-    /// Frames a second at most [default: 15, or as config.toml says]
+    /// Maximum frames per second [default: 15, or the value in config.toml]
     #[arg(long, value_name = "FRAMES", allow_negative_numbers = true, value_parser = frames)]
     pub(super) fps: Option<u32>,
 }
 
-/// Measured data beside a run.
+/// Options for measured data that are drawn on a run.
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct MeasuredArgs {
-    /// Put measured data beside the run
+    /// Draw measured data on the run
     ///
-    /// FILE is a CSV with a column t_s, data that come with gyrolab (heidelberg-spin-decay), or rows that your own program
-    /// of the report's scheme wrote.
+    /// FILE is a CSV with a column t_s, a shipped data set (heidelberg-spin-decay), or the output of your own program of the
+    /// report's scheme.
     #[arg(long, value_name = "FILE")]
     pub(super) measured: Option<String>,
 
@@ -118,16 +118,16 @@ pub(super) struct MeasuredArgs {
 
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct MapArgs {
-    /// What the columns of measured data are
+    /// Say what the columns of the data are, such as theta=tilt_rad,x=x_cm
     ///
-    /// COLUMN is the name in the file, or the number from 1; NAME is gyrolab's, in any unit: gx_dps=w1_deg_per_s,
-    /// theta=tilt_rad, x=x_cm. COLUMN=- leaves the column out.
+    /// COLUMN is the name in the file, or its number from 1. NAME is a name of gyrolab in any unit: gx_dps=w1_deg_per_s.
+    /// COLUMN=- ignores the column.
     #[arg(long, value_name = "COLUMN=NAME,...", value_delimiter = ',', value_parser = renaming)]
     pub(super) map: Vec<Renaming>,
 
-    /// The standard uncertainty of the values of a column that has none in the file
+    /// Set the standard uncertainty of a column that has none in the file
     ///
-    /// COLUMN is the name in the file or gyrolab's; VALUE is in the unit of that name.
+    /// COLUMN is the name in the file or the name of gyrolab; VALUE is in its unit.
     #[arg(long, value_name = "COLUMN=VALUE,...", value_delimiter = ',')]
     pub(super) sigma: Vec<ColumnSigma>,
 }
@@ -143,24 +143,24 @@ impl MapArgs {
 
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub(super) struct DisplayArgs {
-    /// Colors: auto honors NO_COLOR [default: as chosen last in the lab, or auto]
+    /// Colors; auto honors NO_COLOR [default: the last choice in the lab, or auto]
     #[arg(long, alias = "colour", value_enum, value_name = "WHEN")]
     pub(super) color: Option<ColorChoice>,
 
-    /// Background of the terminal [default: as chosen last, or as COLORFGBG says, or dark]
+    /// Background of the terminal [default: the last choice, COLORFGBG, or dark]
     #[arg(long, value_enum, value_name = "SCREEN")]
     pub(super) background: Option<Background>,
 
-    /// What dots are made of [default: as chosen last, or by locale and terminal]
+    /// Characters for the dots [default: the last choice, or chosen by locale and terminal]
     #[arg(long, value_enum, value_name = "KIND")]
     pub(super) markers: Option<Marker>,
 
-    /// Leave the mouse to the terminal, to select text; c, the settings, takes it
+    /// Leave the mouse to the terminal, so that it selects text
     #[arg(long)]
     pub(super) no_mouse: bool,
 }
 
-/// Makes each of these values an argument by its name.
+/// Implements `ValueEnum` for types whose values have names.
 macro_rules! named_values {
     ($($kind:ty, $all:expr, $name:expr;)*) => {
         $(impl ValueEnum for $kind {
@@ -183,7 +183,7 @@ named_values! {
 
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct LengthArgs {
-    /// Length of the run in time steps [default: the scenario's]
+    /// Length of the run in time steps [default: from the scenario]
     #[arg(long, value_name = "N", conflicts_with = "duration", allow_negative_numbers = true, value_parser = length)]
     pub(super) steps: Option<u64>,
 
@@ -200,34 +200,34 @@ impl LengthArgs {
 
 #[derive(Debug, Args)]
 pub(super) struct ClassArgs {
-    /// A shipped lesson's name, or a file (.md) in the folder
+    /// Name of a shipped lesson, or a file (.md) in the folder
     #[arg(required_unless_present_any = ["instead", "new"], conflicts_with = "instead")]
     pub(super) lesson: Option<String>,
 
-    /// The folder of the class
+    /// Folder of the class
     #[arg(long, value_name = "DIR", required_unless_present = "rehearse")]
     pub(super) folder: Option<PathBuf>,
 
-    /// Begin with a new group: keep seats and votes of the group before in DIR/.gyrolab/earlier
+    /// Start with a new group; the previous group is moved to DIR/.gyrolab/earlier
     #[arg(long, conflicts_with = "instead")]
     pub(super) new: bool,
 
-    /// Practice alone: this many players, 1 to 30, take seats and answer
+    /// Practice alone with 1 to 30 simulated students
     ///
-    /// In a folder of its own, which is removed at the end; or in DIR, which must be empty, and is kept.
+    /// Uses a temporary folder, or DIR, which must be empty and is kept.
     #[arg(long, value_name = "PLAYERS", requires = "lesson", conflicts_with = "new",
           value_parser = clap::value_parser!(u64).range(1..=MOST_PLAYERS))]
     pub(super) rehearse: Option<u64>,
 
-    /// Go on where the class was left: page, rounds and votes
+    /// Continue the class at its page, with its rounds and votes
     #[arg(long, group = "instead")]
     pub(super) resume: bool,
 
-    /// Show the class on a second terminal: seats, votes, notes, the clock
+    /// Show seats, votes, notes and the clock on a second terminal
     #[arg(long, group = "instead")]
     pub(super) board: bool,
 
-    /// Show the class's page, run and bars to all: nothing that only the teacher may see
+    /// Show page, run and votes on a projector, without notes and right answers
     #[arg(long, group = "instead")]
     pub(super) projector: bool,
 
@@ -235,15 +235,15 @@ pub(super) struct ClassArgs {
     #[arg(long, group = "instead")]
     pub(super) votes: bool,
 
-    /// Print a table for a gradebook as CSV: a row for each seat, a column for each question, round and task
+    /// Print a gradebook table as CSV: one row per seat, one column per question, round and task
     #[arg(long, group = "instead")]
     pub(super) table: bool,
 
-    /// Write what each seat has predicted beside what came out, a Markdown file a seat
+    /// Write the predictions and results of each seat to a Markdown file
     #[arg(long, group = "instead", requires = "output")]
     pub(super) answers: bool,
 
-    /// The folder for the answers
+    /// Folder for the answers
     #[arg(short, long, requires = "answers", value_name = "FOLDER")]
     pub(super) output: Option<PathBuf>,
 
@@ -257,50 +257,50 @@ pub(super) struct ClassArgs {
 
 #[derive(Debug, Args)]
 pub(super) struct LessonArgs {
-    /// A shipped lesson's name, or a file (.md) [without it: the list of the lessons]
+    /// Name of a shipped lesson, or a file (.md) [without it: list the lessons]
     pub(super) name: Option<String>,
 
-    /// The page, counted from 1
+    /// Page, counted from 1
     #[arg(long, value_name = "N", requires = "name", value_parser = one_or_more)]
     pub(super) page: Option<NonZeroU64>,
 
-    /// List the lessons with minutes, level and what each needs, in the order to take them
+    /// List the lessons in order, with minutes, level and requirements
     #[arg(long, conflicts_with_all = ["name", "page", "printed", "notes"])]
     pub(super) list: bool,
 
-    /// Print a worksheet: it asks, has room for predictions and outcomes, and answers nothing [-o FILE.html: with figures, to print from a browser]
+    /// Print a worksheet with questions and space for answers [-o FILE.html: with figures, to print from a browser]
     #[arg(long, group = "printed", requires = "name", conflicts_with = "page")]
     pub(super) handout: bool,
 
-    /// With --handout: the results for afterwards, with the words and numbers of every page
+    /// With --handout: print the pages with their results, to read after the lesson
     #[arg(long, requires = "handout")]
     pub(super) results: bool,
 
-    /// Print a sheet for the teacher: goals, minutes, right answers, common wrong ones, and what to explain
+    /// Print a sheet for the teacher: goals, minutes, right answers, common mistakes, explanations
     #[arg(long, group = "printed", requires = "name", conflicts_with = "page")]
     pub(super) teacher: bool,
 
-    /// Print what was predicted, in the newest session that holds it, beside what came out: to hand in
+    /// Print the predictions of the newest session with their results, to hand in
     #[arg(long, group = "printed", requires = "name", conflicts_with = "page")]
     pub(super) answers: bool,
 
-    /// Print the frame of the program that the lesson asks for, in this language: it runs, the physics is left out
+    /// Print a program without the physics, in this language, for the lesson to complete
     #[arg(long, group = "printed", requires = "name", conflicts_with = "page", value_name = "LANGUAGE", value_parser = ["octave", "matlab", "python"])]
     pub(super) frame: Option<String>,
 
-    /// Follow a lab of this login on a second terminal: the notes of its page, what comes next, a clock
+    /// Show the notes of an open lesson on a second terminal, with the next page and a clock
     #[arg(long, value_name = "SESSION", num_args = 0..=1, default_missing_value = "", conflicts_with_all = ["name", "page", "printed"])]
     pub(super) notes: Option<String>,
 
-    /// Read and write in this folder and nowhere else; its own lessons come first in the list
+    /// Restrict all file access to this folder; its lessons are listed first
     #[arg(long, value_name = "DIR", conflicts_with_all = ["handout", "teacher", "template", "notes"])]
     pub(super) folder: Option<PathBuf>,
 
-    /// Print a small lesson to begin from, with a comment on each part
+    /// Print a small lesson to start from, with comments
     #[arg(long, group = "printed", conflicts_with = "name")]
     pub(super) template: bool,
 
-    /// Write what is printed to this file, or to stdout for -; .html for a handout, answers or a teacher's sheet: a page to print from a browser
+    /// Write to this file instead of stdout; with .html a handout, answers or teacher's sheet prints from a browser
     #[arg(short, long, requires = "printed", value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
 
@@ -312,16 +312,16 @@ pub(super) struct LessonArgs {
     pub(super) look: DisplayArgs,
 }
 
-/// The scenario with all that the command line changes in it, so that its run file tells the whole run.
+/// Returns the scenario with all changes of the command line, so that its run file describes the whole run.
 pub(super) fn scenario_of(args: &ScenarioArgs, length: &LengthArgs) -> Result<Scenario, Problems> {
     changed(open(&args.scenario)?, &args.changes, length)
 }
 
-/// In place of a file's name: standard input.
+/// File name that means standard input.
 pub(super) const STDIN: &str = "-";
 pub(super) const STDIN_WORDS: &str = "standard input";
 
-/// Opens what SCENARIO names, which may be standard input.
+/// Opens the scenario named on the command line, or standard input.
 pub(super) fn open(scenario: &str) -> Result<Document, Problems> {
     if scenario == STDIN {
         return Document::read_from(STDIN_WORDS, io::stdin().lock());
@@ -329,7 +329,7 @@ pub(super) fn open(scenario: &str) -> Result<Document, Problems> {
     Document::open(scenario)
 }
 
-/// The scenario of `document` with these changes.
+/// Applies these changes to `document` and returns its scenario.
 pub(super) fn changed(
     mut document: Document,
     changes: &SetArgs,
@@ -340,7 +340,7 @@ pub(super) fn changed(
     document.scenario()
 }
 
-/// Gives the run of `document` the length that the command line asks for, if it does.
+/// Sets the length of the run of `document` if the command line gives one.
 pub(super) fn change_length(document: &mut Document, length: &LengthArgs) -> Result<(), Problems> {
     if let Some(steps) = length.steps {
         document.set(&format!("motion.steps={steps}"))?;

@@ -1,9 +1,10 @@
-//! The subcommands of the command line: a file for each, with its options and what it does.
+//! The subcommands of the command line, one file each.
 //!
-//! It uses every other module. Options, the manual and the completions belong here. What a subcommand computes belongs to a
-//! module below, so that the lab can use it too.
+//! It uses every other module. Options, the manual and the completions belong here. The computation of a subcommand belongs
+//! to a module below, so that the lab can use it too.
 //!
-//! Data goes to stdout, talk to stderr. Exit codes: 0 done (a closed pipe too), 1 failed, 2 wrong usage, 130 Ctrl-C.
+//! Data goes to stdout, messages to stderr. Exit codes: 0 success (also for a closed pipe), 1 failure, 2 wrong usage,
+//! 130 Ctrl-C.
 
 mod answers;
 mod args;
@@ -66,61 +67,61 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum CliCommand {
-    /// Run a scenario without a terminal: a summary, or with -o its CSV
+    /// Run a scenario and print a summary, or export it as CSV
     Run(run::RunArgs),
-    /// Print the lab's picture at the end of a run, as plain text
+    /// Print the lab's screen at the end of a run as text
     Show(show::ShowArgs),
-    /// Hold schemes and time steps against the exact motion: errors, drifts, cost, measured order
+    /// Compare schemes and time steps with the exact motion
     Compare(compare::CompareArgs),
-    /// Draw runs, or a table of compare, of a sweep or of a fit, on paper: SVG, PDF or PNG
+    /// Draw runs, or a table of compare, sweep or fit, as SVG, PDF or PNG
     Figure(figure::FigureArgs),
-    /// Make a folder for a write-up of a run: CSV, figures, measured numbers beside theory, and how to make it again
+    /// Make a folder for a write-up: text, CSV, figures and numbers
     Writeup(writeup::WriteupArgs),
-    /// Make CSVs, figures and write-ups again from what they carry: the same, or what differs
+    /// Recompute CSVs, figures and write-ups, and report any difference
     Verify(verify::VerifyArgs),
-    /// Record the lab while it carries out a file of commands, as asciinema 3 plays it
+    /// Record the lab playing a file of commands, for asciinema 3
     Cast(cast::CastArgs),
-    /// Run a grid of runs on all cores and write a row for each, or list the shipped sweeps
+    /// Run a grid of scenarios on all cores, or list the shipped sweeps
     Sweep(sweep::SweepArgs),
-    /// Fit keys of a scenario to measured data: values with uncertainties, and whether the model fits
+    /// Fit values of a scenario to measured data
     Fit(fit::FitArgs),
-    /// List the shipped presets, or print one, or a shipped sweep, as TOML, or shipped measured data as CSV
+    /// List the presets, or print a preset, a sweep or shipped data
     Presets {
-        /// The preset, sweep or measured data to print
+        /// Name of the preset, sweep or data set to print
         name: Option<String>,
     },
-    /// List the sessions that --resume can come back to: name, time, step, whether it is in use, run
+    /// List the sessions that --resume can reopen
     Sessions {
-        /// Those of gyrolab --folder DIR
+        /// List the sessions of gyrolab --folder DIR
         #[arg(long, value_name = "DIR")]
         folder: Option<PathBuf>,
     },
     /// List the numerical schemes
     Schemes,
-    /// List the lessons, open the lab with one, or print it for paper
+    /// List the lessons, open one, or print it as a worksheet
     Lesson(LessonArgs),
-    /// Teach a class: a lesson that the students' labs follow, with their votes
+    /// Teach a class: students' labs follow the lesson and vote
     Class(ClassArgs),
-    /// Validate scenario files, run files, sweep files, the headers of CSVs, files of commands, and lessons (.md), which are played
+    /// Check scenario, run and sweep files, CSV headers, files of commands and lessons
     Check {
-        /// Files to look at; a preset is none
+        /// Files to check
         #[arg(required = true, value_name = "FILE")]
         files: Vec<PathBuf>,
     },
-    /// List every key that a scenario or run file may hold; the keys to press are in gyrolab man, and ? in the lab
+    /// List the keys of scenario and run files
     Keys,
-    /// List every number that is read off a run: name, unit, meaning, where it comes from
+    /// List the numbers of a run: name, unit, meaning and source
     Readouts,
     /// Print a completion script for a shell
     Completions {
         /// The shell
         shell: clap_complete::Shell,
     },
-    /// Print the manual: all of it, the page of a command, or a topic
+    /// Print the manual, the page of a command, or a topic
     Man(manual::ManArgs),
 }
 
-/// Ended by the user's Ctrl-C, as shells count it.
+/// Exit code after Ctrl-C, as shells define it.
 const INTERRUPTED: u8 = 130;
 
 pub fn main() -> ExitCode {
@@ -151,7 +152,7 @@ fn ended(result: anyhow::Result<ExitCode>) -> ExitCode {
     }
 }
 
-/// The command line with its examples, and with what completes its values.
+/// Returns the command line with its examples and the completers of its values.
 fn command() -> clap::Command {
     complete::with_completers(manual::with_examples(Cli::command()))
 }
@@ -183,7 +184,7 @@ fn execute(cli: Cli) -> anyhow::Result<ExitCode> {
     }
 }
 
-/// Opens the lab. A command's name behind options is refused: clap takes it for the name of a scenario.
+/// Opens the lab. Refuses a command's name after options, which clap would take for a scenario.
 fn open_lab(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
     let name = args.scenario.as_deref().unwrap_or_default();
     anyhow::ensure!(
@@ -198,7 +199,7 @@ fn open_lab(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
 
 const MISUSED: u8 = 2;
 
-/// `error` with the option of another command that a user may have meant; or, instead of it, which command.
+/// Adds a tip to `error` if the option belongs to another command. Returns a message instead if a command was meant.
 fn explained(mut error: clap::Error) -> Result<clap::Error, String> {
     if error.kind() == ErrorKind::ArgumentConflict
         && let Some(meant) = command_behind_options().or_else(misspelt_command)
@@ -218,7 +219,7 @@ fn explained(mut error: clap::Error) -> Result<clap::Error, String> {
     Ok(error)
 }
 
-/// The refusal of options of the lab before a command, which clap then takes for a scenario.
+/// Returns the error message for lab options before a command, which clap would take for a scenario.
 fn command_behind_options() -> Option<String> {
     let mut typed = std::env::args_os()
         .skip(1)
@@ -232,7 +233,7 @@ fn command_behind_options() -> Option<String> {
     ))
 }
 
-/// What is said of an option that a command does not have, where what is meant is known.
+/// Returns a tip for an option that the command does not have, if the intention is known.
 fn tip_for(unknown: &str) -> Option<&'static str> {
     match unknown {
         "--folder" => Some(
@@ -248,7 +249,7 @@ fn tip_for(unknown: &str) -> Option<&'static str> {
     }
 }
 
-/// What is said where the first word is one or two letters off a command's name, and no scenario.
+/// Returns a message if the first word is one or two letters away from a command's name and is not a scenario.
 fn misspelt_command() -> Option<String> {
     let typed = std::env::args_os().nth(1)?.into_string().ok()?;
     if typed.starts_with('-') || typed.contains(['/', '.']) || presets::find(&typed).is_some() {
@@ -264,8 +265,8 @@ fn misspelt_command() -> Option<String> {
         .then(|| format!("there is no command {typed}: did you mean gyrolab {near}?"))
 }
 
-/// Prints what clap has to say instead of going on: help, or why it takes no such arguments. clap repeats the arguments
-/// as they are: where one holds a character that could steer a terminal, the text is printed escaped and without colors.
+/// Prints the help or the error of clap. clap repeats the arguments unchanged. If one contains control characters, the text
+/// is printed escaped and without colors.
 fn misused(error: &clap::Error) -> ExitCode {
     let is_hostile =
         std::env::args_os().any(|argument| argument.to_string_lossy().contains(is_steering));
@@ -283,7 +284,8 @@ fn misused(error: &clap::Error) -> ExitCode {
     }
 }
 
-/// Refuses the command `name` whose `output` and whose JSON would both go to stdout. Returns whether the output goes there.
+/// Ends the process if both the `output` and the JSON of the command `name` would go to stdout. Returns true if the output
+/// goes there.
 fn one_on_stdout(name: &str, output: Option<&Path>, json: bool) -> bool {
     let is_on_stdout = output.is_some_and(Destination::is_for_stdout);
     if json && is_on_stdout {
@@ -294,7 +296,7 @@ fn one_on_stdout(name: &str, output: Option<&Path>, json: bool) -> bool {
     is_on_stdout
 }
 
-/// Ends the process as clap does where it refuses: `message` is about the command `name`.
+/// Ends the process with `message` about the command `name`, as clap does.
 fn refuse(name: &str, kind: ErrorKind, message: &str) -> ! {
     let mut command = Cli::command();
     command.build();
@@ -305,7 +307,7 @@ fn refuse(name: &str, kind: ErrorKind, message: &str) -> ! {
     error.exit()
 }
 
-/// What is said where stdout takes no more.
+/// Error message when stdout cannot be written.
 const NO_STDOUT: &str = "cannot write to stdout";
 
 fn print(text: &str) -> anyhow::Result<ExitCode> {
@@ -315,8 +317,7 @@ fn print(text: &str) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Prints what came out: on stdout, with `json` as one object; and as text on stderr where stdout or a file, `output`, has
-/// the rows.
+/// Prints `result` on stdout, with `json` as one JSON object. If `output` has the rows, the text goes to stderr.
 fn print_result<T: Display + Serialize>(
     result: &T,
     output: Option<&Path>,
@@ -333,25 +334,25 @@ fn print_result<T: Display + Serialize>(
     Ok(())
 }
 
-/// Prints `text` on stderr; a stderr that cannot be written ends nothing.
+/// Prints `text` on stderr and ignores errors there.
 fn tell(text: impl Display) {
     let _ = writeln!(io::stderr(), "{text}");
 }
 
-/// Says what is not read of measured data, or what cannot be right about them.
+/// Prints notes about measured data, such as ignored columns.
 fn tell_notes(notes: &[String]) {
     for note in notes {
         tell(format_args!("gyrolab: {note}"));
     }
 }
 
-/// Says how many rows are in the file `path`.
+/// Prints the number of rows in the file `path`.
 fn tell_of_rows(rows: u64, path: &Path) {
     let rows = counted(rows, "row");
     tell(format_args!("gyrolab: {rows} in {}", PrintablePath(path)));
 }
 
-/// The exit code of a command that ends with `error`, which is told, or without one.
+/// Returns the exit code of a command, and prints its error if there is one.
 fn ended_by(error: Option<anyhow::Error>) -> ExitCode {
     error.map_or(ExitCode::SUCCESS, |error| {
         complain(&error);
@@ -364,7 +365,7 @@ fn complain(error: &anyhow::Error) {
     tell(format_args!("gyrolab: {}", printable_lines(&error)));
 }
 
-/// Whether the reader of our output has gone, as in `gyrolab run ... -o - | head`: that is no failure.
+/// True if the reader of the output has closed the pipe, as in `gyrolab run ... -o - | head`, which is not a failure.
 fn is_closed_pipe(error: &anyhow::Error) -> bool {
     error
         .chain()
