@@ -1,4 +1,4 @@
-//! The TOML in the blocks of a lesson.
+//! Parses the TOML in the blocks of a lesson.
 
 mod head;
 
@@ -22,7 +22,7 @@ use crate::lab::view;
 pub(super) use head::head;
 use toml::{Table, Value};
 
-/// A block that means something in a lesson.
+/// A kind of block with a meaning in a lesson.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum BlockKind {
     Lesson,
@@ -34,7 +34,7 @@ pub(super) enum BlockKind {
     Notes,
 }
 
-/// Each kind of block, with the word behind its fence.
+/// Kinds of blocks, each with the word after its opening fence.
 const BLOCK_KINDS: [(&str, BlockKind); 7] = [
     ("lesson", BlockKind::Lesson),
     ("lab", BlockKind::Lab),
@@ -46,7 +46,7 @@ const BLOCK_KINDS: [(&str, BlockKind); 7] = [
 ];
 
 impl BlockKind {
-    /// Returns the kind with this word behind its fence.
+    /// Returns the kind with this word after its opening fence.
     pub fn find(word: &str) -> Option<Self> {
         let row = BLOCK_KINDS.iter().find(|(known, _)| *known == word);
         row.map(|(_, kind)| *kind)
@@ -58,17 +58,18 @@ impl BlockKind {
     }
 }
 
-/// The keys of `lab` and `task` besides those of `[view]`. They are carried out in the order of the table of commands, the
-/// last at the end.
+/// Keys of `lab` and `task` other than the `[view]` keys.
+///
+/// Commands are carried out in the order of the table of commands, those of [`LAST_COMMANDS`] at the end.
 const COMMON: [&str; 6] = ["open", "set", "push", "since_s", "magnify", "point_at"];
 const LAST_COMMANDS: [&str; 2] = ["wait_s", "go_to"];
 const RUN_UNTIL: &str = "run_until";
 const KEEP_KEY: &str = "keep";
-/// The most choices of a prediction.
+/// Maximum number of choices of a prediction.
 const MOST_CHOICES: usize = 9;
 const MOST_BLOCK_PROBLEMS: usize = 20;
 
-/// Text of one or several lines, not empty: Markdown, an expression.
+/// Type of a nonempty text of one or several lines: Markdown or an expression.
 const TEXT: ValueKind = By(|value| match value.as_str() {
     Some("") => Err("must not be empty".to_owned()),
     _ => Paragraph.check(value),
@@ -116,7 +117,7 @@ fn are_choices(value: &Value) -> Result<(), String> {
     }
 }
 
-/// A unit, which is empty for a pure number.
+/// Checks a unit, which is empty for a pure number.
 fn is_unit(value: &Value) -> Result<(), String> {
     match value.as_str() {
         Some("") => Ok(()),
@@ -124,7 +125,7 @@ fn is_unit(value: &Value) -> Result<(), String> {
     }
 }
 
-/// A line of text, or a list of them.
+/// Checks a line of text or a list of lines.
 fn is_goal(value: &Value) -> Result<(), String> {
     match value {
         Value::Array(_) => Lines.check(value),
@@ -132,7 +133,7 @@ fn is_goal(value: &Value) -> Result<(), String> {
     }
 }
 
-/// What can be drawn as an answer.
+/// Checks the name of an answer that can be drawn.
 fn is_drawn(value: &Value) -> Result<(), String> {
     let name = value.as_str().unwrap_or_default();
     if DrawnAnswer::named(name).is_some() {
@@ -148,26 +149,26 @@ type BlockResult<T> = Result<T, Vec<Problem>>;
 /// A block of the file `origin`.
 pub(super) struct BlockReader<'a> {
     pub origin: String,
-    /// The word behind its fence.
+    /// Word after the opening fence.
     pub word: &'a str,
-    /// What stands between its fences.
+    /// Text between the fences.
     pub inside: &'a str,
-    /// The line of its fence.
+    /// Line of the opening fence in the file.
     pub line: usize,
 }
 
-/// The TOML of a block, and what is wrong with it.
+/// The parsed TOML of a block, with the problems found so far.
 struct BlockContent<'a> {
     reader: &'a BlockReader<'a>,
     document: Document,
-    /// Its keys. Texts have lost the blanks around them, except for those of commands.
+    /// Keys of the block. Texts are trimmed, except in commands.
     keys: Table,
     problems: Vec<Problem>,
 }
 
 impl<'a> BlockContent<'a> {
     fn parse(reader: &'a BlockReader<'a>) -> BlockResult<Self> {
-        // As many empty lines before it as there are lines before it in the file: every line has its number there.
+        // Add an empty line for each line of the file before the block, so that line numbers are those of the file.
         let text = "\n".repeat(reader.line) + reader.inside;
         let document = Document::parse(&reader.origin, &text).map_err(|problems| problems.list)?;
         let mut content = Self {
@@ -183,7 +184,7 @@ impl<'a> BlockContent<'a> {
         Ok(content)
     }
 
-    /// Parses the block, whose keys `schema` lists.
+    /// Parses the block and checks its keys against `schema`.
     fn read(reader: &'a BlockReader<'a>, schema: Schema) -> BlockResult<Self> {
         let mut content = Self::parse(reader)?;
         content.keys.iter_mut().for_each(|(_, value)| trim(value));
@@ -192,7 +193,7 @@ impl<'a> BlockContent<'a> {
         Ok(content)
     }
 
-    /// Returns the text at `key`, or each text in the list there; none if the key is absent.
+    /// Returns the text at `key`, or each text of the list there. Returns none if the key is absent.
     fn texts(&self, key: &str) -> Vec<String> {
         let value = self.keys.get(key);
         let items = match value {
@@ -207,7 +208,7 @@ impl<'a> BlockContent<'a> {
         self.texts(key).concat()
     }
 
-    /// Adds problems, whose keys are those of the TOML.
+    /// Adds problems whose keys are relative to the block.
     fn refuse(&mut self, problems: impl Into<Problems>) {
         for problem in self.document.placed(problems).list {
             if self.problems.len() < MOST_BLOCK_PROBLEMS {
@@ -225,7 +226,7 @@ impl<'a> BlockContent<'a> {
         line.unwrap_or(self.reader.line)
     }
 
-    /// Reads the Markdown at `key`.
+    /// Parses the Markdown at `key`.
     fn markdown(&mut self, key: &str, find: impl Fn(&str) -> Result<(), String>) -> LessonText {
         let line = self.line_of(key);
         LessonText::read(&self.text(key), line, find).unwrap_or_else(|problems| {
@@ -239,7 +240,7 @@ impl<'a> BlockContent<'a> {
         })
     }
 
-    /// Reads the expression `text` at `key`.
+    /// Parses the expression `text` at `key`.
     fn expression(
         &mut self,
         key: &str,
@@ -287,8 +288,7 @@ fn expression(
     Ok(expression)
 }
 
-/// Returns what the lab does: a `lab` or `task` block of page `page`, whose kept numbers are known from the page
-/// `known_from` on.
+/// Parses a `lab` or `task` block on page `page`. The numbers that it keeps are known from page `known_from`.
 pub(super) fn setup(
     reader: &BlockReader<'_>,
     names: &mut KeptNames,
@@ -359,7 +359,7 @@ fn keep(
     page: usize,
     known_from: usize,
 ) -> Vec<Keep> {
-    // Numbers that are kept at the same time do not know each other.
+    // Numbers kept by the same block cannot refer to each other.
     let earlier = names.clone();
     let mut kept = Vec::new();
     for (name, value) in table {
@@ -422,7 +422,7 @@ pub(super) fn predict(
     })
 }
 
-/// Returns the number of the right choice; or the right number, and how far off an answer may be.
+/// Returns the right choice, or the right number with its tolerance.
 fn read_right(
     right: Option<f64>,
     within: Option<f64>,
@@ -443,7 +443,7 @@ fn read_right(
     }
 }
 
-/// A prediction beside what happened.
+/// Parses a `compare` block.
 pub(super) fn compare(
     reader: &BlockReader<'_>,
     find: impl Fn(&str) -> Result<(), String>,
@@ -464,7 +464,7 @@ pub(super) fn compare(
     })
 }
 
-/// What holds once the student has done the task.
+/// Parses a `check` block.
 pub(super) fn check(
     reader: &BlockReader<'_>,
     find: impl Fn(&str) -> Result<(), String>,

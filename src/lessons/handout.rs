@@ -1,12 +1,12 @@
-//! A lesson on paper: a worksheet, which asks and has room for what is predicted and seen, or the results for afterwards.
+//! A lesson on paper: a worksheet with room for predictions and observations, or the results for afterwards.
 //!
-//! A worksheet tells nothing that answers a prediction: from the first one on, numbers in text are blanks to be filled in
-//! from the screen, and the pages that show what came out have room in the place of their words. Notes are left out, and
-//! so is how a task is done.
+//! A worksheet does not reveal the answer to a prediction. After the first prediction, numbers in the text are blanks
+//! to fill in from the screen. Pages that explain an outcome have room to write instead of their text. Notes and the
+//! solutions of tasks are omitted.
 //!
 //! - `markdown`: a handout as Markdown, with the lab's screen as text.
-//! - [`html`]: a handout as one HTML file; its pictures are inline SVG, which `figures` draws.
-//! - `answers`: what a student predicted beside what came out.
+//! - [`html`]: a handout as one HTML file with inline SVG pictures, which `figures` draws.
+//! - `answers`: a student's predictions with their outcomes.
 
 mod answers;
 mod figures;
@@ -25,16 +25,17 @@ use crate::lab::Lab;
 use crate::lab::view::Pane;
 use figures::{AxisRanges, Figure};
 
-/// Room for a number or some words.
+/// Blank for a number or a few words.
 const BLANK: &str = "____________";
 
+/// Kind of a handout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Paper {
     Worksheet,
     Results,
 }
 
-/// What a handout is written as.
+/// File format of a handout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PaperFormat {
     Markdown,
@@ -51,7 +52,7 @@ impl PaperFormat {
     }
 }
 
-/// Draws the lab. The folder that draws screens is above this one.
+/// Functions that draw the lab. They are passed in because the folder that draws screens is above this one.
 #[derive(Clone, Copy, Debug)]
 pub struct LabPictures {
     /// The whole screen as text.
@@ -60,7 +61,7 @@ pub struct LabPictures {
     pub pane: fn(&Lab, Pane) -> String,
 }
 
-/// A handout that is asked for.
+/// A request for a handout.
 #[derive(Clone, Copy, Debug)]
 pub struct Handout<'a> {
     pub lesson: &'a Lesson,
@@ -80,27 +81,27 @@ enum Part {
     Screen(String),
     Figures(Vec<Figure>),
     Question(Question),
-    /// What is to be reached, each with a box to tick.
+    /// Goals, each with a box to tick.
     Goals(Vec<String>),
-    /// Lines for a prediction and what came out.
+    /// Lines for a prediction and its outcome.
     Compared,
-    /// Lines for an explanation of what came out.
+    /// Lines for an explanation of the outcome.
     Why,
-    /// Lines for what the page explains.
+    /// Lines for the page's explanation in the reader's own words.
     OwnWords,
 }
 
 /// A question of a handout.
 #[derive(Clone, Debug, PartialEq)]
 struct Question {
-    /// The name of the prediction.
+    /// Name of the prediction.
     name: String,
     /// Markdown.
     ask: String,
     asked: AnswerKind,
-    /// Whether it has room to draw and to give a reason.
+    /// True if there is room to draw and to give a reason.
     has_room: bool,
-    /// The empty axes to draw in, if the answer can be drawn.
+    /// Empty axes to draw in, if the answer can be drawn.
     frame: Option<Figure>,
 }
 
@@ -108,7 +109,8 @@ impl Handout<'_> {
     /// Plays the lesson in a new `lab` and writes its handout.
     ///
     /// # Errors
-    /// When a page cannot be played.
+    ///
+    /// Returns an error if a page cannot be played.
     pub fn write(&self, lab: Lab, go_on: LessonProgressCallback<'_>) -> Result<String, Problem> {
         let mut walk = LessonWalk::new(self.lesson, lab);
         let head = head(self.lesson, &walk);
@@ -118,7 +120,7 @@ impl Handout<'_> {
         for page in &self.lesson.pages {
             walk.enter(page, go_on)?;
             let asks = page.predicts().next().is_some();
-            // After the first question a picture could show what came out.
+            // After the first question, a picture could show the outcome.
             let may_be_seen = self.paper == Paper::Results || !has_asked || asks;
             let picture = may_be_seen
                 .then(|| self.picture(page, &walk.lab, &mut ranges, go_on))
@@ -126,7 +128,7 @@ impl Handout<'_> {
             if self.paper == Paper::Worksheet && has_asked {
                 parts.extend(blank_page(page, picture));
             } else {
-                parts.extend(self.told_page(page, &walk, picture));
+                parts.extend(self.full_page(page, &walk, picture));
                 has_asked |= asks;
             }
             if self.paper == Paper::Worksheet {
@@ -142,8 +144,8 @@ impl Handout<'_> {
         })
     }
 
-    /// Returns a page with its words and numbers; on a worksheet, those up to its question.
-    fn told_page(
+    /// Returns a page with its text and numbers. On a worksheet, it ends with the page's question.
+    fn full_page(
         &self,
         page: &LessonPage,
         walk: &LessonWalk<'_>,
@@ -163,7 +165,7 @@ impl Handout<'_> {
                     let ask = predict.ask.with_numbers(&walk.lab, &walk.kept);
                     parts.push(question(predict, ask, is_worksheet));
                 }
-                other => parts.extend(told(other, walk)),
+                other => parts.extend(block_part(other, walk)),
             }
         }
         if blocks.len() < page.blocks.len() {
@@ -172,7 +174,7 @@ impl Handout<'_> {
         parts
     }
 
-    /// Returns what the lab shows on `page`, if its block makes the lab do something.
+    /// Returns the picture of the lab on `page`, if the page has a `lab` block.
     fn picture(
         &self,
         page: &LessonPage,
@@ -190,12 +192,11 @@ impl Handout<'_> {
     }
 }
 
-/// Returns a page of a worksheet after the first prediction: what is asked and what is to be done, and room for the
-/// rest.
+/// Returns a page of a worksheet after the first prediction: questions and tasks, and room for the rest.
 fn blank_page(page: &LessonPage, mut picture: Option<Part>) -> Vec<Part> {
     let mut parts = vec![Part::Heading(page.heading.clone())];
     let asks = page.predicts().next().is_some();
-    // What is to be typed says what to do, unless the page compares it with a prediction.
+    // Commands to type tell the reader what to do, unless the page compares their outcome with a prediction.
     let is_typed = page.blocks.iter().any(is_shell) && page.compares().next().is_none();
     let is_done = is_typed || page.task().is_some();
     let tells = !asks && !is_done && page.checks().next().is_none();
@@ -230,7 +231,7 @@ fn blank_page(page: &LessonPage, mut picture: Option<Part>) -> Vec<Part> {
     parts
 }
 
-/// Gives the questions that `page` compares with what came out their axes: by then it is known how long that takes.
+/// Adds axes to the questions whose outcome `page` shows. Only now is the duration of the run known.
 fn add_frames(parts: &mut [Part], page: &LessonPage, walk: &LessonWalk<'_>, ranges: &AxisRanges) {
     for compare in page.compares() {
         let asked = walk.lesson.predict(&compare.prediction);
@@ -245,8 +246,7 @@ fn add_frames(parts: &mut [Part], page: &LessonPage, walk: &LessonWalk<'_>, rang
     }
 }
 
-/// Returns the page on which `walk` stands as Markdown, with the lab's screen even where the page itself makes the lab do
-/// nothing.
+/// Returns the current page of `walk` as Markdown, with the lab's screen even if the page has no `lab` block.
 pub fn page(page: &LessonPage, walk: &LessonWalk<'_>, screen: fn(&Lab) -> String) -> String {
     let mut parts = vec![Part::Heading(page.heading.clone())];
     if page.lab().is_none() {
@@ -259,13 +259,13 @@ pub fn page(page: &LessonPage, walk: &LessonWalk<'_>, screen: fn(&Lab) -> String
                 let ask = predict.ask.with_numbers(&walk.lab, &walk.kept);
                 parts.push(question(predict, ask, false));
             }
-            other => parts.extend(told(other, walk)),
+            other => parts.extend(block_part(other, walk)),
         }
     }
     markdown::of_parts(&parts)
 }
 
-/// Returns whether it is a command to be typed.
+/// Returns true if the block is a command to type in a shell.
 fn is_shell(block: &LessonBlock) -> bool {
     matches!(block, LessonBlock::Shown(code) if code.language == "sh")
 }
@@ -280,7 +280,7 @@ fn question(predict: &Predict, ask: String, has_room: bool) -> Part {
     })
 }
 
-/// Returns a question of which no number is told.
+/// Returns a question with blanks for its numbers.
 fn blank_question(predict: &Predict) -> Part {
     question(predict, predict.ask.filled(|_, _| BLANK.to_owned()), true)
 }
@@ -289,7 +289,7 @@ fn joined(parts: &[String]) -> String {
     parts.join("\n\n") + "\n"
 }
 
-/// What stands above the first page.
+/// Text above the first page.
 struct Head {
     title: String,
     /// Markdown.
@@ -304,11 +304,14 @@ fn head(lesson: &Lesson, walk: &LessonWalk<'_>) -> Head {
     Head {
         title: lesson.title.clone(),
         about: about.trim().to_owned(),
-        introduction: introduction.filter_map(|block| told(block, walk)).collect(),
+        introduction: introduction
+            .filter_map(|block| block_part(block, walk))
+            .collect(),
     }
 }
 
-fn told(block: &LessonBlock, walk: &LessonWalk<'_>) -> Option<Part> {
+/// Returns the part of the handout that shows a block, if it is shown.
+fn block_part(block: &LessonBlock, walk: &LessonWalk<'_>) -> Option<Part> {
     let (lab, kept) = (&walk.lab, &walk.kept);
     match block {
         LessonBlock::Text(text) => Some(Part::Text(text.with_numbers(lab, kept))),
@@ -321,7 +324,7 @@ fn told(block: &LessonBlock, walk: &LessonWalk<'_>) -> Option<Part> {
     }
 }
 
-/// Returns the comparison with room for the prediction.
+/// Returns the comparison with a blank for the prediction.
 fn blanked(compare: &Compare, lab: &Lab, kept: &KeptNumbers) -> String {
     let with = compare.came_out(lab, kept);
     compare.text.filled(|expression, format| {

@@ -1,4 +1,4 @@
-//! A lesson as it was read: its pages, and the blocks of each in the order of the file.
+//! A parsed lesson: its pages, and their blocks in the order of the file.
 
 use super::names::KeptNumbers;
 use super::text::LessonText;
@@ -9,47 +9,49 @@ use crate::lab::command::{Command, LocatedCommand};
 use crate::lab::view::HideablePart;
 use serde::{Deserialize, Serialize};
 
+/// A lesson.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Lesson {
-    /// The name of a shipped lesson, or the file as the user named it.
+    /// Name of a shipped lesson, or the file as the user named it.
     pub name: String,
-    /// The file that messages name.
+    /// File that messages name.
     pub origin: String,
-    /// Its level-1 heading.
+    /// Level-1 heading.
     pub title: String,
-    /// What it is about, one line; empty where the file does not say it.
+    /// Subject in one line; empty if the file does not state it.
     pub about: String,
+    /// Duration of the lesson, minutes.
     pub minutes: Option<u32>,
-    /// What a teacher plans with.
+    /// Information for a teacher.
     pub guide: LessonGuide,
-    /// The blocks before the first page: text, code that is shown as it is, and notes.
+    /// Blocks before the first page: text, code to show, and notes.
     pub introduction: Vec<LessonBlock>,
-    /// The pages; never empty. The page with the number N (from 1) is `pages[N - 1]`.
+    /// Pages; never empty. The page with the number N (from 1) is `pages[N - 1]`.
     pub pages: Vec<LessonPage>,
 }
 
-/// What a teacher wants to know before the lesson is chosen, and in front of the class. Empty where the file does not say it.
+/// Information for the teacher who chooses and holds the lesson. Fields are empty if the file does not state them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LessonGuide {
     pub level: Option<LessonLevel>,
     /// Names of lessons to take first, and tools such as Python.
     pub needs: Vec<String>,
-    /// What a student can do or explain afterwards.
+    /// Goals: abilities of a student after the lesson.
     pub goals: Vec<String>,
-    /// What a real top does and the model does not.
+    /// Properties of a real top that the model lacks.
     pub leaves_out: Vec<String>,
-    /// Minutes of each page, in order; they add up to the minutes of the lesson.
+    /// Minutes of each page, in order. They add up to the minutes of the lesson.
     pub page_minutes: Vec<u32>,
 }
 
 impl LessonGuide {
-    /// Returns what it needs as a sentence without its full stop; none if it needs nothing.
+    /// Returns the requirements as a sentence without its full stop, or `None` if there are none.
     pub fn needs_in_words(&self) -> Option<String> {
         (!self.needs.is_empty()).then(|| format!("Needs {}", self.needs.join("; ")))
     }
 }
 
-/// What a lesson takes for granted, from little to much.
+/// Prior knowledge that a lesson requires, lowest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum LessonLevel {
     /// Forces, and curves over time.
@@ -63,7 +65,7 @@ pub enum LessonLevel {
 impl LessonLevel {
     pub const ALL: [Self; 3] = [Self::School, Self::FirstYear, Self::MechanicsCourse];
 
-    /// Returns its name in lesson files and lists.
+    /// Returns the name of the level in lesson files and lists.
     pub fn name(self) -> &'static str {
         match self {
             Self::School => "school",
@@ -77,13 +79,13 @@ impl LessonLevel {
     }
 }
 
-/// A page: a level-2 heading and all that stands below it.
+/// A page: a level-2 heading and everything below it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LessonPage {
-    /// Its number, from 1.
+    /// Number of the page, from 1.
     pub number: usize,
     pub heading: String,
-    /// The heading's line in the file, from 1.
+    /// Line of the heading in the file, from 1.
     pub line: usize,
     pub blocks: Vec<LessonBlock>,
 }
@@ -92,65 +94,66 @@ pub struct LessonPage {
 #[derive(Clone, Debug, PartialEq)]
 pub enum LessonBlock {
     Text(LessonText),
-    /// What the lab does when the page is opened; at most one on a page.
+    /// Commands for the lab when the page is opened; at most one block per page.
     Lab(Setup),
-    /// What the student is to do; the lab does it only when it is asked to show it. At most one on a page.
+    /// Task of the student. The lab carries it out only on request. At most one per page.
     Task(Setup),
     Predict(Predict),
-    /// A prediction beside what happened.
+    /// A prediction with its outcome.
     Compare(Compare),
-    /// What holds once the student has done the task.
+    /// Condition that holds after the task.
     Check(Check),
     Notes(LessonText),
     Shown(CodeBlock),
 }
 
-/// What a `lab` or `task` block makes the lab do.
+/// The commands of a `lab` or `task` block.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setup {
     pub line: usize,
-    /// The commands in the order in which they are carried out, with their lines in the file: `open`, `set`, `push`, how
-    /// the run is shown, then `go_to` or `run_until`.
+    /// Commands in the order of execution, with their lines in the file: `open`, `set`, `push`, settings of the view,
+    /// then `go_to` or `run_until`.
     pub commands: Vec<LocatedCommand>,
-    /// The numbers that are remembered once all of this is done.
+    /// Numbers to remember after the commands.
     pub keep: Vec<Keep>,
 }
 
-/// A number that is remembered for later pages.
+/// A number to remember for later pages.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Keep {
     pub name: String,
     pub expression: Expression,
 }
 
+/// A question that asks for a prediction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Predict {
     pub line: usize,
-    /// Its name; no other prediction of the lesson has it.
+    /// Name of the prediction, unique in the lesson.
     pub name: String,
     pub ask: LessonText,
     pub asked: AnswerKind,
-    /// What comes out, for the teacher; where the file says it.
+    /// Right answer, for the teacher, if the file states it.
     pub right: Option<Right>,
-    /// For the teacher: which wrong answer is common, and why. Empty where the file does not say it.
+    /// Common wrong answer and its reason, for the teacher; empty if the file does not state it.
     pub expected: String,
-    /// For the teacher: what to show or say if few are right. Empty where the file does not say it.
+    /// Explanation for a class in which few are right, for the teacher; empty if the file does not state it.
     pub explain: String,
-    /// On paper: the axes in which the answer can be drawn.
+    /// Axes on paper in which the answer can be drawn.
     pub draw: Option<DrawnAnswer>,
 }
 
-/// The picture that answers a question.
+/// Picture that answers a question.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DrawnAnswer {
     /// The path of the traced point from above.
     FromAbove,
-    /// The column of the CSV with this name, over time.
+    /// CSV column with this name, over time.
     OverTime(&'static str),
 }
 
 impl DrawnAnswer {
-    /// Returns the picture with this name: `above`, or a column of the CSV.
+    /// Returns the picture with this name: `above`, or a CSV column.
     pub fn named(name: &str) -> Option<Self> {
         match name {
             ABOVE => Some(Self::FromAbove),
@@ -159,16 +162,17 @@ impl DrawnAnswer {
     }
 }
 
+/// Right answer to a question.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Right {
-    /// The number of the choice, from 1.
+    /// Number of the choice, from 1.
     Choice(usize),
-    /// A number, and how far off an answer may be.
+    /// A number with the tolerance of an answer.
     Number { value: f64, within: f64 },
 }
 
 impl Right {
-    /// Returns whether `answer` is right: a number, or the number of a choice.
+    /// Returns true if `answer`, a number or the number of a choice, is right.
     pub fn accepts(&self, answer: f64) -> bool {
         match self {
             Self::Choice(number) => answer == *number as f64,
@@ -177,14 +181,16 @@ impl Right {
     }
 }
 
+/// Kind of answer that a question asks for.
 #[derive(Clone, Debug, PartialEq)]
 pub enum AnswerKind {
-    /// One of these; at least two.
+    /// One of these choices; at least two.
     Choice(Vec<String>),
     /// A number in this unit, which is empty for a pure number.
     Number { unit: String },
 }
 
+/// A student's answer to a question.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum PredictionAnswer {
@@ -192,37 +198,38 @@ pub enum PredictionAnswer {
     Choice(String),
 }
 
-/// In the text of a comparison: the prediction, and the number that it is compared with.
+/// Names in the text of a comparison: the prediction, and the number that is compared with it.
 pub(super) const PREDICTION: &str = "prediction";
 pub(super) const WITH: &str = "with";
 
-/// A prediction beside what happened.
+/// A prediction with its outcome.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compare {
     pub line: usize,
     pub prediction: String,
     pub with: Option<Expression>,
-    /// What is said, in Markdown; `{with}` stands for that number and `{prediction}` for the prediction.
+    /// Markdown text. `{with}` is replaced by the number, and `{prediction}` by the prediction.
     pub text: LessonText,
 }
 
-/// What holds once the student has done the task; where the page has no task, once its `lab` block is carried out.
+/// A condition that holds after the task or, if the page has no task, after its `lab` block.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
     pub line: usize,
     pub that: Expression,
-    /// What is to be reached, in words: one text for all of it, or one for each part that `and` joins; empty where the
-    /// file does not say it.
+    /// Goals in words: one text for the whole condition, or one for each part joined by `and`; empty if the file does
+    /// not state any.
     pub goals: Vec<String>,
-    /// Help for one who has not got there; empty where the file has none.
+    /// Help for a student who has not reached the goals; empty if the file has none.
     pub hint: String,
 }
 
+/// Code or text that the page shows unchanged.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CodeBlock {
-    /// The word behind its fence (`text`, `sh`, `toml`, `csv`, `python`, `matlab`), or none.
+    /// Word after the opening fence (`text`, `sh`, `toml`, `csv`, `python`, `matlab`), or empty.
     pub language: String,
-    /// Its lines, with a line end after each.
+    /// Lines, each with a line end.
     pub text: String,
 }
 
@@ -239,7 +246,7 @@ impl Lesson {
 }
 
 impl LessonBlock {
-    /// Returns the text in it, which may hold numbers of the run.
+    /// Returns the text of the block, which may contain numbers of the run.
     pub fn text(&self) -> Option<&LessonText> {
         match self {
             Self::Text(text) | Self::Notes(text) => Some(text),
@@ -249,7 +256,7 @@ impl LessonBlock {
         }
     }
 
-    /// Returns the numbers that it states.
+    /// Returns the expressions whose numbers the block states.
     fn expressions(&self) -> impl Iterator<Item = &Expression> {
         let with = match self {
             Self::Compare(compare) => compare.with.as_ref(),
@@ -261,7 +268,7 @@ impl LessonBlock {
 }
 
 impl LessonPage {
-    /// Returns what the lab does when the page is opened.
+    /// Returns the commands for the lab when the page is opened.
     pub fn lab(&self) -> Option<&Setup> {
         self.blocks.iter().find_map(|block| match block {
             LessonBlock::Lab(setup) => Some(setup),
@@ -269,7 +276,7 @@ impl LessonPage {
         })
     }
 
-    /// Returns what the student is to do.
+    /// Returns the task of the student.
     pub fn task(&self) -> Option<&Setup> {
         self.blocks.iter().find_map(|block| match block {
             LessonBlock::Task(setup) => Some(setup),
@@ -284,7 +291,7 @@ impl LessonPage {
         })
     }
 
-    /// Returns what must hold once the student has done the task.
+    /// Returns the conditions that must hold after the task.
     pub fn checks(&self) -> impl Iterator<Item = &Check> {
         self.blocks.iter().filter_map(|block| match block {
             LessonBlock::Check(check) => Some(check),
@@ -292,7 +299,7 @@ impl LessonPage {
         })
     }
 
-    /// Returns whether it asks for the prediction called `name`.
+    /// Returns true if the page asks for the prediction called `name`.
     pub fn asks(&self, name: &str) -> bool {
         self.predicts().any(|predict| predict.name == name)
     }
@@ -304,13 +311,12 @@ impl LessonPage {
         })
     }
 
-    /// Returns whether its run is played, and what stands behind its `lab` block comes once that has arrived.
+    /// Returns true if the page plays its run, and shows the blocks after its `lab` block only at the end of the run.
     pub fn plays(&self) -> bool {
         self.lab().is_some_and(Setup::plays)
     }
 
-    /// Returns whether it states numbers of the run that a student has in hand: what `kept` names is known whatever that
-    /// is.
+    /// Returns true if the page states numbers of the present run. Numbers in `kept` do not depend on the present run.
     pub fn states_numbers(&self, kept: &KeptNumbers) -> bool {
         self.blocks
             .iter()
@@ -329,12 +335,12 @@ impl LessonPage {
 }
 
 impl Setup {
-    /// Returns whether it opens a run: it then depends on nothing before it but kept numbers.
+    /// Returns true if the block opens a run. It then depends on nothing before it except kept numbers.
     pub fn opens(&self) -> bool {
         self.has_command(|command| matches!(command, Command::Open(_)))
     }
 
-    /// Returns whether it ends with a run that is played until a condition holds.
+    /// Returns true if the block ends with a run that is played until a condition holds.
     pub fn plays(&self) -> bool {
         self.has_command(|command| matches!(command, Command::RunUntil(_)))
     }
@@ -343,7 +349,7 @@ impl Setup {
         self.commands.iter().any(|placed| is_meant(&placed.command))
     }
 
-    /// Returns the parts of the screen that its `hide` names.
+    /// Returns the parts of the screen that the block hides.
     pub fn hides(&self) -> Vec<HideablePart> {
         self.commands
             .iter()
@@ -354,7 +360,8 @@ impl Setup {
 }
 
 impl AnswerKind {
-    /// `answer` as a number, such as that of its choice from 1; `None` where it is no answer to this.
+    /// Returns `answer` as a number (for a choice, its number from 1), or `None` if it does not answer this kind of
+    /// question.
     pub fn number(&self, answer: &PredictionAnswer) -> Option<f64> {
         match (self, answer) {
             (Self::Number { .. }, PredictionAnswer::Number(number)) => Some(*number),

@@ -1,9 +1,9 @@
-//! Markdown as paragraphs for the page beside the run.
+//! Converts Markdown to the paragraphs of a page.
 
 use crate::lab::sheet::{Emphasis, Paragraph, SheetLineKind, StyledText};
 use pulldown_cmark::{Event, Parser, Tag, TagEnd};
 
-/// Returns the paragraphs of `source`; plain ones become `kind`.
+/// Returns the paragraphs of `source`. Plain paragraphs get the kind `kind`.
 pub fn paragraphs(source: &str, kind: &SheetLineKind) -> Vec<Paragraph> {
     let mut pen = MarkdownReader {
         kind,
@@ -21,17 +21,17 @@ pub fn paragraphs(source: &str, kind: &SheetLineKind) -> Vec<Paragraph> {
     pen.done
 }
 
-/// What has been read so far.
+/// The state of the conversion.
 struct MarkdownReader<'a> {
     kind: &'a SheetLineKind,
     done: Vec<Paragraph>,
     words: Vec<StyledText>,
     emphasis: Emphasis,
-    /// The lists that are open, each with the number of its next entry where it is numbered.
+    /// Open lists, each with the number of its next entry if it is numbered.
     lists: Vec<Option<u64>>,
-    /// The mark of the entry that is read; after its first paragraph a blank.
+    /// Mark of the present entry; a blank after its first paragraph.
     mark: String,
-    /// Code or a heading.
+    /// Kind of the present paragraph if it is code or a heading.
     block: Option<SheetLineKind>,
 }
 
@@ -43,7 +43,7 @@ impl MarkdownReader<'_> {
             Event::Text(text) => self.write(&text, self.emphasis),
             Event::Code(code) => self.write(&code, Emphasis::Code),
             Event::SoftBreak | Event::HardBreak => self.write(" ", self.emphasis),
-            // What a viewer of Markdown would show of them is nothing or a line.
+            // Other elements have no text.
             _ => {}
         }
     }
@@ -84,7 +84,7 @@ impl MarkdownReader<'_> {
         }
     }
 
-    /// Ends the paragraph that is being read, and begins one of this kind, or of the usual one.
+    /// Ends the present paragraph and begins one of this kind, or a plain one.
     fn begin(&mut self, block: Option<SheetLineKind>) {
         self.end();
         self.block = block;
@@ -100,7 +100,7 @@ impl MarkdownReader<'_> {
         }
     }
 
-    /// Ends the paragraph that is being read.
+    /// Ends the present paragraph.
     fn end(&mut self) {
         let words = std::mem::take(&mut self.words);
         if words.iter().all(|words| words.text.trim().is_empty()) {

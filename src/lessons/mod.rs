@@ -1,20 +1,20 @@
-//! Lessons: Markdown files with blocks that say what the lab does, read, checked, played without a screen, and taken beside
-//! the lab.
+//! Lessons: Markdown files whose blocks control the lab. They are read, checked, played without a screen, and shown
+//! next to the panes.
 //!
-//! It uses the [`lab`](crate::lab), to which its blocks send commands. All that concerns the content, the course or the print
-//! of a lesson belongs here. The pane that shows a page belongs to [`tui`](crate::tui).
+//! The blocks send commands to the [`lab`](crate::lab). The content, the state and the printed forms of a lesson belong
+//! here. The pane that shows a page belongs to [`tui`](crate::tui).
 //!
-//! - [`lesson`]: a lesson as it was read: its pages, and the blocks of each.
-//! - [`opening`]: a shipped lesson or a file is opened; [`reading`]: its Markdown becomes a [`Lesson`]; every refusal names
-//!   file, line and key.
-//! - [`text`](mod@text): text whose numbers come from the run.
-//! - [`names`]: the numbers that an expression of a lesson can name.
-//! - [`predictions`]: what a student has predicted.
-//! - [`stage`]: what to carry out to stand on a page.
-//! - [`play`]: a lesson played to its end without a screen, and whether its checks do what they should.
-//! - [`handout`]: a lesson on paper, and what was predicted beside what came out; [`teacher`]: a sheet for the teacher.
-//! - [`state`]: the lessons of a lab; [`open_lesson`]: the one that is open, with what its page has stated; [`page`]: what stands
-//!   beside the panes, of [`markdown`]; [`clock`] and [`watch`]: the time, and a file that changes.
+//! - [`lesson`]: a parsed lesson, with its pages and their blocks.
+//! - [`opening`]: opens a shipped lesson or a file.
+//! - [`reading`]: parses Markdown into a [`Lesson`]. Every error names file, line and key.
+//! - [`text`](mod@text): text with numbers of the run.
+//! - [`names`]: the numbers that expressions of a lesson can use.
+//! - [`predictions`]: the student's predictions.
+//! - [`stage`]: the commands that bring the lab to the state of a page.
+//! - [`play`]: plays a lesson to its end without a screen and tests its checks.
+//! - [`handout`]: a lesson on paper, and predictions with their outcomes. [`teacher`]: the teacher's sheet.
+//! - [`state`]: the lessons of a lab. [`open_lesson`]: the open lesson. [`page`]: its page as a sheet, made of
+//!   [`markdown`]. [`clock`]: the time. [`watch`]: detects changes of a file.
 //! - [`shipped`]: the lessons that come with the program.
 
 mod blocks;

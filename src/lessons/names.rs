@@ -1,4 +1,4 @@
-//! The numbers that an expression of a lesson can name: those of a run, and those that earlier pages have kept.
+//! The numbers that expressions of a lesson can use: readouts of a run, and numbers kept by earlier pages.
 
 use crate::engine::analysis::readouts;
 use crate::engine::journal::expression::Expression;
@@ -6,31 +6,32 @@ use crate::engine::scenario::problem::nearest;
 use crate::lab::{Lab, numbers};
 use std::collections::BTreeMap;
 
-/// The numbers that were kept, by their names. One that could not be stated is NaN.
+/// Kept numbers by their names. A number that was not available is NaN.
 pub type KeptNumbers = BTreeMap<String, f64>;
 
-/// Names that mean something else in a lesson.
+/// Names with another meaning in a lesson.
 const RESERVED: [&str; 5] = ["with", "prediction", "and", "or", "abs"];
 
-/// The most numbers that a lesson keeps.
+/// Maximum number of kept numbers in a lesson.
 const MOST_KEPT_NUMBERS: usize = 100;
 
-/// The names under which a lesson keeps numbers.
+/// Names under which a lesson keeps numbers.
 #[derive(Clone, Debug, Default)]
 pub(super) struct KeptNames {
-    /// Each with the first page on which it is known.
+    /// Names, each with the first page on which it is known.
     kept: Vec<(String, usize)>,
-    /// The first page on which a run is open, once a block that opens one was read.
+    /// First page on which a run is open, once a block that opens one has been read.
     open_from: Option<usize>,
-    /// Whether a block could not be read that may have kept more numbers.
+    /// True if a block that may keep numbers could not be read.
     is_incomplete: bool,
 }
 
 impl KeptNames {
-    /// Adds `name`, which is known from the page `from` on.
+    /// Adds `name`, which is known from page `from`.
     ///
     /// # Errors
-    /// Why no number can be kept under that name.
+    ///
+    /// Returns the reason if no number can be kept under that name.
     pub(super) fn keep(&mut self, name: &str, from: usize) -> Result<(), String> {
         let mut characters = name.chars();
         let begins = characters.next().is_some_and(|c| c.is_ascii_alphabetic());
@@ -53,7 +54,7 @@ impl KeptNames {
         Err(rule.to_owned())
     }
 
-    /// Notes that from the page `page` on a run is open, if none was before.
+    /// Records that a run is open from page `page`, unless one was open before.
     pub(super) fn open_from(&mut self, page: usize) {
         self.open_from.get_or_insert(page);
     }
@@ -62,15 +63,17 @@ impl KeptNames {
         self.kept.iter().any(|(known, _)| known == name)
     }
 
-    /// Notes that a block could not be read: from now on a name that is not known may be one of its own, and is taken.
+    /// Records that a block could not be read. Unknown names are accepted from now on, because that block may define
+    /// them.
     pub(super) fn mark_incomplete(&mut self) {
         self.is_incomplete = true;
     }
 
-    /// Whether `name` stands for a number on the page `page`.
+    /// Checks that `name` is a number on page `page`.
     ///
     /// # Errors
-    /// Why it does not, with the nearest name that does.
+    ///
+    /// Returns the reason if it is not, with the nearest known name.
     pub(super) fn find(&self, name: &str, page: usize) -> Result<(), String> {
         match self.kept.iter().find(|(known, _)| known == name) {
             Some((_, from)) if *from <= page => return Ok(()),
@@ -98,7 +101,8 @@ impl KeptNames {
     }
 }
 
-/// Returns the kept number called `name`, or else the run's number in `lab`; `None` if there is none now.
+/// Returns the kept number called `name`, or else the run's number in `lab`. Returns `None` if neither is available
+/// now.
 pub fn number(name: &str, lab: &Lab, kept: &KeptNumbers) -> Option<f64> {
     match kept.get(name) {
         Some(number) => Some(*number).filter(|number| number.is_finite()),
@@ -106,7 +110,7 @@ pub fn number(name: &str, lab: &Lab, kept: &KeptNumbers) -> Option<f64> {
     }
 }
 
-/// Returns the value of `expression` in `lab`; `None` where a number that it needs is not there.
+/// Returns the value of `expression` in `lab`, or `None` if a number that it needs is not available.
 pub fn value(expression: &Expression, lab: &Lab, kept: &KeptNumbers) -> Option<f64> {
     let value = expression.value(|name| number(name, lab, kept));
     value.filter(|value| value.is_finite())

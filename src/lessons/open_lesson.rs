@@ -1,4 +1,4 @@
-//! The open lesson: its page, the predictions of its reader, and what the lab does for it.
+//! The open lesson: its page, its reader's predictions, and its effects on the lab.
 
 mod keys;
 
@@ -20,44 +20,45 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// How long the pages before one may take to be carried out: no key is answered meanwhile.
+/// Longest time for carrying out the pages before a page. No key is handled meanwhile.
 const LONGEST_PAGE_REPLAY: Duration = Duration::from_secs(5);
 const REPLAY_TOO_LONG: &str =
     "the pages before this one take too long: its lab block should open a run of its own";
 
+/// The open lesson.
 #[derive(Debug)]
 pub struct OpenLesson {
     pub lesson: Arc<Lesson>,
-    /// Its file, where it does not come with the program.
+    /// Watched file, unless the lesson comes with the program.
     watch: Option<Watch>,
     pub place: LessonProgress,
-    /// By the names of open questions: the answer that is chosen, from 0, which Enter locks.
+    /// Chosen answers (from 0) that Enter locks, by the names of their questions.
     pub chosen: BTreeMap<String, usize>,
-    /// Whether an answer on this page was given.
+    /// True if an answer on this page has been locked.
     pub has_answered: bool,
-    /// The lines of the checks of this page that have held.
+    /// Lines of the checks of this page that have held.
     reached: BTreeSet<usize>,
-    /// Where the lab stood when it had carried out the blocks that the page stands on: acts done, and step.
+    /// State of the lab when it had carried out the blocks of the page: number of acts, and step.
     arrived_at: Option<(usize, u64)>,
-    /// Whether the hints of the page's checks are shown.
+    /// True if the hints of the page's checks are shown.
     pub shows_hints: bool,
     under_way: Option<PendingBlock>,
-    /// In a class that is followed: whether its run has arrived where the page wants it.
+    /// Set while a class is followed: true if the class's run has arrived at the state of the page.
     pub(super) follows: Option<bool>,
-    /// The present rounds of the class's questions, by their names, and whether they are closed.
+    /// Present rounds of the class's questions by name, each with true if it is closed.
     pub(super) rounds: BTreeMap<String, (u32, bool)>,
-    /// Whether turning the page was refused once, because a prediction is open.
+    /// Set after the first `n` on a page with an open prediction.
     pub(super) was_asked: bool,
-    /// Whether the teacher's notes and the clock are shown.
+    /// True if the teacher's notes and the clock are shown.
     pub shows_notes: bool,
-    /// When the lesson was opened in this lab, on the clock of the lab.
+    /// Time at which the lesson was opened in this lab, on the clock of the lab.
     since: Duration,
-    /// How long before that it was opened first.
+    /// Time from the first opening of the lesson until `since`.
     gone_before: Duration,
 }
 
-/// What a class that is followed shows of a lesson: its name, the page, the numbers that were kept, and whether its run
-/// has arrived where the page wants it.
+/// The state of a lesson in a followed class: its name, the page, the kept numbers, and true if the class's run has
+/// arrived at the state of the page.
 #[derive(Clone, Copy, Debug)]
 pub struct ClassPage<'a> {
     pub lesson: &'a str,
@@ -66,17 +67,17 @@ pub struct ClassPage<'a> {
     pub has_arrived: bool,
 }
 
-/// A block of a page that the lab carries out.
+/// A block of a page that the lab is carrying out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum PendingBlock {
     Lab(usize),
     Task(usize),
-    /// The student has left it before it was complete.
+    /// The student has stopped the block before its end.
     Left,
 }
 
 impl OpenLesson {
-    /// `lesson` at `place`, opened at `now` on the clock of the lab.
+    /// Opens `lesson` at `place`. `now` is the time on the clock of the lab.
     pub(super) fn new(lesson: Lesson, mut place: LessonProgress, now: Duration) -> Self {
         place.page = place.page.clamp(1, lesson.pages.len().max(1));
         let unix_s = clock::unix_s();
@@ -113,20 +114,20 @@ impl OpenLesson {
         self.lesson.page(self.place.page)
     }
 
-    /// Returns the question of the page that is not answered yet; the first of them.
+    /// Returns the first question of the page that is not answered.
     pub fn asked(&self) -> Option<&Predict> {
         self.page()?
             .predicts()
             .find(|predict| self.is_open(predict))
     }
 
-    /// Returns whether an answer to the open question is chosen, and not locked.
+    /// Returns true if an answer to the open question is chosen but not locked.
     fn has_chosen(&self) -> bool {
         let asked = self.asked();
         asked.is_some_and(|it| self.chosen.contains_key(&it.name))
     }
 
-    /// Returns whether an answer to `predict` is wanted: there is none, or none of the round that a class is at.
+    /// Returns true if `predict` needs an answer: it has none, or none in the present round of the class.
     pub fn is_open(&self, predict: &Predict) -> bool {
         let predictions = &self.place.predictions;
         match self.rounds.get(&predict.name) {
@@ -135,7 +136,7 @@ impl OpenLesson {
         }
     }
 
-    /// Shows the page of `class` without touching the run. Returns whether that is new.
+    /// Shows the page of `class` without changing the run. Returns true if the page is new.
     pub(super) fn show_class_page(&mut self, class: &ClassPage<'_>) -> bool {
         let page = class.page.clamp(1, self.lesson.pages.len().max(1));
         let before = self.follows.replace(class.has_arrived);
@@ -147,33 +148,33 @@ impl OpenLesson {
         is_new
     }
 
-    /// Goes on without the class. Where its run had not arrived, the page is left as if its own run had been.
+    /// Leaves the class. If the class's run had not arrived, the page counts as left before the end of its own run.
     pub(super) fn leave_class(&mut self) {
         let is_left = self.follows.take() == Some(false) && self.is_under_way();
         self.under_way = is_left.then_some(PendingBlock::Left).or(self.under_way);
     }
 
-    /// Returns whether the check at this line of the file has held since the page was opened.
+    /// Returns true if the check at this line of the file has held since the page was opened.
     pub fn has_reached(&self, line: usize) -> bool {
         self.reached.contains(&line)
     }
 
-    /// Returns whether the lab is still on its way to where the page wants it.
+    /// Returns true until the lab has arrived at the state of the page.
     pub fn is_under_way(&self) -> bool {
         self.place.stated.is_none()
     }
 
-    /// Returns whether the page's run is played, and has not arrived yet.
+    /// Returns true if the page plays its run, which has not arrived yet.
     pub fn plays(&self) -> bool {
         self.is_under_way() && self.page().is_some_and(LessonPage::plays)
     }
 
-    /// Returns whether the student has left the page's run before it arrived.
+    /// Returns true if the student has stopped the page's run before its end.
     pub fn has_left(&self) -> bool {
         self.under_way == Some(PendingBlock::Left)
     }
 
-    /// Goes on with a page whose run was on its way when the page was left, or had been left before it arrived.
+    /// Resumes a page whose run had not ended when the page was left, or was stopped before its end.
     pub(super) fn resume_page(&mut self, lab: &Lab) {
         if self.is_under_way() && !lab.script().is_done() {
             self.under_way = Some(PendingBlock::Lab(self.place.page));
@@ -182,13 +183,12 @@ impl OpenLesson {
         }
     }
 
-    /// Returns whether the student has left the place where the page's numbers were stated.
+    /// Returns true if the lab is no longer in the state in which the page's numbers were stated.
     fn has_wandered(&self, lab: &Lab) -> bool {
         self.arrived_at != Some(place_of(lab))
     }
 
-    /// Returns the text at this line of the file with its numbers, where it is one that the student's own run does not
-    /// change.
+    /// Returns the text at this line of the file with its numbers, if the student's own run does not change them.
     pub fn stated(&self, line: usize) -> Option<&str> {
         let texts = self.place.stated.as_ref()?;
         texts.get(&line.to_string()).map(String::as_str)
@@ -200,10 +200,12 @@ impl OpenLesson {
             .then(|| clock::shown(since, self.lesson.minutes))
     }
 
-    /// Turns to the page `page` (from 1), or stays, and makes the lab stand there.
+    /// Turns to the page `page` (from 1), or stays on the present page, and brings the lab to its state.
     ///
     /// # Errors
-    /// When there is no such page; nothing has changed then. When an earlier page could not be carried out.
+    ///
+    /// Returns an error if there is no such page; nothing changes then. Returns an error if an earlier page cannot be
+    /// carried out.
     pub(super) fn go_to(&mut self, page: Option<usize>, lab: &mut Lab) -> Result<(), String> {
         let page = page.unwrap_or(self.place.page);
         if self.lesson.page(page).is_none() {
@@ -214,8 +216,10 @@ impl OpenLesson {
         self.replay_page(false, lab)
     }
 
-    /// Makes the lab stand on the page, whatever was done before: what the pages before it do is done at once, what the page
-    /// itself does as time passes; `at_once` the same way.
+    /// Brings the lab to the state of the page, whatever was done before.
+    ///
+    /// The blocks of earlier pages are carried out at once. The block of this page is carried out as time passes, or at
+    /// once if `at_once` is true.
     fn replay_page(&mut self, at_once: bool, lab: &mut Lab) -> Result<(), String> {
         let lesson = Arc::clone(&self.lesson);
         let page = self.place.page;
@@ -245,7 +249,7 @@ impl OpenLesson {
         Ok(())
     }
 
-    /// Takes note that the lab stands where the page wants it.
+    /// Records that the lab has arrived at the state of the page.
     fn arrive(&mut self, lab: &mut Lab) {
         self.under_way = None;
         self.arrived_at = Some(place_of(lab));
@@ -261,7 +265,8 @@ impl OpenLesson {
         lab.view_mut().turn_to_sheet();
     }
 
-    /// Remembers the numbers of the block that was under way, once the lab has carried it out.
+    /// Keeps the numbers of the pending block once the lab has carried it out. Returns true if the page must be
+    /// redrawn.
     fn keep_if_done(&mut self, lab: &mut Lab) -> bool {
         let Some(block) = self.under_way else {
             return false;
@@ -300,7 +305,7 @@ impl OpenLesson {
         self.reached.clear();
     }
 
-    /// Takes note of what the lab has done, and of a file that has changed. Returns whether the page is another now.
+    /// Reacts to changes of the lab and of the lesson's file. Returns true if the page has changed.
     pub(super) fn update(&mut self, now: Duration, lab: &mut Lab) -> bool {
         let mut is_new = self.keep_if_done(lab);
         is_new |= self.state(lab);
@@ -323,14 +328,15 @@ impl OpenLesson {
         is_new
     }
 
-    /// States the page's numbers once the run has arrived. The outcomes that it shows count as seen from the start of its run.
+    /// States the page's numbers once the run has arrived. The outcomes on the page count as seen from the start of its
+    /// run.
     fn state(&mut self, lab: &Lab) -> bool {
         if !self.is_under_way() {
             return false;
         }
         let page = self.lesson.page(self.place.page);
         for compare in page.into_iter().flat_map(LessonPage::compares) {
-            // What the page itself asks for comes out once it is answered.
+            // The outcome of a question on this page is seen only after its answer.
             if !page.is_some_and(|page| page.asks(&compare.prediction)) {
                 self.place.seen.insert(compare.prediction.clone());
             }
@@ -345,7 +351,7 @@ impl OpenLesson {
         has_arrived
     }
 
-    /// Goes on with `lesson`, the file as it is now, on the same page; the run stays where it is.
+    /// Replaces the lesson by `lesson`, the changed file, on the same page. The run stays at its step.
     fn take_file(&mut self, lesson: Lesson, lab: &mut Lab) {
         let name = self.lesson.name.clone();
         self.place.page = self.place.page.min(lesson.pages.len().max(1));
@@ -355,8 +361,8 @@ impl OpenLesson {
         lab.tell("the lesson was read again: b begins the page again");
     }
 
-    /// Takes note of the checks of the page that hold now, and says that the task is done once all have held; returns
-    /// whether one is new.
+    /// Records the checks of the page that hold now, and reports the task as done once all have held. Returns true if a
+    /// check is new.
     fn note_reached(&mut self, lab: &mut Lab) -> bool {
         let lesson = Arc::clone(&self.lesson);
         let Some(page) = lesson.page(self.place.page) else {
@@ -388,7 +394,7 @@ impl OpenLesson {
         is_new
     }
 
-    /// Notes how far the student got with the page's task; what was done or shown stays so.
+    /// Records the student's progress in the page's task. A task that was done or shown keeps that record.
     fn note_tried(&mut self, tried: Tried) {
         let Some(page) = self.lesson.page(self.place.page) else {
             return;
@@ -401,13 +407,13 @@ impl OpenLesson {
     }
 }
 
-/// Returns where the lab stands: the number of acts done, and the step.
+/// Returns the state of the lab: the number of acts, and the step.
 fn place_of(lab: &Lab) -> (usize, u64) {
     (lab.runs().journal().done(), lab.player().step_number())
 }
 
-/// Returns the number of the run that `check` is mainly about, in words: `Lx = 173.6 J s`; `None` if it names times and
-/// values of the scenario alone.
+/// Returns the main number of `check` in words, such as `Lx = 173.6 J s`. Returns `None` if it names only times and
+/// values of the scenario.
 fn main_number(check: &Check, lab: &Lab) -> Option<String> {
     let readouts = check.that.names().filter_map(readouts::find);
     let mut numbers = readouts.filter(|one| !["t_s", "steps", "step"].contains(&one.name));
@@ -429,8 +435,8 @@ fn holds(check: &Check, lab: &Lab, kept: &super::KeptNumbers) -> bool {
     value(&check.that, lab, kept).is_some_and(|held| held != 0.0)
 }
 
-/// Returns the texts of the page at `place` that the student's own run does not change, by their lines in the file. What
-/// stands behind a task or a check is not among them.
+/// Returns the texts of the page at `place` that the student's own run does not change, by their lines in the file.
+/// Texts after a task or a check are not included.
 fn stated(lesson: &Lesson, place: &LessonProgress, lab: &Lab) -> BTreeMap<String, String> {
     let mut texts = BTreeMap::new();
     for block in before_task(lesson, place) {
@@ -444,7 +450,7 @@ fn stated(lesson: &Lesson, place: &LessonProgress, lab: &Lab) -> BTreeMap<String
     texts
 }
 
-/// Returns the introduction's blocks, and those of the page up to its task or its first check.
+/// Returns the blocks of the introduction, and those of the page before its task or its first check.
 fn before_task<'a>(
     lesson: &'a Lesson,
     place: &LessonProgress,

@@ -13,11 +13,15 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
-/// The longest file that is read as a lesson, bytes.
+/// Maximum length of a lesson file, bytes.
 pub const LONGEST_LESSON_FILE: u64 = 1 << 20;
 const TOO_LONG: &str = "is longer than 1 MiB, the most of a lesson";
 
-/// Opens what NAME names: a shipped lesson, or else a file: one whose name holds a `/` or ends in `.md`.
+/// Opens the lesson `name`: a file if the name contains a `/` or ends in `.md`, else a shipped lesson.
+///
+/// # Errors
+///
+/// Returns an error if there is no such lesson, or if its file cannot be read or parsed.
 pub fn open(name: &str) -> Result<Lesson, Problems> {
     if is_file_name(name) {
         return read_file(Path::new(name));
@@ -33,7 +37,7 @@ pub fn open(name: &str) -> Result<Lesson, Problems> {
     }
 }
 
-/// The shipped lessons that were read, by their names: the list asks for all of them at every key.
+/// Shipped lessons parsed so far, by their names. The list needs all of them at every key.
 static READ: Mutex<BTreeMap<&str, Lesson>> = Mutex::new(BTreeMap::new());
 
 fn open_shipped(shipped: &'static Shipped) -> Result<Lesson, Problems> {
@@ -50,7 +54,7 @@ fn open_shipped(shipped: &'static Shipped) -> Result<Lesson, Problems> {
     Ok(lesson)
 }
 
-/// As [`open`], where nothing may wait for a file.
+/// Opens a lesson like [`open`], but refuses files that could block.
 pub fn open_again(name: &str) -> Result<Lesson, Problems> {
     if is_file_name(name) {
         return read_again(Path::new(name));
@@ -58,12 +62,12 @@ pub fn open_again(name: &str) -> Result<Lesson, Problems> {
     open(name)
 }
 
-/// Returns whether NAME names a file: it holds a `/` or ends in `.md`.
+/// Returns true if `name` names a file: it contains a `/` or ends in `.md`.
 pub fn is_file_name(name: &str) -> bool {
     name.contains('/') || name.ends_with(".md")
 }
 
-/// Returns the name by which a session keeps the lesson that NAME names: that of a shipped lesson, or the full path of its
+/// Returns the name under which a session keeps the lesson `name`: the name of a shipped lesson, or the full path of a
 /// file.
 pub fn full_name(name: &str) -> String {
     match std::path::absolute(name) {
@@ -72,7 +76,11 @@ pub fn full_name(name: &str) -> String {
     }
 }
 
-/// Reads the lesson in the file at `path`. The files that it opens are looked for in its folder.
+/// Reads the lesson in the file at `path`. Files that the lesson opens are relative to its folder.
+///
+/// # Errors
+///
+/// Returns an error if the file cannot be read or parsed.
 pub fn read_file(path: &Path) -> Result<Lesson, Problems> {
     let origin = path.display().to_string();
     let text = read_whole(path, LONGEST_LESSON_FILE, TOO_LONG)
@@ -84,7 +92,11 @@ pub fn read_file(path: &Path) -> Result<Lesson, Problems> {
     Ok(lesson)
 }
 
-/// As [`read_file`], while the lab waits: a file that could keep it waiting is refused.
+/// Reads a lesson like [`read_file`] while the lab waits.
+///
+/// # Errors
+///
+/// Returns an error for a file that could block, too.
 pub fn read_again(path: &Path) -> Result<Lesson, Problems> {
     if Destination::may_wait(path) {
         let rule = "is not a regular file, which a lesson in the lab must be: it is read again whenever it changes";
@@ -94,7 +106,7 @@ pub fn read_again(path: &Path) -> Result<Lesson, Problems> {
     read_file(path)
 }
 
-/// Makes the files that `lesson` opens files in `folder`, where they are not named from the root.
+/// Makes the relative paths that `lesson` opens relative to `folder`.
 fn look_in(folder: &Path, lesson: &mut Lesson) {
     for block in lesson.pages.iter_mut().flat_map(|page| &mut page.blocks) {
         let (LessonBlock::Lab(setup) | LessonBlock::Task(setup)) = block else {

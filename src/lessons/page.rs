@@ -1,4 +1,4 @@
-//! The page of a lesson, and the list of lessons, as a sheet beside the panes.
+//! The page of a lesson, and the list of lessons, as sheets for the lesson pane.
 
 use super::lesson::{
     AnswerKind, Check, Compare, Lesson, LessonBlock, LessonLevel, LessonPage, Predict,
@@ -14,35 +14,36 @@ use crate::lab::sheet::{AskedAnswer, Paragraph, Sheet, SheetLineKind};
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-/// What stands for a number that is not there yet, because the lab is still on its way.
+/// Placeholder for a number that is not known until the run has arrived.
 const SOON: &str = "…";
 
-/// What the room of the class adds to the page.
+/// Additions of a class to the page.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ClassOverlay {
-    /// What stands in the frame instead of the title; empty: the title. It has a form a line, the longest first.
+    /// Title in the frame, in one form per line, longest first; if empty, the lesson's title.
     pub framed: String,
-    /// What stands in the lower line of the frame, also a form a line.
+    /// Text in the lower line of the frame, in one form per line, longest first.
     pub border: String,
-    /// Whether the page may be turned though its question is open, and whether a digit is the class's.
+    /// True if the page may be turned while its question is open.
     pub is_of_teacher: bool,
-    /// Whether the page is the projector's: the votes stand below an open question, and no key answers it.
+    /// True for the projector: votes are shown below an open question, and no key answers it.
     pub is_of_projector: bool,
+    /// True if a digit belongs to the class.
     pub asks_digit: bool,
-    /// Whether the class is followed.
+    /// True if the class is followed.
     pub is_followed: bool,
-    /// The present rounds of the class's questions, by their names, and whether they are closed.
+    /// Present rounds of the class's questions by name, each with true if it is closed.
     pub rounds: BTreeMap<String, (u32, bool)>,
-    /// What stands below the question of this name.
+    /// Paragraphs below the question with this name.
     pub votes: Option<(String, Vec<Paragraph>)>,
-    /// What stands there instead of the page.
+    /// Paragraphs that replace the page.
     pub instead: Option<Vec<Paragraph>>,
-    /// What stands above the list of lessons where no class is on; the list then has the whole screen.
+    /// Paragraphs above the list of lessons while no class is running. The list then fills the screen.
     pub waiting: Option<Vec<Paragraph>>,
 }
 
-/// Returns the list of the lessons called `names`, those that match `filter`, of which one is `selected`; `left` tells where
-/// some of them were left.
+/// Returns the list of the lessons called `names`, filtered by `filter`, with one `selected`. `left` has the progress
+/// in lessons that were begun.
 pub(super) fn list(
     names: &[String],
     filter: &str,
@@ -111,7 +112,7 @@ pub(super) fn list(
     sheet
 }
 
-/// Returns a sheet of `paragraphs` that has the whole screen.
+/// Returns a sheet of `paragraphs` that fills the screen.
 pub(super) fn alone(paragraphs: Vec<Paragraph>) -> Sheet {
     Sheet {
         is_alone: true,
@@ -120,7 +121,7 @@ pub(super) fn alone(paragraphs: Vec<Paragraph>) -> Sheet {
     }
 }
 
-/// Returns the page of `open`; `now` is the time since the lab was opened.
+/// Returns the page of `open`. `now` is the time since the lab was opened.
 pub(super) fn sheet(open: &OpenLesson, overlay: &ClassOverlay, now: Duration, lab: &Lab) -> Sheet {
     let lesson = &open.lesson;
     let (page, pages) = (open.place.page, lesson.pages.len());
@@ -152,8 +153,8 @@ pub(super) fn sheet(open: &OpenLesson, overlay: &ClassOverlay, now: Duration, la
     writer.sheet
 }
 
-/// Returns the page `number` in words for the one who teaches: its questions, each with what `after` says of it, its
-/// notes, and the next page.
+/// Returns the page `number` as text for the teacher: its questions, each followed by `after`, its notes, and the next
+/// page.
 pub fn for_teacher(lesson: &Lesson, number: usize, after: impl Fn(&Predict) -> String) -> String {
     let mut text = format!("\n== {number} of {} · {}", lesson.pages.len(), lesson.title);
     if let Some(page) = lesson.page(number) {
@@ -177,7 +178,7 @@ pub fn for_teacher(lesson: &Lesson, number: usize, after: impl Fn(&Predict) -> S
     }
 }
 
-/// `text` before its numbers are known.
+/// Returns `text` with placeholders for its numbers.
 fn unfilled(text: &LessonText) -> String {
     text.filled(|_, _| SOON.to_owned())
 }
@@ -209,14 +210,14 @@ impl Writer<'_> {
         }
     }
 
-    /// Makes the paragraphs from the number `first` on such that they are to be seen, unless others are already; an
-    /// outcome is followed by its words, which come after it.
+    /// Marks the paragraphs from number `first` on as those to scroll to, unless others are marked already. An outcome
+    /// is thus visible with its explanation.
     fn is_seen_from(&mut self, first: usize) {
         let last = self.sheet.paragraphs.len().saturating_sub(1);
         self.sheet.seen.get_or_insert((first, last));
     }
 
-    /// Writes `blocks` up to the first question that is not answered; returns whether there is one.
+    /// Writes `blocks` up to the first unanswered question. Returns true if there is one.
     fn blocks(&mut self, blocks: &[LessonBlock]) -> bool {
         for block in blocks {
             match block {
@@ -230,7 +231,7 @@ impl Writer<'_> {
                 }
                 LessonBlock::Predict(predict) => {
                     self.question(predict);
-                    // The class's answers wait for one's own.
+                    // The class's votes are shown only after the student's own answer.
                     let is_shown = self.overlay.is_of_teacher
                         || self.overlay.is_of_projector
                         || !self.open.is_open(predict);
@@ -258,8 +259,8 @@ impl Writer<'_> {
         false
     }
 
-    /// What is to be reached: each part with whether it holds now and the number that decides it. Above them, whether all
-    /// of it holds, or did before.
+    /// Writes the goals of a check: each part, marked if it holds now, with its present number. The first line states
+    /// if all of it holds, or held before.
     fn goals(&mut self, check: &Check) {
         let first = self.sheet.paragraphs.len();
         let place = &self.open.place;
@@ -372,14 +373,14 @@ impl Writer<'_> {
                 AnswerKind::Number { .. } => AskedAnswer::Number,
             });
         }
-        // The question that is open now, or the last one where none is.
+        // Scroll to the open question, or to the last one if none is open.
         if is_open || self.open.has_answered {
             self.sheet.seen = None;
         }
         self.is_seen_from(first);
     }
 
-    /// Says what was locked, and whether a class asks for another answer.
+    /// Writes the locked answer, and a note if the class asks for another one.
     fn rounds_of(&mut self, predict: &Predict) {
         let said = self.open.place.predictions.in_words(predict);
         let round = self.open.rounds.get(&predict.name);
@@ -408,13 +409,13 @@ impl Writer<'_> {
             }
             (false, true, false) => "h shows how it is done; b: the page again; n: next page.",
             (false, true, true) => "h shows how it is done; b: the page again; L: other lessons.",
-            (false, false, false) => return, // the line of keys names n
+            (false, false, false) => return, // the footer names n
             (false, false, true) => "This is the end of the lesson. L: other lessons.",
         };
         self.add(Paragraph::new(SheetLineKind::Hint, text));
     }
 
-    /// What the teacher sees: the clock, the notes, and the next page.
+    /// Writes the teacher's part: the clock, the notes, and the next page.
     fn notes(&mut self, now: Duration) {
         let Some(time) = self.open.time(now) else {
             return;

@@ -1,4 +1,4 @@
-//! A lesson played to its end without a screen: page after page, with every task done as the lesson shows it.
+//! Plays a lesson to its end without a screen, page after page, with every task done by the lab.
 
 use super::lesson::{Check, Lesson, LessonBlock, LessonPage, Setup};
 use super::names::{self, KeptNumbers};
@@ -14,10 +14,11 @@ use crate::lab::command::Command;
 use indicatif::HumanCount;
 use std::ops::ControlFlow;
 
-/// Asked several times a second, with the step that the run is at and the one at which it stops, whether to go on.
+/// Callback that is called several times per second with the run's present and last step. It decides if the run
+/// continues.
 pub type LessonProgressCallback<'a> = &'a mut dyn FnMut(u64, u64) -> ControlFlow<()>;
 
-/// The most steps of the run before a page that is played again when the page is turned to.
+/// Maximum steps of earlier pages that are replayed when a page is turned to.
 const MOST_BEFORE: u64 = 1_000_000;
 
 /// A lab that goes through a lesson.
@@ -25,14 +26,14 @@ pub struct LessonWalk<'a> {
     pub lesson: &'a Lesson,
     pub lab: Lab,
     pub kept: KeptNumbers,
-    /// Nothing is predicted: what a page hides until then is hidden as long as the page is open.
+    /// Empty: parts hidden until a prediction stay hidden while the page is open.
     predictions: Predictions,
-    /// Whether a run of the lesson is open.
+    /// True once a run of the lesson is open.
     is_open: bool,
 }
 
 impl<'a> LessonWalk<'a> {
-    /// Before the first page of `lesson`, in a new `lab`.
+    /// Starts before the first page of `lesson`, in a new `lab`.
     pub fn new(lesson: &'a Lesson, lab: Lab) -> Self {
         Self {
             lesson,
@@ -43,7 +44,7 @@ impl<'a> LessonWalk<'a> {
         }
     }
 
-    /// Stands on `page` from nothing, without the pages before it that make no difference to it.
+    /// Goes to `page` directly, without earlier pages that make no difference to it.
     pub fn jump(
         &mut self,
         page: &'a LessonPage,
@@ -58,7 +59,7 @@ impl<'a> LessonWalk<'a> {
         Ok(())
     }
 
-    /// Turns to `page` from the page before: carries out its `lab` block.
+    /// Turns to `page` from the page before, and carries out its `lab` block.
     pub fn enter(
         &mut self,
         page: &'a LessonPage,
@@ -70,7 +71,7 @@ impl<'a> LessonWalk<'a> {
         }
     }
 
-    /// Leaves `page`: does its task, and shows again what it hides until its prediction.
+    /// Leaves `page`: does its task, and shows the parts that it hides until its prediction.
     pub fn leave(
         &mut self,
         page: &'a LessonPage,
@@ -81,7 +82,7 @@ impl<'a> LessonWalk<'a> {
         }
         if page.predicts().next().is_some() {
             let hidden = Predictions::hidden_after_lock(page, &self.lab.view().look.hide);
-            // Hiding is never refused.
+            // This command never fails.
             let _ = self.lab.carry_out(&Command::look("hide", hidden));
         }
         Ok(())
@@ -97,13 +98,13 @@ impl<'a> LessonWalk<'a> {
         done.map_err(|text| as_problem(&self.lesson.origin, stage.setup.line, &text))
     }
 
-    /// Returns whether `check` holds now. Before a run is open nothing does.
+    /// Returns true if `check` holds now. Nothing holds before a run is open.
     fn holds(&self, check: &Check) -> bool {
         let value = names::value(&check.that, &self.lab, &self.kept);
         self.is_open && value.is_some_and(|value| value != 0.0)
     }
 
-    /// Returns the numbers in `expression` as they are now: `steps is 10, z_m is 0.8`.
+    /// Returns the present numbers in `expression`, such as `steps is 10, z_m is 0.8`.
     fn numbers_of(&self, expression: &Expression) -> String {
         let mut all = Vec::new();
         for name in expression.names() {
@@ -115,7 +116,7 @@ impl<'a> LessonWalk<'a> {
         all.join(", ")
     }
 
-    /// The places of `text` for numbers that there are not now.
+    /// Finds the placeholders of `text` whose numbers are not available now.
     fn unstated_in(&self, text: &LessonText, found: &mut Problems) {
         for (line, expression) in text.numbers() {
             let names: Vec<_> = expression.names().collect();
@@ -147,13 +148,15 @@ impl<'a> LessonWalk<'a> {
     }
 }
 
-/// Plays `lesson` in a new `lab` to its end. Returns the numbers of its text that cannot be stated where they stand, and are
-/// shown as "n/a". Each check must hold once the task of its page is done, or where it has none
-/// once its `lab` block is carried out, and must not hold without that block.
+/// Plays `lesson` in a new `lab` to its end.
+///
+/// Returns the numbers of its text that are not available where they are stated, and thus shown as "n/a". Each check
+/// must hold after the task of its page (without a task, after its `lab` block), and must not hold before.
 ///
 /// # Errors
-/// What cannot be carried out, and every check that does not do what it should, with file and line. Where `go_on` broke
-/// off, the result means nothing.
+///
+/// Returns every block that cannot be carried out and every check that fails, with file and line. If `go_on` stopped
+/// the lesson, the result has no meaning.
 pub fn check(
     lesson: &Lesson,
     lab: Lab,
@@ -164,15 +167,15 @@ pub fn check(
     for page in &lesson.pages {
         if let Err(problem) = walk.check_page(page, &mut found, &mut unstated, go_on) {
             found.add(|| problem);
-            break; // the pages to come stand on it
+            break; // later pages depend on it
         }
     }
     found.in_file(&lesson.origin).or(unstated.list)
 }
 
 impl<'a> LessonWalk<'a> {
-    /// Refuses a page that states numbers of a run which it does not open, where that is too long to be played again
-    /// each time somebody turns to the page from elsewhere.
+    /// Refuses a page that states numbers of a run opened earlier, if that run is too long to be replayed whenever the
+    /// page is turned to.
     fn refuse_far(&self, page: &LessonPage, found: &mut Problems) {
         let steps = self.lab.player().step_number();
         let opens = page.lab().is_some_and(Setup::opens);
@@ -186,7 +189,7 @@ impl<'a> LessonWalk<'a> {
         }
     }
 
-    /// Returns whether each check of `page` holds now, and its numbers.
+    /// Returns for each check of `page` true if it holds now, with its numbers.
     fn states_of_checks(&self, page: &LessonPage) -> Vec<(bool, String)> {
         let checks = page.checks();
         checks
@@ -230,8 +233,8 @@ impl<'a> LessonWalk<'a> {
     }
 }
 
-/// Returns the message `text` of a command that was refused in the file `origin`, `origin:line: ...`, as a problem; it
-/// stands on `line` where it does not say.
+/// Converts the error `text` of a command, `origin:line: ...`, to a problem. If it names no line, the problem is on
+/// `line`.
 fn as_problem(origin: &str, line: usize, text: &str) -> Problem {
     let told = text
         .strip_prefix(origin)

@@ -1,4 +1,4 @@
-//! What a student has predicted in a lesson. A prediction is locked: it is not changed any more.
+//! A student's predictions in a lesson. A prediction is locked: it cannot be changed.
 
 use super::lesson::{
     Compare, Lesson, LessonPage, PREDICTION, Predict, PredictionAnswer, Setup, WITH,
@@ -11,24 +11,24 @@ use crate::lab::view::HideablePart;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The locked answers of one lesson, by the names of their questions, in the order in which they were given.
+/// Locked answers of a lesson by question, in the order in which they were given.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Predictions {
     locked: BTreeMap<String, Vec<LockedAnswer>>,
 }
 
-/// An answer that was locked: the vote of a round of a class, or the prediction of one who is in none.
+/// A locked answer: a vote in a round of a class, or a prediction without a class.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LockedAnswer {
-    /// From 1; without a class it is 1.
+    /// Round, from 1; always 1 without a class.
     pub round: u32,
     pub answer: PredictionAnswer,
-    /// Whether the outcome had been seen, or the question was closed.
+    /// True if the outcome had been seen or the round was closed.
     pub late: bool,
-    /// The page that was open, from 1.
+    /// Page that was open, from 1.
     pub page: usize,
-    /// Seconds since 1970 (UTC).
+    /// Time of the answer, seconds since 1970 (UTC).
     pub time_unix_s: u64,
 }
 
@@ -36,7 +36,8 @@ impl Predictions {
     /// Locks `given` as an answer to `predict`.
     ///
     /// # Errors
-    /// When one is locked already in its round, or it is no answer to it; nothing has changed then.
+    ///
+    /// Returns an error, and changes nothing, if the round already has an answer or `given` does not fit the question.
     pub fn lock(&mut self, predict: &Predict, given: LockedAnswer) -> Result<(), String> {
         if self.in_round(predict, given.round).is_some() {
             return Err("is locked already: a prediction is not changed".to_owned());
@@ -54,13 +55,14 @@ impl Predictions {
         self.locked.is_empty()
     }
 
-    /// Returns all of them, each with the name of its question.
+    /// Returns all answers, each with the name of its question.
     pub fn all(&self) -> impl Iterator<Item = (&String, &LockedAnswer)> {
         let locked = self.locked.iter();
         locked.flat_map(|(name, all)| all.iter().map(move |given| (name, given)))
     }
 
-    /// Returns the answers to `predict`. One that it no longer takes, as the file was changed, does not count.
+    /// Returns the answers to `predict`. Answers that no longer fit the question, because the file was changed, do not
+    /// count.
     pub fn to<'a>(
         &'a self,
         predict: &'a Predict,
@@ -73,12 +75,13 @@ impl Predictions {
         self.to(predict).find(|given| given.round == round)
     }
 
-    /// Returns whether `predict` is answered, in whatever round.
+    /// Returns true if `predict` is answered in any round.
     pub fn is_locked(&self, predict: &Predict) -> bool {
         self.to(predict).next().is_some()
     }
 
-    /// Returns the answers to `predict` in words, with their rounds where there are several; `None` where there is none.
+    /// Returns the answers to `predict` in words, with their rounds if there are several. Returns `None` without an
+    /// answer.
     pub fn in_words(&self, predict: &Predict) -> Option<String> {
         let has_rounds = self.to(predict).any(|given| given.round > 1);
         let mut all = Vec::new();
@@ -94,18 +97,18 @@ impl Predictions {
         (!all.is_empty()).then(|| all.join(", "))
     }
 
-    /// Returns the predictions of `page` that are not locked yet.
+    /// Returns the predictions of `page` that are not locked.
     pub fn open_on<'a>(&'a self, page: &'a LessonPage) -> impl Iterator<Item = &'a Predict> {
         page.predicts().filter(|predict| !self.is_locked(predict))
     }
 
-    /// Returns whether `page` asks for predictions, and all of them are locked.
+    /// Returns true if `page` asks for predictions and all of them are locked.
     pub fn are_locked_on(&self, page: &LessonPage) -> bool {
         page.predicts().next().is_some() && self.open_on(page).next().is_none()
     }
 
-    /// Returns what is hidden once all predictions of `page` are locked, if `hidden` is hidden before: all of it but the
-    /// answers that the page has hidden itself.
+    /// Returns the parts that stay hidden once all predictions of `page` are locked: `hidden` without the answers that
+    /// the page itself hides.
     pub fn hidden_after_lock(page: &LessonPage, hidden: &[HideablePart]) -> Vec<HideablePart> {
         let own = page.lab().map(Setup::hides).unwrap_or_default();
         let others = hidden
@@ -117,7 +120,7 @@ impl Predictions {
 }
 
 impl PredictionAnswer {
-    /// It in words: the choice, or the number with the unit that `predict` asks for.
+    /// Returns the answer in words: the choice, or the number with the unit of `predict`.
     pub fn in_words(&self, predict: &Predict) -> String {
         match (self, &predict.asked) {
             (Self::Choice(words), _) => words.clone(),
@@ -136,8 +139,8 @@ impl Compare {
         value(self.with.as_ref()?, lab, kept)
     }
 
-    /// Returns what is said, in Markdown, with the numbers of `lab` and the prediction. Where nothing was predicted, the
-    /// sentences that tell the prediction are left out.
+    /// Returns the Markdown text with the numbers of `lab` and the prediction. Without a prediction, sentences that
+    /// mention it are omitted.
     pub fn filled(
         &self,
         lesson: &Lesson,
@@ -165,7 +168,7 @@ impl Compare {
     }
 }
 
-/// `text` without the sentences that have `part`; all of it where nothing else would be left.
+/// Returns `text` without the sentences that contain `part`, or the whole text if nothing else would remain.
 fn without(part: &str, text: &str) -> String {
     let mut rest = text;
     let mut kept = String::new();
@@ -184,7 +187,7 @@ fn without(part: &str, text: &str) -> String {
     }
 }
 
-/// Returns where the first sentence of `text` ends, the blanks after it counted in. An entry of a list counts as one.
+/// Returns the end of the first sentence of `text`, including the blanks after it. A list entry counts as a sentence.
 fn end_of_sentence(text: &str) -> usize {
     let stops = text.match_indices(['.', '!', '?']);
     let end = stops
@@ -198,18 +201,18 @@ fn end_of_sentence(text: &str) -> usize {
 }
 
 const LATE: &str = "after its outcome was seen";
-/// Stands for a prediction that was not made.
+/// Placeholder for a prediction that was not made.
 const NOTHING: &str = "…";
 
-/// How far a student got with a task.
+/// A student's progress in a task.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Tried {
-    /// The hint was read, and the task is not done.
+    /// The hint was shown, and the task is not done.
     Hint,
     Done,
     DoneAfterHint,
-    /// The lab has done it.
+    /// The lab has done the task.
     Shown,
 }
 
@@ -225,31 +228,32 @@ impl Tried {
     }
 }
 
+/// A student's progress in a lesson, as a session keeps it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LessonProgress {
-    /// The number of the page, from 1.
+    /// Number of the page, from 1.
     pub page: usize,
     #[serde(default)]
     pub predictions: Predictions,
     #[serde(default)]
     pub kept: KeptNumbers,
-    /// What the page states of the run that its lesson stands on, by lines of the file: it stays while the student plays.
+    /// Texts that state numbers of the page's run, by lines of the file. They stay while the student plays.
     #[serde(default)]
     pub stated: Option<BTreeMap<String, String>>,
-    /// The predictions whose outcome was seen.
+    /// Predictions whose outcome was seen.
     #[serde(default)]
     pub seen: BTreeSet<String>,
-    /// How far the student got with the tasks, by the headings of their pages.
+    /// Progress in the tasks, by the headings of their pages.
     #[serde(default)]
     pub tasks: BTreeMap<String, Tried>,
-    /// The number with which a task was done, in words, by the headings of their pages.
+    /// Number with which a task was done, in words, by the heading of its page.
     #[serde(default)]
     pub done_with: BTreeMap<String, String>,
-    /// Whether its last page was opened.
+    /// True if the last page was opened.
     #[serde(default)]
     pub has_ended: bool,
-    /// When it was opened first: seconds since 1970 (UTC).
+    /// Time of the first opening, seconds since 1970 (UTC).
     #[serde(default)]
     pub began_unix_s: u64,
 }

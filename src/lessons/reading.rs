@@ -1,9 +1,9 @@
-//! Reads a lesson from its Markdown.
+//! Parses a lesson from its Markdown.
 //!
-//! A lesson begins with its title, a level-1 heading. Each level-2 heading begins a page. A fenced block with `lesson`,
-//! `lab`, `task`, `predict`, `compare` or `check` behind its fence holds TOML, one with `notes` Markdown for the teacher;
-//! `text`, `sh`, `toml`, `csv`, `python`, `matlab` and no word at all are shown as they are, and another word is refused.
-//! An HTML comment on lines of its own is no part of the lesson.
+//! A lesson begins with its title, a level-1 heading. Each level-2 heading begins a page. A fenced block marked
+//! `lesson`, `lab`, `task`, `predict`, `compare` or `check` contains TOML; one marked `notes` contains Markdown for the
+//! teacher. Blocks marked `text`, `sh`, `toml`, `csv`, `python` or `matlab`, and unmarked ones, are shown unchanged.
+//! Any other word is an error. An HTML comment on lines of its own is ignored.
 
 use super::blocks::{self, BlockKind, BlockReader};
 use super::lesson::{CodeBlock, Compare, Lesson, LessonBlock, LessonPage, Setup};
@@ -16,10 +16,14 @@ use crate::engine::text::printable::is_steering;
 use std::collections::BTreeSet;
 
 const MOST_LESSON_LINES: usize = 20_000;
-/// The most blocks of a lesson, its pages included.
+/// Maximum number of blocks and pages of a lesson.
 const MOST_LESSON_BLOCKS: usize = 1000;
 
-/// Reads `text`, the content of the file `origin`, as a lesson.
+/// Parses `text`, the content of the file `origin`, as a lesson.
+///
+/// # Errors
+///
+/// Returns all problems found, each with its line.
 pub fn read(origin: &str, text: &str) -> Result<Lesson, Problems> {
     let plain = text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
     let source = plain.replace('\t', "    ");
@@ -47,7 +51,7 @@ fn elements(text: &str) -> Result<Vec<Element<'_>>, Problem> {
     Ok(elements)
 }
 
-/// Checks that `text` is short enough and has no character that could steer a terminal.
+/// Checks that `text` is short enough and contains no character that could control a terminal.
 fn plain(text: &str, lines: &Lines) -> Result<(), Problem> {
     let count = text.matches('\n').count();
     if count > MOST_LESSON_LINES {
@@ -67,19 +71,18 @@ fn plain(text: &str, lines: &Lines) -> Result<(), Problem> {
     }
 }
 
-/// A lesson that is being put together from the elements of its file.
+/// A lesson that is assembled from the elements of its file.
 #[derive(Default)]
 struct Assembly {
     lesson: Lesson,
     has_title: bool,
-    /// The `lab` and `task` blocks by their lines. They were read before everything else, since they define the names
-    /// of the numbers that are kept.
+    /// The `lab` and `task` blocks by line. They are read first, because they define the names of kept numbers.
     setups: Vec<Setup>,
     names: KeptNames,
     predictions: BTreeSet<String>,
     compares: Vec<Compare>,
     has_head: bool,
-    /// The line of the `lesson` block.
+    /// Line of the `lesson` block.
     head_line: usize,
     found: Problems,
 }
@@ -272,7 +275,7 @@ impl Assembly {
         }
     }
 
-    /// Adds a setup that was read before; `same` returns the one of its kind that a page has.
+    /// Adds a setup that was read before. `same` returns the setup of this kind that a page already has.
     fn add_setup(
         &mut self,
         reader: &BlockReader<'_>,

@@ -2,7 +2,7 @@
 
 use crate::engine::text::shipped::{Shipped, shipped};
 
-/// Every lesson, in the order in which they build on each other, level by level.
+/// All lessons, by level, in an order in which they build on each other.
 pub const LESSONS: &[Shipped] = shipped!["../../presets/lessons", "md":
     "why-it-does-not-fall"
     "what-holds-the-weight-up"
@@ -28,7 +28,7 @@ pub fn find(name: &str) -> Option<&'static Shipped> {
     Shipped::find(LESSONS, name)
 }
 
-/// Returns the frame of the program that a lesson asks for: what is written is the same in Octave and in MATLAB.
+/// Returns the program frame that a lesson asks for, in Python or else in a file for both Octave and MATLAB.
 pub fn frame(lesson: &str, language: &str) -> Option<&'static str> {
     let frame = match language {
         "python" => include_str!("../../presets/frames/write-it-yourself.py"),
@@ -37,5 +37,5 @@ pub fn frame(lesson: &str, language: &str) -> Option<&'static str> {
     (lesson == "write-it-yourself").then_some(frame)
 }
 
-/// A small lesson with a comment on each part, to begin one's own from.
+/// A small lesson with a comment on each part, as a template for new lessons.
 pub const TEMPLATE: &str = include_str!("template.md");

@@ -1,8 +1,7 @@
-//! What to carry out to stand on a page of a lesson.
+//! The commands that bring the lab to the state of a page.
 //!
-//! A page stands on the `lab` and `task` blocks of the pages before it, then on its own `lab`. As a block that opens a run
-//! leaves nothing of the runs before it, what stands before the last such block is carried out only where it keeps numbers
-//! that are not known yet.
+//! A page builds on the `lab` and `task` blocks of the pages before it, and then on its own `lab` block. A block that
+//! opens a run makes earlier blocks irrelevant. These are carried out only if they keep numbers that are not known yet.
 
 use super::lesson::{Lesson, LessonPage, Setup};
 use super::names::{KeptNumbers, value};
@@ -12,19 +11,21 @@ use crate::lab::command::{Command, Commands, LocatedCommand};
 use crate::plot::camera::{Camera, Zoom};
 use std::ops::ControlFlow;
 
+/// A block to carry out for a page.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LessonStage<'a> {
     pub lesson: &'a Lesson,
     pub page: &'a LessonPage,
     pub setup: &'a Setup,
-    /// Whether what its `hide` names is hidden.
+    /// True if the parts named by its `hide` are hidden.
     pub is_hiding: bool,
 }
 
 impl Lesson {
-    /// Returns what to carry out to stand on the page `number` (from 1), from nothing: a jump. `kept` has the numbers that
-    /// are known already. What the page hides is shown where its predictions are locked; earlier pages hide nothing that
-    /// they hide until their prediction.
+    /// Returns the blocks that bring the lab to the state of page `number` (from 1) from any state.
+    ///
+    /// `kept` has the numbers that are already known. The page shows its hidden parts if its predictions are locked.
+    /// Earlier pages hide nothing if they have a prediction.
     pub fn stages_to<'a>(
         &'a self,
         number: usize,
@@ -46,8 +47,8 @@ impl Lesson {
         needed(stages, kept)
     }
 
-    /// Returns what to carry out on turning to the page `number` from the page before: its own `lab` block, where it has
-    /// one.
+    /// Returns the `lab` block of page `number`, if any: the block to carry out when the page is turned to from the
+    /// page before.
     pub fn stage_of<'a>(
         &'a self,
         number: usize,
@@ -56,7 +57,7 @@ impl Lesson {
         self.stage(number, LessonPage::lab, predictions)
     }
 
-    /// Returns what to carry out on the page `number` to show how its task is done.
+    /// Returns the `task` block of page `number`, if any. It shows how the task is done.
     pub fn task_of<'a>(
         &'a self,
         number: usize,
@@ -81,7 +82,7 @@ impl Lesson {
     }
 }
 
-/// Returns those of `stages` that are needed: the last run, and the runs that keep numbers which `kept` lacks.
+/// Returns the necessary `stages`: those of the last run, and of runs that keep numbers missing in `kept`.
 fn needed<'a>(stages: Vec<LessonStage<'a>>, kept: &KeptNumbers) -> Vec<LessonStage<'a>> {
     let mut runs: Vec<Vec<LessonStage<'a>>> = Vec::new();
     for stage in stages {
@@ -99,14 +100,16 @@ fn needed<'a>(stages: Vec<LessonStage<'a>>, kept: &KeptNumbers) -> Vec<LessonSta
 }
 
 impl LessonStage<'_> {
-    /// Returns whether it keeps numbers that are not among the `kept` ones.
+    /// Returns true if the block keeps numbers that are missing in `kept`.
     fn lacks(&self, kept: &KeptNumbers) -> bool {
         let mut names = self.setup.keep.iter();
         names.any(|keep| !kept.contains_key(&keep.name))
     }
 
-    /// Returns the commands, for the lab as it stands. Where a run is opened, what the lab shows otherwise than at first
-    /// is put back before, so that the page looks the same whatever was done before.
+    /// Returns the commands for `lab` in its present state.
+    ///
+    /// If the block opens a run, changes of the view are undone first, so that the page looks the same whatever was
+    /// done before.
     pub fn commands(&self, lab: &Lab) -> Commands {
         let mut list = Vec::new();
         if self.setup.opens() {
@@ -129,7 +132,7 @@ impl LessonStage<'_> {
         }
     }
 
-    /// Remembers in `kept` the numbers that the block keeps, once it is carried out.
+    /// Stores the numbers that the block keeps in `kept`. Call it after the block was carried out.
     pub fn keep(&self, lab: &Lab, kept: &mut KeptNumbers) {
         for keep in &self.setup.keep {
             let number = value(&keep.expression, lab, kept);
@@ -137,8 +140,14 @@ impl LessonStage<'_> {
         }
     }
 
-    /// Carries the block out to its end at once, without a clock, and keeps its numbers. `go_on` is called several times a
-    /// second with the step that the run is at and the one at which it stops; the rest is dropped when that breaks.
+    /// Carries the block out to its end at once, without a clock, and keeps its numbers.
+    ///
+    /// `go_on` is called several times per second with the run's present and last step. If it breaks, the rest is
+    /// dropped.
+    ///
+    /// # Errors
+    ///
+    /// Returns the message of the command that failed.
     pub fn carry_out(
         &self,
         lab: &mut Lab,
@@ -148,13 +157,13 @@ impl LessonStage<'_> {
         let commands = self.commands(lab);
         lab.take_commands(commands);
         lab.finish_script_while(go_on)?;
-        lab.messages_mut().take_back(); // nobody has asked for what the block has done
+        lab.messages_mut().take_back(); // the user did not ask for the block's messages
         self.keep(lab, kept);
         Ok(())
     }
 }
 
-/// Returns the commands that put back how the lab shows runs, where it is otherwise than at first.
+/// Returns the commands that reset those parts of the view that differ from their defaults.
 fn put_back(lab: &Lab) -> Vec<Command> {
     let view = lab.view();
     let shows_exact = lab.player().run().shows_exact();

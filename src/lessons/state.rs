@@ -1,4 +1,4 @@
-//! The lessons of a lab: the list of them, the open one, and where the others were left.
+//! The lessons of a lab: their list, the open one, and the progress in the others.
 
 use super::open_lesson::{ClassPage, OpenLesson};
 use super::page::ClassOverlay;
@@ -16,19 +16,21 @@ use std::path::Path;
 use std::time::Duration;
 use toml::Table;
 
+/// The lessons of a lab.
 #[derive(Debug, Default)]
 pub struct Lessons {
     shown: LessonDialog,
-    /// Where the lessons were left that are not open now, by their names.
+    /// Progress in the lessons that are not open now, by their names.
     left: BTreeMap<String, LessonProgress>,
-    /// Which lesson was selected when the list was closed.
+    /// Selected row when the list was closed.
     selected: usize,
-    /// The time since the lab was opened.
+    /// Time since the lab was opened.
     now: Duration,
-    /// Whether the page is to be written again.
+    /// True if the page must be rewritten.
     has_changed: bool,
+    /// Lessons as the session keeps them: a [`KeptLessons`].
     kept: Table,
-    /// The lessons of the folder that the lab is confined to, by the full paths of their files.
+    /// Lessons in the folder that the lab is confined to, by the full paths of their files.
     own: Vec<String>,
     overlay: ClassOverlay,
 }
@@ -37,16 +39,17 @@ pub struct Lessons {
 enum LessonDialog {
     #[default]
     Nothing,
-    /// The list of lessons, of which one is selected.
+    /// The list of lessons.
     List {
-        /// Its number, from 0, among those that are listed.
+        /// Selected row of the filtered list, from 0.
         selected: usize,
-        /// What is typed: only lessons that have it in their titles or names are listed.
+        /// Typed filter: only lessons with this text in their titles or names are listed.
         filter: String,
     },
     Lesson(Box<OpenLesson>),
 }
 
+/// The lessons in a session file.
 #[derive(Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct KeptLessons {
@@ -56,14 +59,17 @@ pub struct KeptLessons {
 }
 
 impl KeptLessons {
-    /// Returns what `kept`, a table of a session, says.
+    /// Parses `kept`, a table of a session.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the table has another form.
     pub fn read(kept: &Table) -> Result<Self, toml::de::Error> {
         kept.clone().try_into()
     }
 }
 
-/// Returns the full paths of the lessons in `folder`, sorted; hidden files and what cannot be read as a lesson are left
-/// out.
+/// Returns the full paths of the lessons in `folder`, sorted. Hidden files and files that are not lessons are omitted.
 pub fn files_in(folder: &Path) -> Vec<String> {
     let mut paths = Vec::new();
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
@@ -72,7 +78,7 @@ pub fn files_in(folder: &Path) -> Vec<String> {
         };
         let path = folder.join(&name);
         let is_meant = name.ends_with(".md") && !name.starts_with('.');
-        // A FIFO would be waited for.
+        // Reading a FIFO would block.
         if is_meant && path.is_file() && opening::read_again(&path).is_ok() {
             paths.push(path.display().to_string());
         }
@@ -81,7 +87,7 @@ pub fn files_in(folder: &Path) -> Vec<String> {
     paths
 }
 
-/// Says the first line of why a lesson could not be opened.
+/// Shows the first line of the reason why a lesson could not be opened.
 fn tell(opened: Result<(), String>, lab: &mut Lab) {
     if let Err(reason) = opened {
         lab.refuse(reason.lines().next().unwrap_or_default());
@@ -89,11 +95,11 @@ fn tell(opened: Result<(), String>, lab: &mut Lab) {
 }
 
 impl Lessons {
-    /// Returns the lessons as `kept` has them. The one that was open is opened again, on its page; the run is left where
-    /// it is.
+    /// Returns the lessons as `kept` has them. The open lesson is opened again on its page, without changing the run.
     ///
     /// # Errors
-    /// Why the lesson that was open cannot be opened again; where it was left is kept.
+    ///
+    /// The second value is an error if that lesson cannot be opened. Its progress is kept.
     pub fn resumed(kept: Table, lab: &mut Lab) -> (Self, Result<(), String>) {
         let read = KeptLessons::read(&kept);
         let mut lessons = Self {
@@ -115,12 +121,18 @@ impl Lessons {
         (lessons, opened)
     }
 
-    /// Returns what a session keeps of them: a [`KeptLessons`].
+    /// Returns the lessons as a session keeps them: a [`KeptLessons`].
     pub fn kept(&self) -> &Table {
         &self.kept
     }
 
-    /// Opens the lesson that NAME names, on the page `page` (from 1) or where it was left, and makes the lab stand there.
+    /// Opens the lesson `name` on page `page` (from 1) or on the page where it was left, and brings the lab to its
+    /// state.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the lesson cannot be opened, the page does not exist, or an earlier page cannot be carried
+    /// out.
     pub fn open(&mut self, name: &str, page: Option<usize>, lab: &mut Lab) -> Result<(), String> {
         self.load(name, lab)?;
         if let LessonDialog::Lesson(open) = &mut self.shown {
@@ -131,7 +143,7 @@ impl Lessons {
         Ok(())
     }
 
-    /// Returns whether the list of lessons is shown.
+    /// Returns true if the list of lessons is shown.
     pub fn is_listing(&self) -> bool {
         matches!(self.shown, LessonDialog::List { .. })
     }
@@ -143,7 +155,7 @@ impl Lessons {
         }
     }
 
-    /// Takes the lesson that NAME names, where it was left.
+    /// Loads the lesson `name` with its progress.
     fn load(&mut self, name: &str, lab: &mut Lab) -> Result<(), String> {
         let name = opening::full_name(name);
         if opening::is_file_name(&name) {
@@ -158,7 +170,7 @@ impl Lessons {
         Ok(())
     }
 
-    /// Keeps where the lesson stands, and takes it no longer.
+    /// Closes the open lesson and keeps its progress.
     fn leave(&mut self, lab: &mut Lab) {
         if let LessonDialog::Lesson(open) = std::mem::take(&mut self.shown) {
             let name = open.lesson.name.clone();
@@ -168,7 +180,7 @@ impl Lessons {
         self.has_changed = true;
     }
 
-    /// Does what `key` stands for. Returns the direction in which the page is to be scrolled, if that is what it means.
+    /// Handles `key`. Returns the direction in which the page must scroll, if any.
     pub fn on_key(&mut self, key: LessonKey, lab: &mut Lab) -> Option<Direction> {
         let mut scrolls = None;
         let names = self.listed();
@@ -215,7 +227,7 @@ impl Lessons {
         scrolls
     }
 
-    /// Leaves the lesson for the list; it is selected there.
+    /// Closes the lesson and opens the list, in which the lesson is selected.
     fn open_list(&mut self, lab: &mut Lab) {
         let here = self.open_lesson().map(|open| open.lesson.name.clone());
         self.leave(lab);
@@ -229,8 +241,7 @@ impl Lessons {
         };
     }
 
-    /// Returns the names of the list: the lessons of the lab's folder, those that come with the program, then the files
-    /// that were opened.
+    /// Returns the names in the list: lessons in the lab's folder, shipped lessons, then files that were opened.
     fn names(&self) -> Vec<String> {
         let mut names = self.own.clone();
         names.extend(shipped::LESSONS.iter().map(|lesson| lesson.name.to_owned()));
@@ -242,7 +253,7 @@ impl Lessons {
         names
     }
 
-    /// Returns the names of the lessons that the list shows.
+    /// Returns the names of the lessons that match the filter.
     fn listed(&self) -> Vec<String> {
         let mut names = self.names();
         if let LessonDialog::List { filter, .. } = &self.shown
@@ -271,7 +282,8 @@ impl Lessons {
         }
     }
 
-    /// Shows the page of `class`: the run is not touched, and the page's numbers are stated once the class has arrived.
+    /// Shows the page of `class` without changing the run. The page's numbers are stated once the class's run has
+    /// arrived.
     pub fn show_class_page(&mut self, class: &ClassPage<'_>, lab: &mut Lab) -> Result<(), String> {
         if self
             .open_lesson()
@@ -288,7 +300,7 @@ impl Lessons {
         Ok(())
     }
 
-    /// Takes `number` as the answer to the question that was asked last.
+    /// Locks `number` as the answer to the last question asked.
     pub fn answer(&mut self, number: f64, lab: &mut Lab) {
         if let LessonDialog::Lesson(open) = &mut self.shown {
             open.answer(number, lab);
@@ -296,8 +308,8 @@ impl Lessons {
         self.show(lab);
     }
 
-    /// Locks the answer that is chosen for the question `name`, as the vote of `round`, which is over; only if the open
-    /// page is `page` of that lesson. Returns the answer in short.
+    /// Locks the chosen answer to the question `name` as the vote of `round`, which is over, if `page` of that lesson
+    /// is open. Returns the answer in short.
     pub fn lock_chosen(
         &mut self,
         (lesson, page): (&str, usize),
@@ -314,7 +326,7 @@ impl Lessons {
         Some(locked)
     }
 
-    /// Brings the page up to date with the lab and the file; `now` is the time since the lab was opened.
+    /// Updates the page after changes of the lab or the file. `now` is the time since the lab was opened.
     pub fn update(&mut self, now: Duration, lab: &mut Lab) {
         let second = now.as_secs() != self.now.as_secs();
         self.now = now;
@@ -330,12 +342,12 @@ impl Lessons {
         }
     }
 
-    /// Returns how long the caller may wait until the page is looked at again; `None` where nothing waits.
+    /// Returns how long the caller may wait before the next update, or `None` if no lesson is open.
     pub fn wait(&self) -> Option<Duration> {
         self.open_lesson().map(|_| Duration::from_secs(1))
     }
 
-    /// Writes the sheet, and what the session keeps.
+    /// Writes the sheet, and the table for the session.
     fn show(&mut self, lab: &mut Lab) {
         self.has_changed = false;
         let sheet = self.sheet(lab);

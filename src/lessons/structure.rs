@@ -1,16 +1,17 @@
-//! The structure of a lesson's Markdown: headings, fenced blocks and the text between them.
+//! The structure of a lesson's Markdown: headings, fenced blocks, and the text between them.
 
 use crate::engine::scenario::Problem;
 use pulldown_cmark::{CodeBlockKind, Event, HeadingLevel, Parser, Tag, TagEnd};
 use std::ops::Range;
 
-/// The words behind a fence whose block is shown as it is.
+/// Words after the opening fence of blocks that are shown unchanged.
 pub(super) const LANGUAGES: [&str; 6] = ["text", "sh", "toml", "csv", "python", "matlab"];
 
+/// An element of a lesson's file.
 #[derive(Debug)]
 pub(super) struct Element<'a> {
     pub(super) kind: PieceKind<'a>,
-    /// Its first line, from 1.
+    /// First line of the element, from 1.
     pub(super) line: usize,
 }
 
@@ -18,11 +19,12 @@ pub(super) struct Element<'a> {
 pub(super) enum PieceKind<'a> {
     Title(String),
     Heading(String),
-    /// A fenced block: the word behind the fence, and what stands between the fences.
+    /// A fenced block: the word after the opening fence, and the text between the fences.
     Fenced(&'a str, &'a str),
     Text(&'a str),
 }
 
+/// Offsets of the line ends of a text.
 pub(super) struct Lines(Vec<usize>);
 
 impl Lines {
@@ -36,12 +38,13 @@ impl Lines {
     }
 }
 
+/// Returns `problem` with this line as its place.
 pub(super) fn on_line(line: usize, mut problem: Problem) -> Problem {
     problem.place = Some(format!("line {line}"));
     problem
 }
 
-/// Returns the parts of `text` in order; `words` behind a fence mean something in a lesson.
+/// Returns the elements of `text` in order. `words` are the words after a fence that have a meaning in a lesson.
 pub(super) fn structure<'a>(
     text: &'a str,
     lines: &Lines,
@@ -55,7 +58,7 @@ pub(super) fn structure<'a>(
         end: 0,
     };
     let mut depth = 0_usize;
-    let mut heading: Option<(HeadingLevel, Range<usize>, String)> = None; // that is being read
+    let mut heading: Option<(HeadingLevel, Range<usize>, String)> = None; // the heading being read
     for (event, range) in Parser::new(text).into_offset_iter() {
         match event {
             Event::Start(tag) => {
@@ -67,7 +70,7 @@ pub(super) fn structure<'a>(
                         walk.fenced(&info, range, depth == 0)?;
                     }
                     Tag::HtmlBlock if depth == 0 && text[range.clone()].starts_with("<!--") => {
-                        walk.leave_out(range);
+                        walk.exclude(range);
                     }
                     _ => {}
                 }
@@ -93,7 +96,7 @@ pub(super) fn structure<'a>(
     Ok(walk.elements)
 }
 
-/// The way through a file.
+/// The state of the scan through a file.
 struct FileWalk<'a, 'b> {
     text: &'a str,
     lines: &'b Lines,
@@ -103,7 +106,7 @@ struct FileWalk<'a, 'b> {
 }
 
 impl<'a> FileWalk<'a, '_> {
-    /// Takes what stands between the last element and `begin` as text.
+    /// Adds the text between the last element and `begin` as an element.
     fn text_up_to(&mut self, begin: usize) {
         let between = &self.text[self.end.min(begin)..begin];
         let blank: usize = between
@@ -121,15 +124,15 @@ impl<'a> FileWalk<'a, '_> {
         self.end = begin;
     }
 
-    /// Leaves `range` out of the text.
-    fn leave_out(&mut self, range: Range<usize>) {
+    /// Excludes `range` from the text.
+    fn exclude(&mut self, range: Range<usize>) {
         self.text_up_to(range.start);
         self.end = range.end;
     }
 
     fn add(&mut self, kind: PieceKind<'a>, range: Range<usize>) {
         let line = self.lines.at(range.start);
-        self.leave_out(range);
+        self.exclude(range);
         self.elements.push(Element { kind, line });
     }
 
@@ -141,7 +144,7 @@ impl<'a> FileWalk<'a, '_> {
         }
     }
 
-    /// Takes the fenced block at `range`; `is_alone` says that it stands in no list and no quotation.
+    /// Adds the fenced block at `range`. `is_alone` is false inside a list or a quotation.
     fn fenced(&mut self, info: &str, range: Range<usize>, is_alone: bool) -> Result<(), Problem> {
         let line = self.lines.at(range.start);
         let mut words = info.split_whitespace();
@@ -179,7 +182,7 @@ impl<'a> FileWalk<'a, '_> {
     }
 }
 
-/// Returns how the block with this word behind its fence is called in messages.
+/// Returns the name in messages of a block with this word after its fence.
 fn named(word: &str) -> &str {
     match word {
         "" => "```",
@@ -187,7 +190,7 @@ fn named(word: &str) -> &str {
     }
 }
 
-/// Returns the fence with which `block` begins.
+/// Returns the opening fence of `block`.
 fn fence_of(block: &str) -> &str {
     let begun = block.trim_start();
     let sign = begun.chars().next().unwrap_or('`');
@@ -195,7 +198,7 @@ fn fence_of(block: &str) -> &str {
     &begun[..begun.len() - rest.len()]
 }
 
-/// Returns what stands between the fences of `block`; `None` where the second is missing.
+/// Returns the text between the fences of `block`, or `None` if the closing fence is missing.
 fn between_fences(block: &str) -> Option<&str> {
     let fence = fence_of(block);
     let sign = fence.chars().next()?;
@@ -207,8 +210,7 @@ fn between_fences(block: &str) -> Option<&str> {
     (closes && last >= begin).then(|| &lines[begin..last])
 }
 
-/// Returns the line of `inside`, from 0, at which another block of a lesson begins: with a `fence` like the one around it,
-/// or longer.
+/// Returns the line of `inside`, from 0, where another lesson block begins, with a fence at least as long as `fence`.
 fn another_fence(inside: &str, fence: &str, words: &[&str]) -> Option<usize> {
     inside.lines().position(|line| {
         let rest = line.strip_prefix(fence);

@@ -1,5 +1,5 @@
-//! A sheet for the teacher: what a lesson is for, how long each page takes, what is asked, what comes out, and which wrong
-//! answers are common. As Markdown.
+//! The teacher's sheet, as Markdown: the goals of a lesson, the minutes of each page, the questions, their outcomes,
+//! and common wrong answers.
 
 use super::lesson::{AnswerKind, Compare, Lesson, LessonPage, Predict, Right};
 use super::play::{LessonProgressCallback, LessonWalk};
@@ -14,7 +14,7 @@ use toml::{Table, Value};
 const HOW_TO_VOTE: &str = "Below 30 % right: explain, then ask again. From 30 to 70 %: let neighbors talk, then ask again. \
     Above 70 %: go on.";
 
-/// A page on the sheet: what is asked or to be done, and the notes.
+/// A page on the sheet: its questions and tasks, and the notes.
 struct SheetPage<'a> {
     page: &'a LessonPage,
     asked: Vec<String>,
@@ -24,7 +24,8 @@ struct SheetPage<'a> {
 /// Returns the teacher's sheet of `lesson`, which is played in a new `lab`.
 ///
 /// # Errors
-/// When a page cannot be played.
+///
+/// Returns an error if a page cannot be played.
 pub fn sheet(
     lesson: &Lesson,
     lab: Lab,
@@ -73,7 +74,7 @@ pub fn sheet(
     Ok(parts.join("\n\n") + "\n")
 }
 
-/// Returns the title, and what the `lesson` block says of the whole lesson.
+/// Returns the title, and the information of the `lesson` block.
 fn head(lesson: &Lesson) -> Vec<String> {
     let mut parts = vec![format!("# Teacher's sheet: {}", lesson.title)];
     let level = lesson
@@ -92,7 +93,7 @@ fn head(lesson: &Lesson) -> Vec<String> {
     parts
 }
 
-/// Returns a heading and a list; nothing if there is no item.
+/// Returns a heading and a list, or nothing if there are no items.
 fn listed(heading: &str, items: &[String]) -> Vec<String> {
     if items.is_empty() {
         return Vec::new();
@@ -101,7 +102,7 @@ fn listed(heading: &str, items: &[String]) -> Vec<String> {
     vec![format!("## {heading}"), lines.join("\n")]
 }
 
-/// Returns the pages with their minutes, and what happens on each.
+/// Returns the table of pages with their minutes and contents.
 fn table(lesson: &Lesson) -> String {
     let mut rows = vec![
         "| Page | Heading | Minutes | What happens |".to_owned(),
@@ -128,7 +129,7 @@ fn table(lesson: &Lesson) -> String {
     format!("## Pages\n\n{}", rows.join("\n"))
 }
 
-/// Returns the question with its choices, of which the right one is marked.
+/// Returns the question with its choices. The right one is marked.
 fn asked(predict: &Predict, walk: &LessonWalk<'_>) -> String {
     let ask = predict.ask.with_numbers(&walk.lab, &walk.kept);
     let mut text = format!("**Question.** {ask}");
@@ -146,7 +147,7 @@ fn asked(predict: &Predict, walk: &LessonWalk<'_>) -> String {
     text
 }
 
-/// Returns what comes out, which answers to expect, and what to explain.
+/// Returns the outcome, the answers to expect, and the explanation.
 fn expectation(predict: &Predict, came_out: Option<&String>) -> Vec<String> {
     let number = match (&predict.asked, &predict.right) {
         (AnswerKind::Number { unit }, Some(Right::Number { value, within })) => {
@@ -155,7 +156,7 @@ fn expectation(predict: &Predict, came_out: Option<&String>) -> Vec<String> {
         }
         _ => String::new(),
     };
-    // A choice of which none is right is a matter of opinion.
+    // A choice without a right answer is a matter of opinion.
     let is_opinion = predict.right.is_none() && matches!(predict.asked, AnswerKind::Choice(_));
     let explain = if is_opinion {
         "Discuss."
@@ -174,12 +175,12 @@ fn expectation(predict: &Predict, came_out: Option<&String>) -> Vec<String> {
         .collect()
 }
 
-/// Returns what came out in words, without the sentence about a prediction.
+/// Returns the outcome in words, without the sentence about a prediction.
 fn outcome(lesson: &Lesson, compare: &Compare, walk: &LessonWalk<'_>) -> String {
     compare.filled(lesson, &Predictions::default(), &walk.lab, &walk.kept)
 }
 
-/// Returns what the task of `page` demands, and one way to do it.
+/// Returns the goals of the page's task, and one way to do it.
 fn task(page: &LessonPage) -> Option<String> {
     let task = page.task()?;
     let goals: Vec<&str> = page
@@ -203,7 +204,7 @@ fn task(page: &LessonPage) -> Option<String> {
     Some(text)
 }
 
-/// Returns what `command` of a task changes, compared with the commands with which its page has `opened`.
+/// Returns the changes that `command` of a task makes, compared with the commands `opened` of its page.
 fn changes(command: &Command, opened: &[Table]) -> Vec<String> {
     match command {
         Command::Set(keys) | Command::Rerun(keys) => {

@@ -1,8 +1,8 @@
-//! Text in Markdown with places for numbers: `{z_m:.3}`.
+//! Markdown text with placeholders for numbers, such as `{z_m:.3}`.
 //!
-//! A place holds an expression and, after a colon, how its value is written: `.3` with three decimals, `.2e` with an
-//! exponent. Without that it has four significant digits. A brace that is meant as one is written `\{`, as Markdown has it;
-//! in code, braces are braces.
+//! A placeholder has an expression and, after a colon, an optional format: `.3` for three decimals, `.2e` for an
+//! exponent. Without a format, the number has four significant digits. A literal brace is written `\{`, as in Markdown.
+//! In code, braces are literal.
 
 use super::names::{KeptNumbers, value};
 use super::structure::on_line;
@@ -16,35 +16,38 @@ use std::ops::Range;
 
 /// Significant digits of a number without a format.
 const LESSON_NUMBER_DIGITS: usize = 4;
-/// The most digits after the point.
+/// Maximum number of decimals.
 const MOST_DECIMALS: usize = 12;
 const MOST_TEXT_PROBLEMS: usize = 100;
 
+/// Markdown text with placeholders.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LessonText {
-    /// The line at which it begins in the file, from 1.
+    /// First line of the text in the file, from 1.
     pub line: usize,
     parts: Vec<Piece>,
 }
 
+/// A piece of text, or a placeholder.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Piece {
     Plain(String),
     Number(Expression, TextFormat),
 }
 
+/// Format of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TextFormat {
-    /// With four significant digits.
+    /// Four significant digits.
     Short,
-    /// Digits after the point.
+    /// This number of decimals.
     Fixed(usize),
-    /// With an exponent; digits after the point.
+    /// An exponent, and this number of decimals.
     Exponent(usize),
 }
 
 impl TextFormat {
-    /// `number` as it is written; "n/a" where there is none.
+    /// Returns `number` in this format, or "n/a" if it is missing or not finite.
     pub fn written(self, number: Option<f64>) -> String {
         let Some(number) = number.filter(|number| number.is_finite()) else {
             return number::NOT_AVAILABLE.to_owned();
@@ -76,7 +79,7 @@ impl TextFormat {
 }
 
 impl LessonText {
-    /// Reads `source`, which begins at `line`. `find` says why a name in it stands for no number.
+    /// Parses `source`, which begins at `line`. `find` returns an error for an unknown name.
     pub(super) fn read(
         source: &str,
         line: usize,
@@ -92,7 +95,7 @@ impl LessonText {
             if is_code || source[..open].ends_with('\\') {
                 continue;
             }
-            match place(&source[at..], &find) {
+            match placeholder(&source[at..], &find) {
                 Ok((expression, format, length)) => {
                     parts.push(Piece::Plain(source[plain..open].to_owned()));
                     parts.push(Piece::Number(expression, format));
@@ -116,13 +119,13 @@ impl LessonText {
         Ok(Self { line, parts })
     }
 
-    /// Returns the text in Markdown, with the numbers of `lab` and those that were `kept`; "n/a" stands for a number that
-    /// there is not.
+    /// Returns the text in Markdown, with the numbers of `lab` and the `kept` ones. Numbers that are not available
+    /// become "n/a".
     pub fn with_numbers(&self, lab: &Lab, kept: &KeptNumbers) -> String {
         self.filled(|expression, format| format.written(value(expression, lab, kept)))
     }
 
-    /// Returns the places for numbers, each with its line in the file.
+    /// Returns the expressions of the placeholders, each with its line in the file.
     pub(super) fn numbers(&self) -> impl Iterator<Item = (usize, &Expression)> {
         let mut line = self.line;
         self.parts.iter().filter_map(move |part| match part {
@@ -134,7 +137,7 @@ impl LessonText {
         })
     }
 
-    /// Returns the text in Markdown, with what `written` makes of each place for a number.
+    /// Returns the text in Markdown, with each placeholder replaced by the result of `written`.
     pub fn filled(&self, mut written: impl FnMut(&Expression, TextFormat) -> String) -> String {
         let pieces = self.parts.iter();
         pieces
@@ -146,13 +149,17 @@ impl LessonText {
     }
 }
 
-/// What stands in a place for a number, of which `text` is what follows the brace; and how long it is, with the brace that
-/// ends it. An error is the place as it is written, and what is wrong with it.
-fn place(
+/// Parses a placeholder. `text` begins after its brace. Returns the expression, the format, and the length including
+/// the closing brace.
+///
+/// # Errors
+///
+/// Returns the placeholder's text and the problem.
+fn placeholder(
     text: &str,
     find: &impl Fn(&str) -> Result<(), String>,
 ) -> Result<(Expression, TextFormat, usize), (String, String)> {
-    // Where the line ends or another place begins first, this one has lost its end.
+    // If the line ends or another placeholder begins first, the closing brace is missing.
     let first = text.find(['\n', '{', '}']);
     let Some(end) = first.filter(|&end| text[end..].starts_with('}')) else {
         let rule = "is not closed in its line by }: a brace that is meant as one is written \\{";
@@ -160,14 +167,14 @@ fn place(
         return Err((format!("{{{}", begin.trim_end()), rule.to_owned()));
     };
     let inside = &text[..end];
-    match number_in(inside, find) {
+    match placeholder_content(inside, find) {
         Ok((expression, format)) => Ok((expression, format, end + 1)),
         Err(rule) => Err((format!("{{{inside}}}"), rule)),
     }
 }
 
-/// Reads the place `text`, without its braces.
-fn number_in(
+/// Parses the content of a placeholder, without its braces.
+fn placeholder_content(
     text: &str,
     find: &impl Fn(&str) -> Result<(), String>,
 ) -> Result<(Expression, TextFormat), String> {

@@ -1,13 +1,14 @@
-//! Whether a file has changed: its time and its length are looked at once a second. Watchers of the system miss changes on
-//! network drives, and of editors that replace the file.
+//! Detects changes of a file by its time and length, once per second. The system's watchers miss changes on network
+//! drives, and by editors that replace the file.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
-/// The time between two looks.
+/// Time between two checks.
 const LESSON_WATCH_INTERVAL: Duration = Duration::from_secs(1);
 
+/// A file that is checked for changes.
 #[derive(Clone, Debug)]
 pub struct Watch {
     pub path: PathBuf,
@@ -24,8 +25,9 @@ impl Watch {
         }
     }
 
-    /// Returns whether the file has changed since it was last looked at; `now` is the time since the lab was opened. A
-    /// file that is gone for a moment, as it is replaced, has not changed.
+    /// Returns true if the file has changed since the last check. `now` is the time since the lab was opened.
+    ///
+    /// A file that is missing for a moment, while it is replaced, has not changed.
     pub fn has_changed(&mut self, now: Duration) -> bool {
         if now < self.next {
             return false;

@@ -1,4 +1,4 @@
-//! The `lesson` block: what the lesson is about, how long it takes, and what a teacher plans with.
+//! The `lesson` block: the subject of the lesson, its duration, and information for a teacher.
 
 use super::{BlockContent, BlockReader, BlockResult};
 use crate::engine::scenario::Problem;
@@ -20,7 +20,7 @@ const HEAD: Schema = Schema(&[&[
     may("page_minutes", By(are_page_minutes), "how long each page takes"),
 ]]);
 
-/// What the block says.
+/// The content of the block.
 pub(in crate::lessons) struct LessonHead {
     pub about: String,
     pub minutes: Option<u32>,
@@ -46,7 +46,7 @@ fn minutes(value: &Value) -> Option<u32> {
     is_sound.then(|| u32::try_from(whole).ok()).flatten()
 }
 
-/// Reads the block. The minutes of the pages must add up to those of the lesson.
+/// Parses the block. The minutes of the pages must add up to those of the lesson.
 pub(in crate::lessons) fn head(reader: &BlockReader<'_>) -> BlockResult<LessonHead> {
     let mut content = BlockContent::read(reader, HEAD)?;
     let all_minutes = content.keys.get("minutes").and_then(minutes);

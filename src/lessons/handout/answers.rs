@@ -1,4 +1,4 @@
-//! What a student predicted beside what came out, to hand in.
+//! A student's predictions with their outcomes, to hand in.
 
 use super::joined;
 use crate::engine::scenario::Problem;
@@ -9,7 +9,11 @@ use crate::lessons::lesson::{
 use crate::lessons::play::{LessonProgressCallback, LessonWalk};
 use crate::lessons::predictions::{LessonProgress, Tried};
 
-/// Returns the predictions of `place` beside what came out of `lesson`, which is played in a new `lab`; as Markdown.
+/// Returns the predictions in `place` with the outcomes of `lesson`, which is played in a new `lab`, as Markdown.
+///
+/// # Errors
+///
+/// Returns an error if a page cannot be played.
 pub fn answers(
     lesson: &Lesson,
     place: &LessonProgress,
@@ -31,8 +35,8 @@ pub fn answers(
     Ok(joined(&parts))
 }
 
-/// Returns the heading of a page, with what was asked, what came out and what became of its task; nothing where it has
-/// none of these.
+/// Returns the heading of a page with its predictions, their outcomes, and the progress of its task. Returns nothing if
+/// the page has none of these.
 fn answers_of(
     lesson: &Lesson,
     page: &LessonPage,
@@ -58,14 +62,17 @@ fn answers_of(
     parts
 }
 
-/// Returns the question with what was predicted; nothing where nothing was.
+/// Returns the question with the prediction, if one was made.
 fn predicted(predict: &Predict, place: &LessonProgress, walk: &LessonWalk<'_>) -> Option<String> {
     let ask = predict.ask.with_numbers(&walk.lab, &walk.kept);
     let answer = place.predictions.in_words(predict)?;
     Some(format!("**Question.** {ask}\n\n**Predicted.** {answer}"))
 }
 
-/// Returns what came out. Where nothing was predicted, or the outcome was not seen yet, it would give the answer away.
+/// Returns the outcome.
+///
+/// Without a prediction there is none. If the student has not seen the page yet, a note replaces the outcome, which
+/// would give the answer away.
 fn came_out(
     lesson: &Lesson,
     compare: &Compare,

@@ -1,4 +1,4 @@
-//! The figures of a handout, and the empty axes in which a prediction is drawn; as inline SVG.
+//! The figures of a handout, and the empty axes for drawn predictions, as inline SVG.
 
 use crate::engine::data::RunQuantity;
 use crate::engine::run::Simulation;
@@ -18,19 +18,20 @@ use std::sync::Arc;
 
 const HEIGHT: &str = "z_m";
 const TILT: &str = "tilt_deg";
-/// The least range of an axis next to a question, of the traced point's arm and in degrees.
+/// Minimum range of a height axis next to a question, as a fraction of the traced point's distance from the pivot.
 const LEAST_ARM_SHARE: f64 = 0.1;
+/// Minimum range of a tilt axis next to a question, degrees.
 const LEAST_TILT_DEG: f64 = 5.0;
-/// The width of a path from above, which is about as high.
+/// Width of a path from above, which is about as high.
 const ABOVE_PT: f64 = 62.0 * PT_PER_MM;
-/// The room beyond the run's values, of their range.
+/// Room beyond the run's values, as a fraction of their range.
 const MARGIN: f64 = 0.05;
 
-/// The vertical axes of the figures of a lesson.
+/// Vertical axes of the figures of a lesson.
 pub(super) struct AxisRanges {
-    /// The column that stands for the traces where the lab chooses: the one that the questions are about.
+    /// Column that represents the traces if the lab chooses the strips: the column of the questions.
     usual: &'static str,
-    /// The ranges so far. An axis never shows less than it did on an earlier page: what has become small looks small.
+    /// Ranges so far. An axis never shows less than on an earlier page, so that small changes look small.
     shown: BTreeMap<&'static str, (f64, f64)>,
 }
 
@@ -41,20 +42,20 @@ pub(super) struct Figure {
     pub kind: PaperFigureKind,
 }
 
-/// What decides how large a figure is on paper.
+/// Kind of a figure, which decides its size on paper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum PaperFigureKind {
-    /// Curves, as large as the figure says.
+    /// Curves, in the size of the figure.
     Chart,
-    /// The lab's scene in space.
+    /// The 3-D view.
     Space,
-    /// Small letters, which need the width of the paper.
+    /// Small letters, which need the full width of the paper.
     Table,
     /// Empty axes next to a question.
     Frame,
 }
 
-/// Returns what `lab` shows: a figure for each of its panes. `is_asked` if the page has a question.
+/// Returns the figures of the panes that `lab` shows. `is_asked` is true if the page has a question.
 pub(super) fn of_lab(
     lab: &Lab,
     pane_svg: fn(&Lab, Pane) -> String,
@@ -106,7 +107,7 @@ impl AxisRanges {
         }
     }
 
-    /// Returns the column that stands on paper for the traces with this fourth strip.
+    /// Returns the column that represents the traces with this fourth strip on paper.
     fn column(&self, strip: FourthStrip) -> &'static str {
         match strip {
             FourthStrip::Auto | FourthStrip::None => self.usual,
@@ -119,8 +120,9 @@ impl AxisRanges {
         }
     }
 
-    /// Returns the range for `column` of the run of `lab`; none if its extremes are not known. `is_asked` if the page has a
-    /// question: a small swing, which may be the answer, is not magnified.
+    /// Returns the range for `column` of the run of `lab`, or `None` if its extremes are not known.
+    ///
+    /// If the page has a question (`is_asked`), a small swing is not magnified, because it may be the answer.
     fn of_run(&mut self, column: &'static str, lab: &Lab, is_asked: bool) -> Option<(f64, f64)> {
         if let Some(chosen) = chosen_range(column, lab) {
             return Some(chosen);
@@ -147,15 +149,14 @@ impl AxisRanges {
         (range.0 < range.1).then_some(range)
     }
 
-    /// Returns the range of heights that a figure has shown, with as much room again; none for another column.
+    /// Returns the shown range of heights, enlarged to twice its size, or `None` for another column.
     fn around_shown(&self, column: &str) -> Option<(f64, f64)> {
         let (low, high) = *self.shown.get(column).filter(|_| column == HEIGHT)?;
         let room = 0.5 * (high - low);
         Some((low - room, high + room))
     }
 
-    /// Returns the empty axes in which `drawn` is drawn, for the run of `lab` and for the time that it has taken. They show where
-    /// that run starts.
+    /// Returns the empty axes for `drawn`. They cover the time of the run of `lab` so far, and show its start.
     pub fn frame(&self, drawn: DrawnAnswer, lab: &Lab) -> Option<Figure> {
         let run = lab.player().run();
         let (scenario, end_s) = (run.scenario(), run.now().time_s);
@@ -179,7 +180,7 @@ impl AxisRanges {
                     .or_else(|| natural_range(column, value, scenario))?;
                 let time = quantity::axis("t_s").within((0.0, end_s));
                 let value_axis = quantity::axis(column).within(range);
-                // A force at the start would tell how the motion begins.
+                // A force at the start would reveal the begin of the motion.
                 let is_given = !column.ends_with("_N");
                 empty(time, value_axis, is_given.then_some([0.0, value]))
             }
@@ -212,8 +213,8 @@ fn chosen_range(column: &str, lab: &Lab) -> Option<(f64, f64)> {
     chosen.map(|[low, high]| (low, high))
 }
 
-/// Returns the figure of this kind of the run of `lab` up to its present step; none at the start, or where it cannot be
-/// drawn.
+/// Returns the figure of this kind for the run of `lab` up to its present step. Returns `None` at step 0, or if it
+/// cannot be drawn.
 fn of_run(
     lab: &Lab,
     kind: &str,
@@ -230,7 +231,7 @@ fn of_run(
     };
     let exact = player.run().shows_exact();
     if exact {
-        // The file's time step would be named, though the page may have set another.
+        // Otherwise the legend would state the file's time step, although the page may have set another.
         labels.names = vec!["computed".to_owned()];
     }
     let source = FigureSource {
@@ -254,7 +255,7 @@ fn of_run(
     })
 }
 
-/// Returns the time of the run, s, to a thousandth.
+/// Returns the time of the run to a thousandth, s.
 fn time_now(lab: &Lab) -> String {
     let time_s = lab.player().run().now().time_s;
     shortest(libm::round(time_s * 1000.0) / 1000.0)
@@ -269,7 +270,7 @@ fn svg(scene: &PageScene) -> Option<String> {
     String::from_utf8(bytes).ok()
 }
 
-/// Returns axes with nothing in them but the point where the motion starts, if that is given.
+/// Returns empty axes, with the starting point of the motion if given.
 fn empty(x: ChartAxis, y: ChartAxis, start: Option<[f64; 2]>) -> Chart {
     let series = start.map(|start| ChartSeries::new("start", vec![start], SeriesStyle::points(0)));
     Chart {
@@ -280,8 +281,8 @@ fn empty(x: ChartAxis, y: ChartAxis, start: Option<[f64; 2]>) -> Chart {
     }
 }
 
-/// Returns the range of `column` that tells nothing of the motion: it depends on the body and on the start alone. None if
-/// it is not known.
+/// Returns a range of `column` that does not reveal the motion, because it depends only on the body and the start.
+/// Returns `None` for other columns.
 fn natural_range(column: &str, start: f64, scenario: &Scenario) -> Option<(f64, f64)> {
     let reach = 1.1 * scenario.arm_m();
     Some(match column {

@@ -1,4 +1,4 @@
-//! A handout as one HTML file, which any browser prints on A4 or Letter. It is well-formed XML, and needs no other file.
+//! A handout as one HTML file, which any browser prints on A4 or Letter. It is well-formed XML and needs no other file.
 
 use super::figures::{Figure, PaperFigureKind};
 use super::{BLANK, Head, Paper, Part, Question};
@@ -6,9 +6,9 @@ use crate::engine::text::printable::xml;
 use crate::lessons::lesson::AnswerKind;
 use pulldown_cmark::{Event, Options, Parser, Tag, TagEnd, html};
 
-/// Without a size: the printer's paper is taken.
+/// Style sheet. It sets no paper size, so that the printer's paper is used.
 const STYLE: &str = include_str!("handout.css");
-/// Stands next to a question whose answer is no picture.
+/// Placeholder next to a question whose answer is not a picture.
 const ROOM: &str = "<figure class=\"frame\">\n<div class=\"room\"></div>\n\
     <figcaption>Room to sketch or to calculate.</figcaption>\n</figure>\n";
 
@@ -46,7 +46,7 @@ pub(super) fn written(head: &Head, parts: &[Part], paper: Paper) -> String {
     document(&head.title, &body)
 }
 
-/// Returns a whole file that shows `markdown`, whose first heading is the title.
+/// Returns a complete HTML file of `markdown`, whose first heading is the title.
 pub fn from_markdown(title: &str, markdown: &str) -> String {
     document(title, &of_markdown(markdown))
 }
@@ -83,7 +83,7 @@ fn part(part: &Part) -> String {
     }
 }
 
-/// Returns `text` with its lines as they are.
+/// Returns `text` with its line breaks.
 fn pre(text: &str) -> String {
     let lines: Vec<_> = text.trim_end().lines().map(xml).collect();
     format!("<pre>{}</pre>\n", lines.join("\n"))
@@ -107,7 +107,7 @@ fn tick(words: &str) -> String {
     format!("<li>{}</li>\n", xml(words))
 }
 
-/// Returns a line to write on, behind `words`.
+/// Returns a line to write on, after `words`.
 fn line(words: &str) -> String {
     format!("<p class=\"line\">{words}<i></i></p>\n")
 }
@@ -142,7 +142,8 @@ fn question(question: &Question) -> String {
     text + "</div>\n"
 }
 
-/// Returns `markdown` as HTML. HTML in it is shown as text; links and pictures are words, since the file needs no other.
+/// Returns `markdown` as HTML. HTML in it is shown as text. Links and pictures become plain words, because the file
+/// must not need other files.
 fn of_markdown(markdown: &str) -> String {
     let events = Parser::new_ext(markdown, Options::ENABLE_TABLES);
     let plain = events.filter_map(|event| match event {

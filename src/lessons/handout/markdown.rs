@@ -26,7 +26,7 @@ fn part(part: &Part) -> String {
         Part::Text(text) => text.clone(),
         Part::Shown(code) => fenced(&code.language, &code.text),
         Part::Screen(text) => fenced("text", text),
-        // They are drawn for HTML only.
+        // Figures are drawn for HTML only.
         Part::Figures(_) => String::new(),
         Part::Question(asked) => question(asked),
         Part::Goals(goals) => {
@@ -39,7 +39,7 @@ fn part(part: &Part) -> String {
     }
 }
 
-/// Returns the question with a box for each choice, or room for a number.
+/// Returns the question with a box for each choice, or with a blank for a number.
 fn question(question: &Question) -> String {
     let room: Vec<String> = match &question.asked {
         AnswerKind::Choice(choices) => (1..)
@@ -55,7 +55,7 @@ fn question(question: &Question) -> String {
     text
 }
 
-/// `text` between fences that do not occur in it.
+/// Returns `text` between fences that do not occur in it.
 fn fenced(language: &str, text: &str) -> String {
     let ticks = text
         .lines()

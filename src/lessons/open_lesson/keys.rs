@@ -1,4 +1,4 @@
-//! The keys of a lesson: turning its pages, predicting, and asking for help.
+//! The keys of a lesson: turning pages, predicting, and asking for help.
 
 use super::{OpenLesson, PendingBlock, before_task, compared, holds};
 use crate::lab::Lab;
@@ -23,8 +23,8 @@ impl OpenLesson {
             LessonKey::Before => self.before(lab),
             LessonKey::Again => {
                 self.turn_to(self.place.page);
-                let stood = self.replay_page(false, lab);
-                report(stood, lab);
+                let result = self.replay_page(false, lab);
+                report(result, lab);
             }
             LessonKey::ShowTask => return self.show_task(lab),
             LessonKey::Notes => self.shows_notes ^= true,
@@ -40,16 +40,16 @@ impl OpenLesson {
         None
     }
 
-    /// Turns to the next page. Where a prediction is open, it asks for it once.
+    /// Turns to the next page. If a prediction is open, the first press only reminds the user of it.
     fn next(&mut self, lab: &mut Lab) {
         if self.plays() {
-            // To the end of the page's run at once.
-            let stood = self.replay_page(true, lab);
-            if stood.is_err() {
-                // The page is shown as far as it came; n turns it.
+            // Play the page's run to its end at once.
+            let result = self.replay_page(true, lab);
+            if result.is_err() {
+                // The page is shown as far as it got; the next `n` turns it.
                 self.place.stated = Some(BTreeMap::new());
             }
-            return report(stood, lab);
+            return report(result, lab);
         }
         if self.place.page >= self.lesson.pages.len() {
             lab.refuse("this is the last page: L lists the lessons, N turns back");
@@ -64,21 +64,21 @@ impl OpenLesson {
             return;
         }
         self.keep_own_task(lab);
-        // The next page stands on the task of this one as the lesson does it.
+        // The next page builds on this page's task as the lesson does it.
         let has_wandered =
             self.has_wandered(lab) || self.page().is_some_and(|page| page.task().is_some());
         self.turn_to(self.place.page + 1);
         lab.view_mut().turn_to_sheet();
-        // A page that neither does nor states anything leaves the lab as the student has it.
+        // A page without a `lab` block and without numbers leaves the lab as the student has it.
         if let Some(page) = self.page()
             && (page.lab().is_some() || has_wandered && page.states_numbers(&self.place.kept))
         {
-            let stood = self.replay_page(false, lab);
-            report(stood, lab);
+            let result = self.replay_page(false, lab);
+            report(result, lab);
         }
     }
 
-    /// Where the student has done the task of the page, its numbers are those of the student's run.
+    /// If the student has done the task of the page, keeps the numbers of the student's run.
     fn keep_own_task(&mut self, lab: &Lab) {
         let lesson = Arc::clone(&self.lesson);
         let number = self.place.page;
@@ -102,12 +102,13 @@ impl OpenLesson {
             return;
         }
         let page = self.place.page - 1;
-        let stood = self.go_to(Some(page), lab);
-        report(stood, lab);
+        let result = self.go_to(Some(page), lab);
+        report(result, lab);
         lab.view_mut().turn_to_sheet();
     }
 
-    /// Shows the hints of the page and scrolls down to them, or does its task where they are shown already or there are none.
+    /// Shows the hints of the page and scrolls down to them. If they are shown already or there are none, does the
+    /// task.
     fn show_task(&mut self, lab: &mut Lab) -> Option<Direction> {
         let has_hint = (self.page().into_iter().flat_map(LessonPage::checks))
             .any(|check| !check.hint.is_empty());
@@ -127,7 +128,7 @@ impl OpenLesson {
         None
     }
 
-    /// Chooses the answer above or below; scrolls where none is to be chosen.
+    /// Chooses the answer above or below. Scrolls if there is no choice.
     fn select(&mut self, direction: Direction) -> Option<Direction> {
         let Some(predict) = self.asked().cloned() else {
             return Some(direction);
@@ -146,7 +147,7 @@ impl OpenLesson {
         None
     }
 
-    /// Locks the answer that is chosen, or asks for a number.
+    /// Locks the chosen answer, or asks for a number.
     fn confirm_answer(&mut self, lab: &mut Lab) {
         let Some(predict) = self.asked().cloned() else {
             let mut asked = self.page().into_iter().flat_map(LessonPage::predicts);
@@ -165,7 +166,7 @@ impl OpenLesson {
         }
     }
 
-    /// Chooses the answer with this number, or begins to type one with this digit.
+    /// Chooses the answer with this number, or begins to type a number with this digit.
     fn answer_by_digit(&mut self, digit: u8, lab: &mut Lab) {
         let Some(predict) = self.asked().cloned() else {
             return;
@@ -198,15 +199,15 @@ impl OpenLesson {
         }
     }
 
-    /// Locks `answer`, as the vote of the present round.
+    /// Locks `answer` as the vote of the present round.
     fn lock(&mut self, predict: &Predict, answer: PredictionAnswer, lab: &mut Lab) {
         let class_round = self.rounds.get(&predict.name).copied();
         let (round, is_closed) = class_round.unwrap_or((1, false));
         self.lock_in_round(predict, answer, (round, is_closed), lab);
     }
 
-    /// Locks the answer that is chosen for the question `name` of the page, as a vote of `round` that came in time. Returns
-    /// its number, if one is chosen.
+    /// Locks the chosen answer to the question `name` of the page, as a vote of `round` in time. Returns the number of
+    /// the answer, if one is chosen.
     pub(in crate::lessons) fn lock_chosen(
         &mut self,
         name: &str,
@@ -223,7 +224,8 @@ impl OpenLesson {
         Some((at + 1).to_string())
     }
 
-    /// Locks `answer` in a round, which may be closed. Once nothing on the page is open, what it hides is shown.
+    /// Locks `answer` in a round, which may be closed. Once all questions of the page are answered, shows the parts
+    /// that the page hides.
     fn lock_in_round(
         &mut self,
         predict: &Predict,
@@ -257,7 +259,7 @@ impl OpenLesson {
 }
 
 impl OpenLesson {
-    /// Puts the prediction called `name`, which has just been locked, into what the page states about it.
+    /// Updates the page's texts on the prediction called `name`, which has just been locked.
     fn state_again(&mut self, name: &str, lab: &Lab) {
         let mut texts = Vec::new();
         for block in before_task(&self.lesson, &self.place) {
@@ -277,9 +279,9 @@ impl OpenLesson {
     }
 }
 
-/// Says why a page could not be carried out.
-fn report(stood: Result<(), String>, lab: &mut Lab) {
-    if let Err(reason) = stood {
+/// Shows why a page could not be carried out.
+fn report(result: Result<(), String>, lab: &mut Lab) {
+    if let Err(reason) = result {
         lab.tell(reason);
     }
 }
