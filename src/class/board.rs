@@ -1,4 +1,4 @@
-//! The board: the class on a second terminal, for the teacher. Seats, votes, notes, and the clock.
+//! The board: the class on a second terminal, for the teacher, with seats, votes, notes, and the clock.
 
 use super::folder::{ClassFolder, ClassState, VoteStage};
 use super::votes::{self, SeatStatus, Tally, in_order, present, seat_statuses};
@@ -54,7 +54,7 @@ pub fn lines(folder: &ClassFolder, width: usize) -> Vec<String> {
     let mut lines = Vec::new();
     for line in board {
         if columns(&line) <= width {
-            lines.push(line); // with its blanks
+            lines.push(line); // keeps its blanks
         } else {
             lines.extend(wrapped(&line, width));
         }
@@ -62,7 +62,7 @@ pub fn lines(folder: &ClassFolder, width: usize) -> Vec<String> {
     lines
 }
 
-/// Returns the page in words, with the votes on its questions.
+/// Returns the page as text, with the votes on its questions.
 fn page_lines(lesson: &Lesson, state: &ClassState, seats: &[SeatStatus]) -> Vec<String> {
     let told = for_teacher(lesson, state.page, |predict| {
         round_lines(predict, state, seats)
@@ -70,7 +70,7 @@ fn page_lines(lesson: &Lesson, state: &ClassState, seats: &[SeatStatus]) -> Vec<
     told.lines().map(str::to_owned).collect()
 }
 
-/// Returns the votes on `predict`, a round after the other. While a round goes on nobody's choice is shown.
+/// Returns the votes on `predict`, round by round. During a round, no choices are shown.
 fn round_lines(predict: &Predict, state: &ClassState, seats: &[SeatStatus]) -> String {
     let question = state.question(&predict.name);
     let mut text = String::new();
@@ -92,7 +92,7 @@ fn round_lines(predict: &Predict, state: &ClassState, seats: &[SeatStatus]) -> S
     text
 }
 
-/// Returns the seats in columns, those that have not answered first. `page` is the class's.
+/// Returns the seats in columns, those that have not answered first. `page` is the class's page.
 fn seat_lines(
     state: &ClassState,
     page: Option<&LessonPage>,

@@ -13,75 +13,79 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// The longest run file that a class can follow, bytes; and the longest state with it.
+/// Maximum length of a run file that a class can follow, bytes.
 pub const LONGEST_RUN: usize = 64 * 1024;
+/// Maximum length of the published state, bytes.
 const LONGEST_STATE: usize = 2 * LONGEST_RUN;
-/// The teacher's lab is gone when its state was not touched for longer than this.
+/// Time without a heartbeat after which the teacher's lab counts as gone.
 const GONE: Duration = Duration::from_secs(4);
-/// The modes of folders in which both accounts write, and of the teacher's.
+/// Mode of folders in which both accounts write.
 pub(super) const OF_ALL: u32 = 0o2770;
+/// Mode of the teacher's folders.
 const OF_TEACHER: u32 = 0o2750;
 
 pub const CLASS_VERSION: &str = env!("CARGO_PKG_VERSION");
 
+/// The folder of a class.
 #[derive(Clone, Debug, Default)]
 pub struct ClassFolder {
-    /// The folder that the command line names, as a full path.
+    /// Folder named on the command line, as a full path.
     pub root: PathBuf,
 }
 
-/// What the teacher's lab publishes.
+/// The state that the teacher's lab publishes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ClassState {
-    /// The version that wrote it.
+    /// Version that wrote the state.
     pub gyrolab: String,
     pub is_on: bool,
-    /// The full name of the lesson.
+    /// Full name of the lesson.
     pub lesson: String,
-    /// The number of its open page, from 1.
+    /// Number of its open page, from 1.
     pub page: usize,
-    /// How many seats are here, and how many of them have answered the question of the page.
+    /// Number of seats that are here.
     pub here: usize,
+    /// Number of these seats that have answered the question of the page.
     pub answered: usize,
-    /// Whether the run has arrived where the page wants it.
+    /// True if the run has arrived at the state of the page.
     pub has_arrived: bool,
-    /// The seats that the teacher has closed.
+    /// Seats that the teacher has closed.
     pub closed: BTreeSet<String>,
-    /// When the teacher last gathered the class, ms since 1970: seats that left it before follow it again.
+    /// Time at which the teacher last gathered the class, ms since 1970. Seats that left before it follow again.
     pub gathered_ms: u64,
-    /// By LESSON and then by the question's name.
+    /// Questions by lesson, then by name.
     pub questions: BTreeMap<String, BTreeMap<String, QuestionState>>,
-    /// The numbers that the lesson has kept.
+    /// Numbers kept by the lesson.
     pub kept: KeptNumbers,
-    /// Whether the students' labs follow; otherwise the students go on alone.
+    /// True if the students' labs follow; false if the students work on their own.
     pub is_followed: bool,
-    /// The run that is shown; `None` where its file is too long.
+    /// Presented run; `None` if its file is too long.
     pub shown: Option<PresentedRun>,
 }
 
-/// How the class stands with a question.
+/// The state of a question in a class.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct QuestionState {
-    /// The present round, less 1.
+    /// Number of rounds before the present one.
     pub earlier_rounds: u32,
     pub stage: VoteStage,
-    /// Whether the teacher has closed the round. Votes that come now are late.
+    /// True if the teacher has closed the round. Votes after that are late.
     pub is_closed: bool,
-    /// When a countdown closes the round, ms since 1970.
+    /// Time at which a countdown closes the round, ms since 1970.
     pub closes_at_ms: Option<u64>,
-    /// When the round began, ms since 1970.
+    /// Time at which the round began, ms since 1970.
     pub since_ms: u64,
-    /// The bars, where all may see them.
+    /// Bars, if the whole class may see them.
     pub bars: Vec<(String, usize)>,
 }
 
-/// Who sees the votes of a round. The order is that of the key that shows more.
+/// Who can see the votes of a round, in the order of the key that shows more.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum VoteStage {
-    /// Nobody sees more than their number.
+    /// Nobody sees more than the number of votes.
     #[default]
     Counted,
     /// The teacher sees bars.
@@ -94,20 +98,28 @@ pub enum VoteStage {
 pub struct PresentedRun {
     #[serde(flatten)]
     pub snapshot: Snapshot,
-    /// When it was at the snapshot's step, ms since 1970.
+    /// Time at which the run was at the snapshot's step, ms since 1970.
     pub at_ms: u64,
     pub is_running: bool,
 }
 
 impl ClassFolder {
-    /// Finds the class in the folder DIR.
+    /// Finds the class in the folder `dir`.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the folder does not exist.
     pub fn at(dir: &Path) -> Result<Self, String> {
         let root =
             fs::canonicalize(dir).map_err(|error| format!("{}: {error}", PrintablePath(dir)))?;
         Ok(Self { root })
     }
 
-    /// Opens the class in the folder DIR, and makes its own folders if they do not exist.
+    /// Opens the class in the folder `dir`, and creates its subfolders if necessary.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if a folder cannot be created.
     pub fn open(dir: &Path) -> Result<Self, String> {
         let folder = Self::at(dir)?;
         for path in [folder.own(), folder.seats(), folder.wrong()] {
@@ -116,7 +128,11 @@ impl ClassFolder {
         Ok(folder)
     }
 
-    /// Makes the teacher's folder.
+    /// Creates the teacher's folder.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the folder cannot be created.
     pub fn make_teacher(&self) -> Result<(), String> {
         make(&self.teacher(), OF_TEACHER)
     }
@@ -133,17 +149,19 @@ impl ClassFolder {
         self.own().join("wrong")
     }
 
-    /// Forgets the wrong codes that were typed for the seat `word`.
+    /// Resets the count of wrong codes for the seat `word`.
     pub(super) fn forget_wrong_codes(&self, word: &str) {
-        let _ = fs::remove_file(self.wrong().join(word)); // where it stays, it counts on
+        let _ = fs::remove_file(self.wrong().join(word)); // if this fails, the count remains
     }
 
-    /// Keeps seats, votes and state of the class in a folder of their own, `name`, which is then the folder of that class:
-    /// `--votes`, `--answers` and `--board` read it. Afterwards this folder has no seats. Returns that folder; `None` where
-    /// there was nothing to keep.
+    /// Moves seats, votes and state of the class to a new class folder, `name`, for `--votes`, `--answers` and
+    /// `--board`.
+    ///
+    /// Afterwards this folder has no seats. Returns the new folder, or `None` if there was nothing to move.
     ///
     /// # Errors
-    /// When a folder cannot be made or moved.
+    ///
+    /// Returns an error if a folder cannot be created or moved.
     pub fn keep_as_earlier(&self, name: &str) -> Result<Option<PathBuf>, String> {
         let has_seats = fs::read_dir(self.seats()).is_ok_and(|mut seats| seats.next().is_some());
         if !has_seats && !self.state_file().exists() {
@@ -163,7 +181,7 @@ impl ClassFolder {
         Ok(Some(group))
     }
 
-    /// Returns the folder of the teacher, for the state and the sessions.
+    /// Returns the teacher's folder, for the state and the sessions.
     pub fn teacher(&self) -> PathBuf {
         self.own().join("teacher")
     }
@@ -175,7 +193,8 @@ impl ClassFolder {
     /// Reads the teacher's state; `None` before any class.
     ///
     /// # Errors
-    /// When it cannot be read, or another version has written it.
+    ///
+    /// Returns an error if the state cannot be read, or was written by another version.
     pub fn state(&self) -> Result<Option<ClassState>, String> {
         let path = self.state_file();
         let damaged = || format!("{}: is damaged", PrintablePath(&path));
@@ -196,7 +215,8 @@ impl ClassFolder {
     /// Publishes `state`.
     ///
     /// # Errors
-    /// When it is too long, or cannot be written; the one before stays.
+    ///
+    /// Returns an error if it is too long or cannot be written. The previous state remains.
     pub fn publish(&self, state: &ClassState) -> Result<(), String> {
         let text = toml::to_string(state).map_err(|error| error.to_string())?;
         if text.len() > LONGEST_STATE {
@@ -207,20 +227,20 @@ impl ClassFolder {
     }
 
     pub fn touch_state(&self) {
-        let _ = shared::touch(&self.state_file()); // what is wrong is said where it is written
+        let _ = shared::touch(&self.state_file()); // publish() reports write errors
     }
 
-    /// Returns whether the teacher's lab has touched its state a moment ago.
+    /// Returns true if the teacher's lab has sent a heartbeat recently.
     pub fn is_teacher_alive(&self) -> bool {
         shared::modified(&self.state_file()).is_some_and(|time| ago(time) < GONE)
     }
 
-    /// Returns whether nothing more can be written.
+    /// Returns true if the disk is full.
     pub fn is_full(&self) -> bool {
         rustix::fs::statvfs(self.own()).is_ok_and(|there| there.f_bavail == 0)
     }
 
-    /// `lesson` without the folder's path.
+    /// Returns `lesson` without the folder's path.
     pub fn short<'a>(&self, lesson: &'a str) -> &'a str {
         let inside = Path::new(lesson).strip_prefix(&self.root).ok();
         inside.and_then(Path::to_str).unwrap_or(lesson)
@@ -238,18 +258,18 @@ impl QuestionState {
         self.earlier_rounds.saturating_add(1)
     }
 
-    /// Returns whether the round is closed at `now_ms`: by the teacher, or because its countdown is over.
+    /// Returns true if the round is closed at `now_ms`, by the teacher or by its countdown.
     pub fn is_closed_at(&self, now_ms: u64) -> bool {
         self.is_closed || self.closes_at_ms.is_some_and(|at_ms| at_ms <= now_ms)
     }
 
-    /// Returns the seconds until the countdown closes the round; `None` where none is running.
+    /// Returns the seconds until the countdown closes the round, or `None` if no countdown is running.
     pub fn seconds_left(&self, now_ms: u64) -> Option<u64> {
         let at_ms = self.closes_at_ms.filter(|_| !self.is_closed_at(now_ms))?;
         Some((at_ms - now_ms).div_ceil(1000))
     }
 
-    /// Closes the round. The bars stay where they are seen.
+    /// Closes the round. Visible bars remain.
     pub(super) fn close(&mut self) {
         (self.is_closed, self.closes_at_ms) = (true, None);
     }
@@ -265,7 +285,7 @@ impl QuestionState {
 }
 
 impl ClassState {
-    /// Returns what its lesson shows; `is_there` says whether the run has come where the teacher's is.
+    /// Returns the class's page. `is_there` is true if the run here has arrived at the teacher's step.
     pub(super) fn followed(&self, is_there: bool) -> ClassPage<'_> {
         ClassPage {
             lesson: &self.lesson,

@@ -1,4 +1,4 @@
-//! A lab that follows the teacher's: it reads the published state, and shows its page, its run and its view.
+//! A lab that follows the teacher's: it reads the published state and shows its page, run and view.
 
 use super::folder::{ClassFolder, ClassState, PresentedRun};
 use super::unix_ms;
@@ -15,24 +15,25 @@ use std::sync::Arc;
 use std::time::SystemTime;
 use toml::Table;
 
-/// A run that plays is put right where it is more than this off, s of wall time.
+/// Deviation at which a running run is corrected, s of wall time.
 const OFF_S: f64 = 0.6;
 
+/// The common part of the labs of students and the projector.
 #[derive(Debug, Default)]
 pub(super) struct Follower {
     pub(super) folder: ClassFolder,
     state: Option<ClassState>,
-    /// When the state that was read last was written.
+    /// Modification time of the state that was read last.
     seen: Option<SystemTime>,
-    /// Whether the teacher's lab was open at the last look.
+    /// True if the class was running at the last read.
     is_on: bool,
     shown: PresentedView,
 }
 
-/// What of the teacher's lab is shown.
+/// The parts of the teacher's lab that are shown here.
 #[derive(Debug, Default)]
 struct PresentedView {
-    /// The run file, and the scenario as the lab has it.
+    /// Run file, and the scenario made from it.
     run: Option<(String, Arc<Scenario>)>,
     look: Table,
     hidden: Vec<HideablePart>,
@@ -40,23 +41,23 @@ struct PresentedView {
     page: usize,
 }
 
-/// What a look at the files has found.
+/// Result of reading the files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ClassChange {
     Nothing,
     Begun,
-    /// The teacher has ended it.
+    /// The teacher has ended the class.
     Over,
-    /// The teacher's lab gives no sign.
+    /// The teacher's lab has sent no heartbeat.
     Gone,
 }
 
-/// What came of showing the teacher's lab.
+/// Result of showing the teacher's lab.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Shown {
     SamePage,
     NewPage,
-    /// Nothing: the run was changed in this lab.
+    /// Nothing was shown, because the run was changed in this lab.
     ChangedHere,
 }
 
@@ -68,22 +69,22 @@ impl Follower {
         }
     }
 
-    /// Returns the state that was read last, whether or not the class is on.
+    /// Returns the state that was read last, even if the class is over.
     pub(super) fn state(&self) -> Option<&ClassState> {
         self.state.as_ref()
     }
 
-    /// Returns the state of the class, while it is on.
+    /// Returns the state of the class while it is running.
     pub(super) fn class(&self) -> Option<&ClassState> {
         self.state.as_ref().filter(|_| self.is_on)
     }
 
-    /// Returns whether the teacher has ended the class.
+    /// Returns true if the teacher has ended the class.
     pub(super) fn is_over(&self) -> bool {
         self.state.as_ref().is_some_and(|state| !state.is_on)
     }
 
-    /// Reads the files, and says in `lab` why the state cannot be read.
+    /// Reads the files. If the state cannot be read, `lab` shows the reason.
     pub(super) fn look(&mut self, lab: &mut Lab) -> ClassChange {
         let seen = shared::modified(&self.folder.state_file());
         if seen != self.seen {
@@ -107,15 +108,16 @@ impl Follower {
         }
     }
 
-    /// Makes the next [`show`](Self::show) show all of the teacher's lab again.
+    /// Makes the next [`show`](Self::show) show everything again.
     pub(super) fn forget_shown(&mut self) {
         self.shown = PresentedView::default();
     }
 
-    /// Shows what the teacher's lab shows.
+    /// Shows the page, run and view of the teacher's lab.
     ///
     /// # Errors
-    /// Why it cannot be shown, in words.
+    ///
+    /// Returns a message if they cannot be shown.
     pub(super) fn show(&mut self, lab: &mut Lab, lessons: &mut Lessons) -> Result<Shown, String> {
         let Some(state) = self.state.clone() else {
             return Ok(Shown::SamePage);
@@ -144,7 +146,7 @@ impl Follower {
         let is_there = sync_to_presenter(run, lab);
         let turned = lessons.show_class_page(&state.followed(is_there), lab);
         self.show_as(&run.snapshot, lab, lessons);
-        lab.set_undo_floor(true); // undo would lead to a run that was shown before
+        lab.set_undo_floor(true); // undo would return to an earlier presented run
         turned.map_err(|reason| reason.lines().next().unwrap_or_default().to_owned())?;
         Ok(if before == 0 || before == state.page {
             Shown::SamePage
@@ -153,9 +155,9 @@ impl Follower {
         })
     }
 
-    /// Shows the run as the teacher does, where that has changed.
+    /// Applies changes of the teacher's view.
     fn show_as(&mut self, presented: &Snapshot, lab: &mut Lab, lessons: &Lessons) {
-        // What stands so already is left out: a key may be refused where it has no use.
+        // Settings that are already in effect are omitted: a command without effect may be refused.
         let own = Table::try_from(&lab.view().look).unwrap_or_default();
         let look = Table::try_from(&presented.look).unwrap_or_default();
         let mut patch = look.clone();
@@ -164,7 +166,7 @@ impl Follower {
             key != "hide" && !known.contains(&Some(value))
         });
         if !patch.is_empty() {
-            let _ = lab.carry_out(&Command::Look(patch)); // what suits another screen may not suit this one
+            let _ = lab.carry_out(&Command::Look(patch)); // settings of another screen may not fit this one
         }
         self.shown.look = look;
         let shows_exact = presented.shows_exact;
@@ -179,8 +181,9 @@ impl Follower {
     }
 }
 
-/// Returns what is hidden where the teacher's lab hides `presented`: what the page hides stays so until the predictions
-/// here are locked, whatever the teacher sees.
+/// Returns the parts to hide if the teacher's lab hides `presented`.
+///
+/// Parts that the page hides stay hidden until the predictions here are locked, whatever the teacher sees.
 fn hidden(presented: &[HideablePart], open: Option<&OpenLesson>) -> Vec<HideablePart> {
     let page = open.and_then(|open| Some((open.page()?, &open.place.predictions)));
     let Some((page, predictions)) = page.filter(|(page, _)| page.predicts().next().is_some())
@@ -194,7 +197,7 @@ fn hidden(presented: &[HideablePart], open: Option<&OpenLesson>) -> Vec<Hideable
     hidden
 }
 
-/// Returns the step at which `run` is by now, and how many steps it may be off.
+/// Returns the step at which `run` should be by now, and the tolerance in steps.
 fn expected_step(run: &PresentedRun, player: &Player, time_step_s: f64) -> (u64, f64) {
     let since_s = unix_ms().saturating_sub(run.at_ms) as f64 / 1000.0;
     let (ahead, off) = match run.snapshot.speed {
@@ -209,8 +212,8 @@ fn expected_step(run: &PresentedRun, player: &Player, time_step_s: f64) -> (u64,
     (step.min(player.end_step()), off)
 }
 
-/// Brings the run of `lab` to where `run` is by now. Returns whether it stands or plays there. A command that is refused
-/// leaves it where it is.
+/// Brings the run of `lab` to the present state of `run`. Returns true once it has arrived. If a command is refused,
+/// the run stays where it is.
 fn sync_to_presenter(run: &PresentedRun, lab: &mut Lab) -> bool {
     let player = lab.player();
     if player.steps_to_go().is_some() {

@@ -1,11 +1,11 @@
-//! Taking a seat: a name becomes a seat with a drawn code, and the seat's word leads back to it.
+//! Taking a seat: a name becomes a seat with a random code, and the seat's word leads back to it.
 //!
-//! A wrong code counts for every seat of its name, in the folder, for all logins together. After `FREE` of them the seats
-//! of that name accept no code for a minute, and after each further one for twice as long, up to `LONGEST_WAIT_S`. The
-//! right code of a seat resets the count of that seat alone; the teacher can reset it too.
+//! Wrong codes are counted in the folder for every seat with the typed name, over all logins. After `FREE` wrong codes,
+//! seats with that name accept no code for a minute, then twice as long after each further one, up to `LONGEST_WAIT_S`.
+//! The right code of a seat resets the count of that seat only. The teacher can reset it too.
 //!
-//! How long a guess takes: the code of a seat is one of a million. Someone who guesses a code in every hour, in however many
-//! logins and with however many seats of the same name, needs 500 000 hours on average, which is 57 years.
+//! Security: a code is one of a million. Guessing one code per hour, with any number of logins and of seats with the
+//! same name, takes 500 000 hours (57 years) on average.
 
 use super::ClassFolder;
 use super::seat::{CODE_DIGITS, CODES, LONGEST_SEAT_NAME, Seat, all_seats, is_name, name_of};
@@ -15,14 +15,15 @@ use std::fs::{self, File};
 use std::hash::{BuildHasher, Hasher, RandomState};
 use std::path::PathBuf;
 
-/// The most seats of a class.
+/// Maximum number of seats in a class.
 pub const MOST_SEATS: usize = 200;
-/// So many wrong codes may be typed one after the other.
+/// Number of wrong codes in a row that are allowed without a wait.
 const FREE: u32 = 5;
-/// The wait after the last of them, s, and the longest.
+/// Wait after the last of these wrong codes, s.
 const FIRST_WAIT_S: u64 = 60;
+/// Longest wait, s.
 const LONGEST_WAIT_S: u64 = 3600;
-/// The longest file that counts wrong codes, bytes.
+/// Maximum length of a file with a count, bytes.
 const LONGEST_COUNT: usize = 100;
 
 pub const ASKS: &str = "A name for your seat (the teacher sees it, others do not);\n\
@@ -31,11 +32,11 @@ const RULE: &str = "a name has letters, digits and hyphens,\n\
     no blanks, 24 at most; the word of a seat ends\n\
     in a hyphen and six digits";
 
-/// The wrong codes that were typed for a seat since its right code was typed, or the teacher reset them.
+/// Wrong codes for a seat since its right code was typed or the teacher reset the count.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct WrongCodes {
     pub count: u32,
-    /// When the last one was typed, s since 1970.
+    /// Time of the last wrong code, s since 1970.
     at_unix_s: u64,
 }
 
@@ -44,8 +45,8 @@ impl WrongCodes {
         folder.wrong().join(word)
     }
 
-    /// Reads what the folder holds for the seat `word`. A file that cannot be read counts nothing: the next wrong code
-    /// replaces it.
+    /// Reads the count for the seat `word`. A file that cannot be read counts as zero, and the next wrong code replaces
+    /// it.
     fn read(folder: &ClassFolder, word: &str) -> Self {
         let text = shared::read_of_anyone(&Self::file(folder, word), LONGEST_COUNT);
         let parsed = text.ok().flatten().and_then(|text| Self::parse(&text));
@@ -71,7 +72,7 @@ impl WrongCodes {
             .map_err(|error| format!("no code can be tried now: {error}"))
     }
 
-    /// Returns for how long no code is accepted from `now_unix_s` on, s.
+    /// Returns how long no code is accepted from `now_unix_s`, s.
     fn wait_s(self, now_unix_s: u64) -> u64 {
         let Some(further) = self.count.checked_sub(FREE) else {
             return 0;
@@ -84,10 +85,11 @@ impl WrongCodes {
     }
 }
 
-/// Returns the seat that `typed` asks for, and whether it is new.
+/// Returns the seat for the name or word `typed`, and true if it is new.
 ///
 /// # Errors
-/// Why there is none, in words for the student.
+///
+/// Returns a message for the student if there is no such seat.
 pub fn claim(folder: &ClassFolder, typed: &str, now_unix_s: u64) -> Result<(Seat, bool), String> {
     let word = typed.trim().to_lowercase();
     match name_of(&word) {
@@ -100,10 +102,11 @@ pub fn claim(folder: &ClassFolder, typed: &str, now_unix_s: u64) -> Result<(Seat
     }
 }
 
-/// Returns the seat whose word is `typed`.
+/// Returns the seat with the word `typed`.
 ///
 /// # Errors
-/// Why there is none, in words for the student.
+///
+/// Returns a message for the student if there is no such seat.
 pub fn find(folder: &ClassFolder, typed: &str, now_unix_s: u64) -> Result<Seat, String> {
     let word = typed.trim().to_lowercase();
     match name_of(&word) {
@@ -132,18 +135,18 @@ fn begin(folder: &ClassFolder, name: &str) -> Result<Seat, String> {
 
 /// Returns the seat `word`, whose name is `name`.
 ///
-/// While a seat of that name waits, its right code gets the same answer as a wrong one: what is typed then says nothing
-/// about it. A seat of that name that does not wait can be taken meanwhile.
+/// While a seat with that name must wait, its right code gets the same answer as a wrong one, so that an attempt
+/// reveals nothing. Other seats with that name can be taken meanwhile.
 fn come_back(
     folder: &ClassFolder,
     word: &str,
     name: &str,
     now_unix_s: u64,
 ) -> Result<Seat, String> {
-    // One login after the other, so that each is counted. On a file system without locks some may count as one.
+    // Process one login at a time, so that each is counted. On a file system without locks, some may count as one.
     let turn =
         File::open(folder.wrong()).map_err(|error| format!("no code can be tried now: {error}"))?;
-    let _ = turn.lock(); // held until this function returns
+    let _ = turn.lock(); // locked until this function returns
     let mut seats = all_seats(folder)?;
     seats.retain(|seat| name_of(&seat.word) == Some(name));
     let before: Vec<_> = seats
@@ -160,7 +163,7 @@ fn come_back(
             "too many wrong codes for {name}: wait {wait}, or ask your teacher"
         ));
     }
-    // Counted before the answer, whatever it is: where the disk is full, it is the same for every code.
+    // Count before answering, so that the answer on a full disk is the same for every code.
     for (tried, wrong) in seats.iter().zip(&before) {
         let counted = WrongCodes {
             count: wrong.count.saturating_add(1),
@@ -193,7 +196,7 @@ pub struct WaitingSeat {
 }
 
 impl WaitingSeat {
-    /// As the lists of the teacher have it.
+    /// Returns the seat as the teacher's lists show it.
     pub fn in_words(&self) -> String {
         let (word, count) = (&self.word, self.wrong.count);
         format!(
@@ -224,7 +227,7 @@ pub fn waiting(folder: &ClassFolder, now_unix_s: u64) -> Vec<WaitingSeat> {
     waiting
 }
 
-/// Returns a time in whole minutes, or in seconds below two.
+/// Returns a time in whole minutes, or in seconds below two minutes.
 fn in_words(seconds: u64) -> String {
     match seconds {
         0..120 => format!("{seconds} s"),

@@ -1,6 +1,7 @@
-//! A class: a teacher's lab and the seats of the students, which know of each other through files in a folder.
+//! A class: a teacher's lab and the students' seats, which communicate through files in a folder.
 //!
-//! It uses the [`lessons`](crate::lessons) and the [`lab`](crate::lab). What one lab of a class tells another belongs here.
+//! It uses the [`lessons`](crate::lessons) and the [`lab`](crate::lab). All communication between labs of a class
+//! belongs here.
 //!
 //! ```text
 //! DIR/.gyrolab/teacher/state                what the teacher's lab shows, and the rounds of votes
@@ -10,13 +11,15 @@
 //! DIR/.gyrolab/earlier/DATE/.gyrolab/       the same of an earlier group: DIR/.gyrolab/earlier/DATE is the folder of its class
 //! ```
 //!
-//! Each file is written whole by one account and read by the other, three times a second. A run is deterministic: a student's
-//! lab computes what the teacher's shows.
+//! Each file is written whole by one account and read by the other, three times per second. A run is deterministic, so
+//! a student's lab computes the same run as the teacher's.
 //!
-//! - [`folder`]: the folders, and the teacher's [`ClassState`]; [`seat`]: the files of a seat; [`login`]: taking a seat.
-//! - [`votes`]: the votes of a question, counted; as CSV and as bars. [`table`]: the table for a gradebook.
-//! - [`teacher`], [`student`] and [`projector`]: the [`ClassRole`] of a lab in a class; `following`: what the last two share;
-//!   [`board`]: the class on a second terminal; [`rehearsal`]: players for a teacher who practices.
+//! - [`folder`]: the folders, and the teacher's [`ClassState`]. [`seat`]: the files of a seat. [`login`]: taking a
+//!   seat.
+//! - [`votes`]: counts the votes on a question, as CSV and as bars. [`table`]: the table for a gradebook.
+//! - [`teacher`], [`student`] and [`projector`]: the [`ClassRole`] of each lab. `following`: the common part of the
+//!   last two.
+//! - [`board`]: the class on a second terminal. [`rehearsal`]: simulated students for a teacher who practices.
 
 pub mod board;
 pub mod folder;
@@ -40,18 +43,19 @@ use std::ops::ControlFlow;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use toml::Table;
 
-/// How often the files are looked at.
+/// Time between two reads of the files.
 const CLASS_POLL_INTERVAL: Duration = Duration::from_millis(300);
+/// Minimum wait of the loop.
 const LEAST_WAIT: Duration = Duration::from_millis(10);
 
-/// What a class adds to a lab.
+/// The role of a lab in a class.
 pub trait ClassRole {
-    /// Returns the state of the lessons with which the lab begins; its session has `kept` this one.
+    /// Returns the state of the lessons at the begin of the lab. `kept` is the state in the lab's session.
     fn lessons(&self, kept: Table) -> Table {
         kept
     }
 
-    /// Brings lab and files up to date; `now` is the time since the lab was opened. Breaks where the lab is to end.
+    /// Updates lab and files. `now` is the time since the lab was opened. Breaks if the lab must end.
     fn advance(
         &mut self,
         _now: Duration,
@@ -61,28 +65,32 @@ pub trait ClassRole {
         ControlFlow::Continue(())
     }
 
-    /// Does what the key of the class stands for.
+    /// Handles the class key, `k`.
     fn on_class_key(&mut self, lab: &mut Lab, lessons: &mut Lessons);
 
-    /// Does what `key` means to the class. Returns whether that is all of it.
+    /// Handles `key` if it belongs to the class. Returns true if the lesson must not handle it.
     fn intercept(&mut self, _key: LessonKey, _lab: &mut Lab, _lessons: &Lessons) -> bool {
         false
     }
 
-    /// Takes note of what keys have done.
+    /// Records the effects of keys.
     fn after_keys(&mut self, _lab: &mut Lab, _lessons: &Lessons) {}
 
-    /// Returns how long the loop may wait until the files are looked at again.
+    /// Returns how long the loop may wait before the next [`advance`](Self::advance).
     fn wait(&self, _now: Duration) -> Duration {
         Duration::MAX
     }
 
-    /// Returns why the files cannot be written, if they cannot.
+    /// Returns the reason if the files cannot be written.
     fn trouble(&self) -> Option<String> {
         None
     }
 
-    /// Takes note that the lab was left. Returns what is said of that, and of how to come back.
+    /// Records that the lab was left. Returns a message on that, and on how to return.
+    ///
+    /// # Errors
+    ///
+    /// Returns the reason if the last state cannot be saved.
     fn leave(&mut self) -> Result<String, String> {
         Ok(String::new())
     }
@@ -98,13 +106,14 @@ impl ClassRole for NoClass {
     }
 }
 
-/// Milliseconds since 1970 (UTC).
+/// Returns the milliseconds since 1970 (UTC).
 fn unix_ms() -> u64 {
     let since = SystemTime::now().duration_since(UNIX_EPOCH);
     since.unwrap_or_default().as_millis() as u64
 }
 
-/// Returns how long ago `time` was. One that is to come, as the clock was set back, counts as long ago as it is ahead.
+/// Returns the time since `time`. A time in the future, after the clock was set back, counts as equally far in the
+/// past.
 fn ago(time: SystemTime) -> Duration {
     let since = SystemTime::now().duration_since(time);
     since.unwrap_or_else(|ahead| ahead.duration())

@@ -1,5 +1,5 @@
-//! What the whole class sees on a projector: the teacher's page, run and bars. It takes no seat, and cannot vote. It shows
-//! neither notes, nor the names of seats, nor which answer is right.
+//! The projector: the teacher's page, run and bars for the whole class. It takes no seat and cannot vote. It shows no
+//! notes, no names of seats, and no right answers.
 
 use super::folder::{ClassFolder, ClassState};
 use super::following::{ClassChange, Follower, Shown};
@@ -11,6 +11,7 @@ use crate::lessons::page::ClassOverlay;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
+/// The role of the projector's lab.
 #[derive(Debug)]
 pub struct Projector {
     follower: Follower,
@@ -25,7 +26,7 @@ impl Projector {
         }
     }
 
-    /// Shows what the teacher's lab shows; once more where this lab was changed meanwhile.
+    /// Shows the teacher's lab; a second time if this lab was changed meanwhile.
     fn show(&mut self, lab: &mut Lab, lessons: &mut Lessons) {
         let mut shown = self.follower.show(lab, lessons);
         if shown == Ok(Shown::ChangedHere) {
@@ -75,7 +76,8 @@ impl Projector {
     }
 }
 
-/// Returns how many have answered the question `name`, how long its round is open, and the bars if all may see them.
+/// Returns the number of answers to the question `name`, the countdown of its round, and the bars if the class may see
+/// them.
 fn vote_lines(state: &ClassState, name: &str) -> Vec<Paragraph> {
     let question = state.question(name);
     let (countdown, end) = match question.seconds_left(unix_ms()) {

@@ -1,9 +1,9 @@
 //! A rehearsal: players take seats and answer the questions of a class, so that a teacher can practice alone.
 //!
-//! A player writes the files of its seat through the same functions as a student's lab, so the teacher's lab, the board and
-//! the projector work as in a class. What a player does follows from its number, the question and the round alone. Most
-//! answer within 20 s; with three players or more, the last takes 45 s, and the last but one steps aside on every page
-//! until the teacher gathers the class. About half of the first answers are right, and most of the later ones.
+//! A player writes the files of its seat with the same functions as a student's lab. The teacher's lab, the board and
+//! the projector thus work as in a class. A player's actions depend only on its number, the question and the round.
+//! Most answer within 20 s. With three players or more, the last one takes 45 s, and the one before it leaves on every
+//! page until the teacher gathers the class. About half of the first answers are right, and most later ones.
 
 use super::folder::{ClassFolder, ClassState};
 use super::seat::{Seat, SeatRecord};
@@ -19,19 +19,22 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
 use toml::Table;
 
-/// The most players.
+/// Maximum number of players.
 pub const MOST_PLAYERS: u64 = 30;
-/// When the first and the last of the usual players answer, and the slow one, ms after the question was asked.
+/// Time of the first usual answer, ms after the question.
 const FIRST_ANSWER_MS: u64 = 3_000;
+/// Time of the last usual answer, ms after the question.
 const LAST_ANSWER_MS: u64 = 20_000;
+/// Time of the slow player's answer, ms after the question.
 const SLOW_ANSWER_MS: u64 = 45_000;
-/// When a player steps aside, ms after the page was opened.
+/// Time at which a player leaves, ms after the page was opened.
 const ASIDE_AFTER_MS: u64 = 12_000;
-/// How many answers are right, %: in the first round, and in later ones.
+/// Right answers in the first round, percent.
 const RIGHT_AT_FIRST: u64 = 45;
+/// Right answers in later rounds, percent.
 const RIGHT_LATER: u64 = 80;
 
-/// The players of a rehearsal, until this value is dropped.
+/// The players of a rehearsal. They stop when this value is dropped.
 #[derive(Debug)]
 pub struct Players {
     is_over: Arc<AtomicBool>,
@@ -39,10 +42,11 @@ pub struct Players {
 }
 
 impl Players {
-    /// Lets `count` players take seats in `folder`.
+    /// Starts `count` players, who take seats in `folder`.
     ///
     /// # Errors
-    /// When a seat cannot be taken.
+    ///
+    /// Returns an error if a seat cannot be taken.
     pub fn start(folder: &ClassFolder, count: u64) -> Result<Self, String> {
         let players: Result<Vec<_>, _> = (1..=count)
             .map(|number| Player::new(folder, number, count))
@@ -67,15 +71,15 @@ impl Drop for Players {
     fn drop(&mut self) {
         self.is_over.store(true, Ordering::Relaxed);
         if let Some(thread) = self.thread.take() {
-            let _ = thread.join(); // one that has panicked is over too
+            let _ = thread.join(); // a thread that panicked has ended too
         }
     }
 }
 
-/// Lets every player look at the class and act; `lesson` is the class's, once it was read.
+/// Lets every player read the class's state and act. `lesson` caches the class's lesson.
 fn play(folder: &ClassFolder, lesson: &mut Option<Lesson>, players: &mut [Player]) {
     let Ok(Some(state)) = folder.state() else {
-        return players.iter().for_each(Player::give_sign);
+        return players.iter().for_each(Player::send_heartbeat);
     };
     if lesson.as_ref().is_none_or(|it| it.name != state.lesson) {
         *lesson = opening::open_again(&state.lesson).ok();
@@ -86,18 +90,20 @@ fn play(folder: &ClassFolder, lesson: &mut Option<Lesson>, players: &mut [Player
     }
 }
 
+/// A simulated student.
 #[derive(Debug)]
 struct Player {
     number: u64,
-    /// How many players there are.
+    /// Number of players.
     of: u64,
     seat: Seat,
-    /// The word under which the seat is open; `None` while the teacher has closed it.
+    /// Token under which the seat is open; `None` while the teacher has closed it.
     lock_token: Option<String>,
     record: SeatRecord,
     lessons: KeptLessons,
-    /// The page of the class, and when it was seen first, ms since 1970.
+    /// Page of the class.
     page: (String, usize),
+    /// Time at which the page was first seen, ms since 1970.
     page_since_ms: u64,
 }
 
@@ -116,7 +122,7 @@ impl Player {
         })
     }
 
-    fn give_sign(&self) {
+    fn send_heartbeat(&self) {
         if let Some(token) = &self.lock_token {
             self.seat.is_held(token);
         }
@@ -140,7 +146,7 @@ impl Player {
             (None, false) => self.lock_token = self.seat.hold().ok(),
             _ => {}
         }
-        self.give_sign();
+        self.send_heartbeat();
         if is_closed || !state.is_on {
             return;
         }
@@ -165,11 +171,11 @@ impl Player {
         }
         self.record.lessons = Table::try_from(&self.lessons).unwrap_or_default();
         if self.record != before {
-            let _ = self.seat.save(&self.record); // a full disk is said on the board
+            let _ = self.seat.save(&self.record); // the board reports a full disk
         }
     }
 
-    /// Takes note of `page`, the class's, and answers its question when it is time.
+    /// Records the class's `page`, and answers its question when it is time.
     fn take_page(&mut self, state: &ClassState, page: &LessonPage, now_ms: u64) {
         self.lessons.open = Some(state.lesson.clone());
         let lessons = &mut self.lessons.lessons;
@@ -203,7 +209,7 @@ impl Player {
             page: place.page,
             time_unix_s: unix_s(),
         };
-        let _ = place.predictions.lock(predict, given); // refused where it has answered
+        let _ = place.predictions.lock(predict, given); // refused if it has already answered
     }
 
     fn delay_ms(&self, question: &str, round: u32) -> u64 {
@@ -247,7 +253,7 @@ impl Player {
         }
     }
 
-    /// Returns a number that depends on nothing but the player, the question, the round, and what it is `for_what`.
+    /// Returns a pseudorandom number that depends only on the player, the question, the round, and its purpose.
     fn drawn(&self, question: &str, round: u32, for_what: &str) -> u64 {
         let mut hasher = DefaultHasher::new();
         (self.number, question, round, for_what).hash(&mut hasher);

@@ -1,4 +1,4 @@
-//! The files of a seat: where it stands in its lessons, its votes, and who has it open.
+//! The files of a seat: the progress in its lessons, its votes, and the process that has it open.
 
 use super::folder::{CLASS_VERSION, ClassFolder, OF_ALL};
 use super::{ago, unix_ms};
@@ -12,50 +12,52 @@ use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// It is raised when the form or the meaning of a seat's file changes.
+/// Format of a seat's file. Raise it when the form or the meaning changes.
 const SEAT_FORMAT: u32 = 2;
-/// The most characters of a name.
+/// Maximum characters of a name.
 pub(super) const LONGEST_SEAT_NAME: usize = 24;
-/// The digits of a code, and how many codes there are.
+/// Digits of a code.
 pub(super) const CODE_DIGITS: usize = 6;
+/// Number of different codes.
 pub(super) const CODES: u64 = 1_000_000;
-/// The digits of a code of an older version. The seats of that version keep their words.
+/// Digits of a code of an older version. Seats of that version keep their words.
 const OLD_DIGITS: usize = 4;
-/// The longest file of a seat, bytes.
+/// Maximum length of a seat's file, bytes.
 const LONGEST_SEAT_FILE: usize = 1 << 20;
-/// A seat is lost when its lab has given no sign for longer than this, and away after an hour.
+/// Time without a heartbeat after which a seat is lost.
 const LOST: Duration = Duration::from_secs(10);
+/// Time without a heartbeat after which a seat is away.
 const AWAY: Duration = Duration::from_secs(3600);
 
 /// A seat of a class.
 #[derive(Clone, Debug, Default)]
 pub struct Seat {
-    /// Its word, such as `anna-471108`.
+    /// Word of the seat, such as `anna-471108`.
     pub word: String,
     pub folder: PathBuf,
 }
 
-/// What the file of a seat holds.
+/// The content of a seat's file.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct SeatRecord {
-    /// The number of its format.
+    /// Number of the format.
     pub format: u32,
-    /// Whether it has stepped aside from a class that follows.
+    /// True if the seat has left a class that follows the teacher.
     pub is_aside: bool,
-    /// When it stepped aside, ms since 1970.
+    /// Time at which the seat left or rejoined, ms since 1970.
     pub aside_since_ms: u64,
-    /// The lessons with the answers to their questions, as a session keeps them.
+    /// Lessons with the answers to their questions, as a session keeps them.
     pub lessons: toml::Table,
 }
 
-/// Whether somebody sits there.
+/// Presence of a student at a seat.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Presence {
     Here,
-    /// Its lab gives no sign.
+    /// Its lab has sent no heartbeat for a while.
     Lost,
-    /// Its lab was left, or has given no sign for long.
+    /// Its lab was left, or has sent no heartbeat for long.
     Away,
 }
 
@@ -66,18 +68,21 @@ pub(super) fn is_name(name: &str) -> bool {
         && !name.starts_with('-')
 }
 
-/// Returns the name of a seat, if `word` is that of one. A word whose code lacks a digit is none, and no name either:
-/// nobody who mistypes a word gets a new seat.
+/// Returns the name in a seat's `word`, or `None` if it is not a word of a seat.
+///
+/// A word whose code lacks a digit counts as a word, not as a new name, so that nobody who mistypes a word gets a new
+/// seat.
 pub(super) fn name_of(word: &str) -> Option<&str> {
     let (name, code) = word.rsplit_once('-')?;
     let is_code = code.len() >= OLD_DIGITS && code.bytes().all(|digit| digit.is_ascii_digit());
     (is_code && is_name(name)).then_some(name)
 }
 
-/// Returns the seats of the class, in the order of their names.
+/// Returns the seats of the class, sorted by word.
 ///
 /// # Errors
-/// When the folder of the seats cannot be read.
+///
+/// Returns an error if the folder of the seats cannot be read.
 pub fn all_seats(folder: &ClassFolder) -> Result<Vec<Seat>, String> {
     let mut words = match words_in(&folder.seats()) {
         Err(error) if error.kind() == ErrorKind::NotFound => Vec::new(),
@@ -116,7 +121,7 @@ impl Seat {
         self.folder.is_dir()
     }
 
-    /// Makes the folders of a seat; returns whether it is new.
+    /// Creates the folders of the seat. Returns true if the seat is new.
     pub(super) fn make(&self) -> io::Result<bool> {
         let is_new = shared::make_folder(&self.folder, OF_ALL)?;
         shared::make_folder(&self.folder.join(SESSIONS), OF_ALL)?;
@@ -127,10 +132,11 @@ impl Seat {
         self.folder.join(SESSIONS).join(name)
     }
 
-    /// Reads its file.
+    /// Reads the seat's file.
     ///
     /// # Errors
-    /// When it cannot be read, or another version has written it.
+    ///
+    /// Returns an error if it cannot be read, or was written by another version.
     pub fn record(&self) -> Result<SeatRecord, String> {
         let text = shared::read(&self.file("seat"), LONGEST_SEAT_FILE)
             .map_err(|error| error.to_string())?;
@@ -146,10 +152,11 @@ impl Seat {
         Ok(record)
     }
 
-    /// Reads its file, and the progress in the lessons.
+    /// Reads the seat's file with the progress in the lessons.
     ///
     /// # Errors
-    /// As for [`record`](Self::record), and when the places are damaged; with the name of the seat.
+    ///
+    /// Returns an error as [`record`](Self::record) does, or if the progress is damaged. The message names the seat.
     pub fn places(&self) -> Result<(SeatRecord, KeptLessons), String> {
         let read = self
             .record()
@@ -173,8 +180,8 @@ impl Seat {
             .map_err(|error| format!("your answers cannot be kept: {error}"))
     }
 
-    /// Opens the seat in this process; a lab that has it open elsewhere sees that. Returns the word by which it is this
-    /// process's.
+    /// Opens the seat in this process. A lab that has it open elsewhere notices that. Returns the token of this
+    /// process.
     pub fn hold(&self) -> Result<String, String> {
         let word = format!("{} {}", std::process::id(), unix_ms());
         let held = shared::replace(&self.file("open"), &word);
@@ -182,22 +189,22 @@ impl Seat {
         Ok(word)
     }
 
-    /// Returns whether the seat is still open under `word`, and gives a sign then.
+    /// Returns true if the seat is still open under the token `word`. It then also sends a heartbeat.
     pub(super) fn is_held(&self, word: &str) -> bool {
         let path = self.file("open");
         match shared::read(&path, 100) {
             Ok(Some(held)) if held == word => {
-                let _ = shared::touch(&path); // without a sign the board says that the seat is lost
+                let _ = shared::touch(&path); // without heartbeats the board shows the seat as lost
                 true
             }
             Ok(_) => false,
-            Err(_) => true, // nobody has said that it is another's
+            Err(_) => true, // no sign that another process has it
         }
     }
 
     pub(super) fn leave(&self, word: &str) {
         if self.is_held(word) {
-            let _ = fs::remove_file(self.file("open")); // where it stays, the seat is lost
+            let _ = fs::remove_file(self.file("open")); // if this fails, the seat shows as lost
         }
     }
 

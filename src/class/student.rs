@@ -1,7 +1,8 @@
-//! A student's lab: it follows the teacher's, and keeps in the files of its seat where it stands and what was voted.
+//! A student's lab: follows the teacher's lab, and keeps progress and votes in the files of its seat.
 //!
-//! An answer that is marked, but not locked, counts as a vote when its round ends: when the teacher turns the page, closes
-//! the round or asks again, or when the countdown is over. Nothing is locked when a student turns the page.
+//! An answer that is chosen but not locked counts as a vote when its round ends. A round ends when the teacher turns
+//! the page, closes the round or asks again, or when the countdown is over. Nothing is locked when a student turns the
+//! page.
 
 use super::folder::{ClassFolder, ClassState};
 use super::following::{ClassChange, Follower, Shown};
@@ -21,35 +22,36 @@ use toml::Table;
 
 const GO_ON_ALONE: &str = "your teacher lets you go on alone: n and N turn pages";
 
+/// The role of a student's lab.
 #[derive(Debug, Default)]
 pub struct Student {
     follower: Follower,
     seat: Seat,
-    /// The word under which this process has the seat open.
+    /// Token under which this process has the seat open.
     lock_token: String,
     record: SeatRecord,
-    /// Whether the record is to be written.
+    /// True if the record must be written.
     is_new: bool,
     last_snapshot: Option<PlaybackSnapshot>,
-    /// Whether a run that was played aside is pinned.
+    /// True if the student's own run is pinned after rejoining.
     has_pinned: bool,
-    /// Whether a class was on in this lab.
+    /// True once a class was running in this lab.
     has_begun: bool,
     waiting: WaitingPage,
-    /// The rounds that were open at the last look.
+    /// Rounds that were open at the last read.
     open_rounds: Option<OpenRounds>,
-    /// Whether the teacher let the students go on alone at the last look.
+    /// True if the students worked on their own at the last read.
     is_alone: bool,
-    /// Why the lab ends, where it does.
+    /// Reason why the lab ends, if it does.
     ended: Option<&'static str>,
     next_look: Duration,
     trouble: Option<String>,
 }
 
-/// Whether the page is open on which a seat waits for its class: the list of lessons, with words above it.
+/// State of the waiting page: the list of lessons with a text above it, shown until the class begins.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum WaitingPage {
-    /// It was not shown yet.
+    /// Not shown yet.
     #[default]
     Unseen,
     Open,
@@ -61,12 +63,12 @@ enum WaitingPage {
 struct OpenRounds {
     lesson: String,
     page: usize,
-    /// The names of the questions, with their rounds.
+    /// Names of the questions, with their rounds.
     rounds: Vec<(String, u32)>,
 }
 
 impl OpenRounds {
-    /// Returns those of `state`, if its lesson is the one that is open.
+    /// Returns the open rounds of `state`, if its lesson is open here.
     fn of(state: &ClassState, lessons: &Lessons) -> Option<Self> {
         let open = lessons.open_lesson();
         let lesson = &open.filter(|open| open.lesson.name == state.lesson)?.lesson;
@@ -85,7 +87,7 @@ impl OpenRounds {
         })
     }
 
-    /// Returns those of its rounds that are over, now that `open` are open.
+    /// Returns the rounds that have ended, now that `open` are open.
     fn ended<'a>(&'a self, open: Option<&'a Self>) -> impl Iterator<Item = &'a (String, u32)> {
         let same_page = open.filter(|open| (&open.lesson, open.page) == (&self.lesson, self.page));
         let is_open = move |round| same_page.is_some_and(|same| same.rounds.contains(round));
@@ -93,7 +95,8 @@ impl OpenRounds {
     }
 }
 
-/// What a key changes that leads away from the class's run or page: run, step, goal, whether it plays, speed, page.
+/// State of the playback that a key may change, away from the class's run or page: number of acts, step, steps to go,
+/// true if playing, speed, page.
 type PlaybackSnapshot = (
     usize,
     u64,
@@ -117,8 +120,7 @@ fn playback_snapshot(lab: &Lab, lessons: &Lessons) -> PlaybackSnapshot {
 }
 
 impl Student {
-    /// Returns the lab of `seat`, which this process has open under the word `lock_token`; `record` is what its file
-    /// holds.
+    /// Returns the role of `seat`, which this process has open under `lock_token`. `record` is the content of its file.
     pub fn new(folder: ClassFolder, seat: Seat, lock_token: String, record: SeatRecord) -> Self {
         Self {
             follower: Follower::new(folder),
@@ -130,14 +132,14 @@ impl Student {
         }
     }
 
-    /// Returns whether the lab shows what the teacher's shows.
+    /// Returns true if the lab shows the teacher's lab.
     fn follows(&self) -> bool {
         let class = self.follower.class();
         let is_led = class.is_some_and(|state| state.is_followed && state.shown.is_some());
         is_led && !self.record.is_aside
     }
 
-    /// Takes note of the place in the lessons, with what was answered.
+    /// Records the progress in the lessons, with the answers.
     fn note(&mut self, lessons: &Lessons) {
         let kept = lessons.kept();
         if !kept.is_empty() && *kept != self.record.lessons {
@@ -146,7 +148,7 @@ impl Student {
         }
     }
 
-    /// Looks at the files: whether the seat is still this lab's, and what the teacher shows.
+    /// Reads the files: the seat may be opened elsewhere, and the teacher's state may have changed.
     fn look(&mut self, lab: &mut Lab, lessons: &mut Lessons) {
         if !self.seat.is_held(&self.lock_token) {
             self.ended = Some(if self.seat.is_there() {
@@ -183,10 +185,10 @@ impl Student {
         }
     }
 
-    /// Locks answers that are marked for rounds which have ended since the last look, before the page is turned here too.
+    /// Locks chosen answers of rounds that have ended since the last read, before the page turns here too.
     fn end_rounds(&mut self, lab: &mut Lab, lessons: &mut Lessons) {
         if self.follower.class().is_none() && !self.follower.is_over() {
-            return; // the teacher's lab is gone: its rounds go on when it is back
+            return; // the teacher's lab is gone; its rounds continue when it returns
         }
         let class = self.follower.class();
         let open = class.and_then(|state| OpenRounds::of(state, lessons));
@@ -200,7 +202,7 @@ impl Student {
         }
     }
 
-    /// Takes note of whether the teacher lets the students go on alone, and says so.
+    /// Detects when the teacher lets the students work on their own, or ends that, and reports it.
     fn note_whether_alone(&mut self, lab: &mut Lab) {
         let class = self.follower.class();
         let is_alone = class.is_some_and(|state| !state.is_followed);
@@ -213,8 +215,8 @@ impl Student {
         }
     }
 
-    /// Shows the page on which a seat waits, and takes note of whether it was left for homework: who is at homework comes to
-    /// the class with one key.
+    /// Shows the waiting page, and detects when the student leaves it for homework. Such a student rejoins the class
+    /// with one key.
     fn wait_for_class(&mut self, lab: &mut Lab, lessons: &mut Lessons) {
         if self.waiting == WaitingPage::Unseen && !self.has_begun {
             lessons.set_overlay(self.overlay(lessons), lab);
@@ -237,7 +239,7 @@ impl Student {
         }
     }
 
-    /// Returns the words above the list of lessons while no class is on.
+    /// Returns the text above the list of lessons while no class is running.
     fn waiting_words(&self) -> Vec<Paragraph> {
         let word = &self.seat.word;
         let seat = format!("Your seat is {word}.");
@@ -255,14 +257,14 @@ impl Student {
         match self.follower.show(lab, lessons) {
             Ok(Shown::ChangedHere) => self.step_aside(lab),
             Ok(Shown::NewPage) if std::mem::take(&mut self.has_pinned) => {
-                let _ = lab.carry_out(&Command::Pin(false)); // it belongs to the page before
+                let _ = lab.carry_out(&Command::Pin(false)); // it belongs to the previous page
             }
             Ok(Shown::NewPage | Shown::SamePage) => {}
             Err(reason) => lab.tell(reason),
         }
     }
 
-    /// Returns what the class adds to the page.
+    /// Returns the additions of the class to the page.
     fn overlay(&self, lessons: &Lessons) -> ClassOverlay {
         let Some(state) = self.follower.class() else {
             return ClassOverlay {
@@ -302,7 +304,7 @@ impl Student {
         overlay
     }
 
-    /// Returns the title of the page while no class is on; empty where none was.
+    /// Returns the title of the page while no class is running; empty if none has begun.
     fn title_without_class(&self, lessons: &Lessons) -> String {
         let Some(open) = lessons.open_lesson().filter(|_| self.has_begun) else {
             return String::new();
@@ -316,7 +318,7 @@ impl Student {
         format!("{gone} · {page} of {pages}")
     }
 
-    /// Returns the title of the page, a form a line; `asks` says whether the page has a question.
+    /// Returns the title of the page, one form per line. `asks` is true if the page has a question.
     fn title(&self, open: &OpenLesson, state: &ClassState, asks: bool) -> String {
         let page = open.place.page;
         let of = format!("{page} of {}", open.lesson.pages.len());
@@ -353,7 +355,7 @@ impl Student {
         lab.tell("you have stepped aside: k leads back to the class");
     }
 
-    /// Follows again, for the reason `why`. A run of one's own that was played meanwhile stays, pinned.
+    /// Rejoins the class for the reason `why`. A run that the student has played meanwhile is pinned.
     fn come_back(&mut self, why: &str, lab: &mut Lab) {
         self.set_aside(false);
         self.follower.forget_shown();
@@ -372,7 +374,7 @@ impl Student {
         lab.refuse(why);
     }
 
-    /// Returns what the header of an export says: the seat, and the page beside which it was made.
+    /// Returns the note for the header of an export: the seat, and the page that was open.
     fn note_for_exports(&self, lessons: &Lessons) -> Option<String> {
         let open = lessons.open_lesson().filter(|_| self.record.is_aside)?;
         let (page, lesson) = (open.place.page, &open.lesson.name);
@@ -398,7 +400,7 @@ impl ClassRole for Student {
         if now >= self.next_look || self.is_new && !was_new {
             self.next_look = now + CLASS_POLL_INTERVAL;
             if self.waiting != WaitingPage::Unseen && self.follower.class().is_none() {
-                self.wait_for_class(lab, lessons); // what keys have done since the last look
+                self.wait_for_class(lab, lessons); // effects of keys since the last read
             }
             self.look(lab, lessons);
             if self.follows() {
@@ -413,7 +415,7 @@ impl ClassRole for Student {
             }
             lab.files_mut().note = self.note_for_exports(lessons);
             lessons.set_overlay(self.overlay(lessons), lab);
-            self.note(lessons); // an answer that was marked may be locked now
+            self.note(lessons); // a chosen answer may be locked now
             if self.is_new && self.ended.is_none() {
                 self.trouble = self.seat.save(&self.record).err();
                 self.is_new = self.trouble.is_some();

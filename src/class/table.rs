@@ -1,4 +1,4 @@
-//! The table of a class for a gradebook: a row for each seat, with its answers and tasks.
+//! The table of a class for a gradebook: one row per seat, with its answers and tasks.
 
 use super::ClassFolder;
 use super::seat::name_of;
@@ -9,7 +9,7 @@ use crate::lessons::opening;
 use crate::lessons::predictions::{LessonProgress, Tried};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The columns before those of questions and tasks. Moodle's grade import finds a student by `username`.
+/// Columns before those of questions and tasks. Moodle's grade import finds a student by `username`.
 const FIRST_COLUMNS: [&str; 7] = [
     "username",
     "seat",
@@ -20,7 +20,7 @@ const FIRST_COLUMNS: [&str; 7] = [
     "tasks_shown",
 ];
 
-/// A column of the table: what a seat answered in one round of a question, or how far it got with a task.
+/// A column of the table: the answers to a question in one round, or the progress in a task.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum TableColumn {
     Answer {
@@ -34,7 +34,7 @@ enum TableColumn {
     },
 }
 
-/// What one seat did in all its lessons.
+/// Totals of a seat over all its lessons.
 #[derive(Clone, Copy, Debug, Default)]
 struct Totals {
     answered: usize,
@@ -44,9 +44,11 @@ struct Totals {
     tasks_shown: usize,
 }
 
-/// Returns the table of `seats` as CSV: a row for each seat in the order of the seats, a column for each round of each
-/// question that anyone answered and for each task that anyone tried. A choice is its number, counted from 1. An answer that
-/// came late counts in `answers_late` alone, and its cell is empty. A question is right when the answer of its last round is.
+/// Returns the table of `seats` as CSV: a row for each seat, a column for each round of each answered question, and one
+/// for each task that anyone tried.
+///
+/// A choice is written as its number, from 1. A late answer counts only in `answers_late`, and its cell is empty. A
+/// question is right if the answer of its last round is.
 pub fn csv(folder: &ClassFolder, seats: &[SeatStatus]) -> Result<String, csv::Error> {
     let names: BTreeSet<_> = seats.iter().flat_map(|seat| seat.lessons.keys()).collect();
     let lessons: BTreeMap<_, _> = names
@@ -78,7 +80,7 @@ pub fn csv(folder: &ClassFolder, seats: &[SeatStatus]) -> Result<String, csv::Er
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-/// Returns the columns that `seat` has something for.
+/// Returns the columns in which `seat` has a value.
 fn columns(seat: &SeatStatus) -> Vec<TableColumn> {
     let mut columns = Vec::new();
     for (lesson, place) in &seat.lessons {

@@ -1,4 +1,4 @@
-//! The teacher's lab: what it shows goes to the class, and the votes of the class come to its pages.
+//! The teacher's lab: publishes what it shows, and shows the votes of the class on its pages.
 
 mod menu;
 
@@ -21,45 +21,46 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Duration;
 
+/// The role of the teacher's lab.
 #[derive(Debug, Default)]
 pub struct Teacher {
     folder: ClassFolder,
     state: ClassState,
-    /// The state that the class knows.
+    /// State that was published last.
     published: Option<ClassState>,
     is_followed: bool,
     menu: ClassMenu,
     next_page: NextPageQuestion,
     seats: Vec<SeatStatus>,
-    /// The run that was shown last, and its file.
+    /// Run that was shown last, and its file.
     run: Option<(Arc<Scenario>, String)>,
     next_look: Duration,
     trouble: Option<String>,
-    /// If this is a rehearsal: what the teacher is told of it.
+    /// Texts of the rehearsal, if this is one.
     rehearsal: Option<Rehearsal>,
 }
 
-/// What the teacher is told of a rehearsal.
+/// Texts for the teacher of a rehearsal.
 #[derive(Clone, Debug)]
 pub struct Rehearsal {
-    /// At its begin, and in the menu.
+    /// Text at the begin and in the menu.
     pub about: String,
-    /// When it is left.
+    /// Text at the end.
     pub at_end: String,
 }
 
-/// What `n` has asked for, where the class is not ready for the next page.
+/// State of the question that `n` asks if the class is not ready for the next page.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum NextPageQuestion {
     #[default]
     NotAsked,
-    /// The key that is handled now has asked.
+    /// The present key has asked.
     JustAsked,
     Asked,
 }
 
 impl Teacher {
-    /// Returns the class in `folder`, with the rounds of an earlier lab.
+    /// Returns the role for the class in `folder`, with the rounds of an earlier lab in `before`.
     pub fn new(folder: ClassFolder, before: ClassState) -> Self {
         let state = ClassState {
             gyrolab: CLASS_VERSION.to_owned(),
@@ -74,7 +75,7 @@ impl Teacher {
         }
     }
 
-    /// Makes it the teacher of a rehearsal.
+    /// Makes this the teacher of a rehearsal.
     pub fn rehearsing(self, rehearsal: Rehearsal) -> Self {
         Self {
             rehearsal: Some(rehearsal),
@@ -82,7 +83,7 @@ impl Teacher {
         }
     }
 
-    /// Returns what is said before the class is ended, while students are here.
+    /// Returns the warning before `q` ends the class while students are here.
     fn quit_warning(&self) -> Option<String> {
         let here = self.state.here as u64;
         let is_needed = here > 0 && self.rehearsal.is_none();
@@ -97,12 +98,12 @@ impl Teacher {
             Ok(()) => self.published = Some(self.state.clone()),
             Err(trouble) => {
                 self.trouble = Some(trouble);
-                self.folder.touch_state(); // the lab is there
+                self.folder.touch_state(); // heartbeat
             }
         }
     }
 
-    /// Makes the state that of the lab and of the votes.
+    /// Updates the state from the lab and the votes.
     fn look(&mut self, lab: &Lab, lessons: &Lessons) {
         match seat_statuses(&self.folder) {
             Ok(seats) => {
@@ -137,7 +138,7 @@ impl Teacher {
         }
     }
 
-    /// Returns the run in `lab`, as the class follows it.
+    /// Returns the run of `lab` for the class.
     fn shown(&mut self, lab: &Lab) -> Option<PresentedRun> {
         let player = lab.player();
         let scenario = player.run().scenario();
@@ -167,7 +168,7 @@ impl Teacher {
         })
     }
 
-    /// Returns what the class adds to the page.
+    /// Returns the additions of the class to the page.
     fn overlay(&self, lessons: &Lessons) -> ClassOverlay {
         let (here, counts) = present(&self.seats);
         let framed = lessons.open_lesson().map(|open| {
@@ -193,7 +194,7 @@ impl Teacher {
         }
     }
 
-    /// Returns the name of the question that the class is at, and the votes as far as they are shown.
+    /// Returns the name of the present question, and the votes as far as they are shown.
     fn votes(&self, page: &LessonPage) -> Option<(String, Vec<Paragraph>)> {
         let (predict, question) = votes::question(page, &self.state)?;
         let (round, answered, here) = (question.round(), self.state.answered, self.state.here);
@@ -238,8 +239,7 @@ impl Teacher {
         }
     }
 
-    /// Returns what keeps the class from the next page, in words for the teacher: votes that are missing, or a run that
-    /// still plays.
+    /// Returns the reason why the class is not ready for the next page: missing votes, or a run that still plays.
     fn why_wait(&self, lab: &Lab, open: &OpenLesson) -> Option<String> {
         let page = open.page()?;
         if let Some((predict, question)) = votes::question(page, &self.state)
@@ -267,7 +267,7 @@ impl Teacher {
             .then(|| format!("the run is still playing for the class; press n again to {next}"))
     }
 
-    /// Asks before the page is turned while votes are missing or a run plays. Returns whether it asks.
+    /// Asks the teacher before the page is turned while votes are missing or a run plays. Returns true if it asks.
     fn asks_before_next(&mut self, lab: &mut Lab, lessons: &Lessons) -> bool {
         let is_confirmed = self.next_page == NextPageQuestion::Asked;
         let open = lessons.open_lesson().filter(|_| !is_confirmed);
@@ -335,7 +335,7 @@ impl ClassRole for Teacher {
         self.state.is_on = false;
         let published = self.folder.publish(&self.state);
         if let Some(rehearsal) = &self.rehearsal {
-            return Ok(rehearsal.at_end.clone()); // its folder may be removed already
+            return Ok(rehearsal.at_end.clone()); // its folder may already be removed
         }
         published?;
         let root = PrintablePath(&self.folder.root);
@@ -343,7 +343,7 @@ impl ClassRole for Teacher {
     }
 }
 
-/// Returns the run file as the class gets it: without measured data that are a file of the teacher's.
+/// Returns the run file for the class, without measured data from a file of the teacher.
 fn published(scenario: &Scenario) -> String {
     let mut run = scenario.clone();
     let named = run.file.viewed_text("measured");

@@ -1,4 +1,4 @@
-//! The votes of a question, counted: as bars, as advice to the teacher, and as CSV.
+//! The votes on a question: counted, as bars, as advice to the teacher, and as CSV.
 
 use super::ClassFolder;
 use super::folder::{ClassState, QuestionState};
@@ -13,34 +13,35 @@ use crate::lessons::{AnswerKind, LessonPage, Predict, PredictionAnswer, opening}
 use chrono::{DateTime, Utc};
 use std::collections::BTreeMap;
 
-/// With fewer votes no bars go to the students: who has voted what could be guessed.
+/// Minimum votes for the students to see bars. With fewer, they could guess who voted for what.
 pub const FEWEST_VOTES_SHOWN: usize = 5;
-/// The most bars of predicted numbers.
+/// Maximum number of bars of predicted numbers.
 const MOST_BARS: usize = 9;
-/// The columns of the longest bar.
+/// Columns of the longest bar.
 const LONGEST_BAR: usize = 28;
 
-/// A seat with its record and whether somebody sits there.
+/// A seat with its record and its presence.
 #[derive(Clone, Debug)]
 pub struct SeatStatus {
     pub seat: Seat,
     pub is_aside: bool,
     pub lessons: BTreeMap<String, LessonProgress>,
     pub presence: Presence,
-    /// Why its file cannot be read: it then has no lessons here.
+    /// Reason if its file cannot be read. The seat then has no lessons here.
     pub trouble: Option<String>,
 }
 
-/// Every seat of the class.
+/// Returns the status of every seat of the class.
 ///
 /// # Errors
-/// When the folder of the seats cannot be read.
+///
+/// Returns an error if the folder of the seats cannot be read.
 pub fn seat_statuses(folder: &ClassFolder) -> Result<Vec<SeatStatus>, String> {
     let seats = all_seats(folder)?.into_iter();
     Ok(seats.map(SeatStatus::read).collect())
 }
 
-/// Returns how many of `seats` are here, and in words with those that are aside, lost or away.
+/// Returns the number of `seats` that are here, and a text with all counts by presence.
 pub fn present(seats: &[SeatStatus]) -> (usize, String) {
     let (mut here, mut aside, mut lost, mut away) = (0, 0, 0, 0);
     for seat in seats {
@@ -81,7 +82,7 @@ impl SeatStatus {
         self.presence == Presence::Here
     }
 
-    /// Returns what it has answered to `of`, a question of `lesson`, in this round.
+    /// Returns the answer of the seat to `of`, a question of `lesson`, in this round.
     pub fn vote<'a>(
         &'a self,
         lesson: &str,
@@ -92,7 +93,7 @@ impl SeatStatus {
         place.predictions.in_round(of, round)
     }
 
-    /// Returns how the seat stands with the class, while the class is at the question `asked`.
+    /// Returns the standing of the seat in the class, whose present question is `asked`.
     pub fn standing(
         &self,
         state: &ClassState,
@@ -114,7 +115,7 @@ impl SeatStatus {
         }
     }
 
-    /// Its word, and how it stands, as the lists of the teacher have it.
+    /// Returns the word of the seat and its standing, as the teacher's lists show them.
     pub fn in_words(&self, standing: SeatStanding) -> String {
         let aside = if self.is_aside && standing.is_here() {
             ", aside"
@@ -131,12 +132,12 @@ impl SeatStatus {
     }
 }
 
-/// How a seat stands with the class, in the order of the teacher's lists.
+/// Standing of a seat in the class, in the order of the teacher's lists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum SeatStanding {
     NotAnswered,
     Answered,
-    /// Somebody sits there, and the page asks nothing.
+    /// A student is here, and the page asks nothing.
     Here,
     Lost,
     Away,
@@ -160,7 +161,8 @@ impl SeatStanding {
     }
 }
 
-/// Returns `seats` with their standings: who has not answered first, then who has, then the rest; by name within each.
+/// Returns `seats` with their standings: first those that have not answered, then those that have, then the rest; by
+/// name within each group.
 pub fn in_order<'a>(
     seats: &'a [SeatStatus],
     state: &ClassState,
@@ -168,20 +170,20 @@ pub fn in_order<'a>(
 ) -> Vec<(SeatStanding, &'a SeatStatus)> {
     let standings = seats.iter().map(|seat| (seat.standing(state, asked), seat));
     let mut ordered: Vec<_> = standings.collect();
-    ordered.sort_by_key(|(standing, _)| *standing); // stable
+    ordered.sort_by_key(|(standing, _)| *standing); // a stable sort
     ordered
 }
 
-/// The votes of one round of a question.
+/// The votes in one round of a question.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tally {
-    /// A name for each answer, and how many gave it.
+    /// Name and count of each answer.
     pub bars: Vec<(String, usize)>,
-    /// Votes in time.
+    /// Number of votes in time.
     pub votes: usize,
     pub late: usize,
     pub late_bars: Vec<(String, usize)>,
-    /// What is right, how many said it, and what to do next; where the lesson says what is.
+    /// The right answer, the percentage of right votes, and the next action, if the lesson states the right answer.
     pub advice: Option<String>,
 }
 
@@ -205,7 +207,7 @@ impl Tally {
         }
     }
 
-    /// Returns the bars for the teacher, those of late votes below them.
+    /// Returns the bars for the teacher, with those of late votes below.
     pub fn drawn(&self) -> Paragraph {
         let mut text = drawn(&self.bars).text();
         if self.late > 0 {
@@ -243,7 +245,7 @@ fn bars(asked: &AnswerKind, answers: Vec<f64>) -> Vec<(String, usize)> {
     bars
 }
 
-/// Returns the numbers to two digits, the most frequent of them, in their order.
+/// Returns the most frequent numbers, rounded to two digits, in ascending order.
 fn bars_of_numbers(mut numbers: Vec<f64>) -> Vec<(String, usize)> {
     numbers.sort_by(f64::total_cmp);
     let mut bars: Vec<(String, usize)> = Vec::new();
@@ -262,7 +264,7 @@ fn bars_of_numbers(mut numbers: Vec<f64>) -> Vec<(String, usize)> {
     bars
 }
 
-/// `bars` as a part of a page, a line each.
+/// Returns `bars` as a paragraph with one line per bar.
 pub fn drawn(bars: &[(String, usize)]) -> Paragraph {
     let most = bars.iter().map(|bar| bar.1).max().unwrap_or(0).max(1);
     let width = bars.iter().map(|bar| bar.0.len()).max().unwrap_or(0);
@@ -274,7 +276,7 @@ pub fn drawn(bars: &[(String, usize)]) -> Paragraph {
     Paragraph::new(SheetLineKind::Code, text)
 }
 
-/// Returns the question of `page` that the class is at: the first that is not closed, or else the first.
+/// Returns the present question on `page`: the first that is not closed, or else the first.
 pub fn question<'a>(
     page: &'a LessonPage,
     state: &ClassState,
@@ -289,8 +291,8 @@ const VOTE_COLUMNS: [&str; 8] = [
     "lesson", "question", "round", "seat", "choice", "late", "page", "time",
 ];
 
-/// Returns the votes of `seats` as CSV, in the order of seats, lessons and questions. A choice that the lesson no longer
-/// has is told in its words.
+/// Returns the votes of `seats` as CSV, by seat, lesson and question. A choice that the lesson no longer has is written
+/// as its text.
 pub fn csv(folder: &ClassFolder, seats: &[SeatStatus]) -> Result<String, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(VOTE_COLUMNS)?;
@@ -321,8 +323,8 @@ pub fn csv(folder: &ClassFolder, seats: &[SeatStatus]) -> Result<String, csv::Er
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-/// Returns `given` as a number: that of its choice, from 1, or the number that was predicted. A choice that `predict` does
-/// not have is told in its words.
+/// Returns `given` as a number: the predicted number, or the number of the choice, from 1. A choice that `predict` does
+/// not have is written as its text.
 pub(super) fn answer_in_words(predict: Option<&Predict>, given: &LockedAnswer) -> String {
     match &given.answer {
         PredictionAnswer::Number(number) => shortest(*number),
@@ -332,7 +334,7 @@ pub(super) fn answer_in_words(predict: Option<&Predict>, given: &LockedAnswer) -
     }
 }
 
-/// Returns the time of `given`, as RFC 3339 writes it.
+/// Returns the time of `given` in the format of RFC 3339.
 fn time(given: &LockedAnswer) -> String {
     let time = DateTime::<Utc>::from_timestamp(given.time_unix_s as i64, 0).unwrap_or_default();
     time.format("%Y-%m-%dT%H:%M:%SZ").to_string()

@@ -1,4 +1,4 @@
-//! The menu of the class in the teacher's lab: what can be done with votes and seats, and the list of the seats.
+//! The class menu in the teacher's lab: actions on votes and seats, and the list of seats.
 
 use super::Teacher;
 use crate::class::folder::VoteStage;
@@ -10,23 +10,24 @@ use crate::lab::sheet::{Paragraph, SheetLineKind};
 use crate::lessons::LessonPage;
 use crate::lessons::open_lesson::OpenLesson;
 
-/// How long a countdown is, ms.
+/// Length of a countdown, ms.
 const COUNTDOWN_MS: u64 = 30_000;
 const CLOSED: &str = "the round is closed";
 const CLOSED_ASK_AGAIN: &str = "the round is closed: k 2 asks again";
 
-/// What the class's key has opened.
+/// State of the class menu.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) enum ClassMenu {
     #[default]
     Closed,
-    /// The menu, of which the entry of this number (from 0) is selected.
+    /// The menu, with this entry (from 0) selected.
     Open(usize),
-    /// The list of the seats. One is selected by its word, because the order changes with every vote; `None`: the first.
+    /// The list of seats. The selection is a seat's key, because the order changes with every vote; `None` is the
+    /// first.
     Seats(Option<String>),
 }
 
-/// What can be done in the menu.
+/// An action in the menu.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum ClassAct {
     Question(QuestionAct),
@@ -35,7 +36,7 @@ enum ClassAct {
     Gather,
 }
 
-/// What can be done with the question of the page.
+/// An action on the question of the page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum QuestionAct {
     Show,
@@ -43,7 +44,7 @@ enum QuestionAct {
     Countdown,
 }
 
-/// The entries of the menu, in the order of their digits, from 1.
+/// Entries of the menu, in the order of their digits, from 1.
 const ACTS: [ClassAct; 6] = [
     ClassAct::Question(QuestionAct::Show),
     ClassAct::Question(QuestionAct::AskAgain),
@@ -53,14 +54,14 @@ const ACTS: [ClassAct; 6] = [
     ClassAct::Question(QuestionAct::Countdown),
 ];
 
-/// A line of the list of the seats.
+/// A line of the list of seats.
 enum SeatEntry<'a> {
     Waiting(login::WaitingSeat),
     Seat(SeatStanding, &'a SeatStatus),
 }
 
 impl SeatEntry<'_> {
-    /// What tells this line from the others.
+    /// Returns a key that identifies this line.
     fn key(&self) -> String {
         match self {
             Self::Waiting(seat) => format!("{} waits", seat.word),
@@ -70,7 +71,7 @@ impl SeatEntry<'_> {
 }
 
 impl ClassMenu {
-    /// What the border of the page says of it, a form a line.
+    /// Returns the text in the border of the page, one form per line.
     pub(super) fn border(&self) -> &'static str {
         match self {
             Self::Closed => "k: votes, seats, gather, countdown\nk: the class's menu\nk: class",
@@ -86,7 +87,7 @@ fn moved(at: usize, direction: Direction, entries: usize) -> usize {
 }
 
 impl Teacher {
-    /// Returns what stands in place of the page while the menu is open.
+    /// Returns the paragraphs that replace the page while the menu is open.
     pub(super) fn menu_page(&self, page: Option<&LessonPage>) -> Option<Vec<Paragraph>> {
         match &self.menu {
             ClassMenu::Closed => None,
@@ -95,7 +96,7 @@ impl Teacher {
         }
     }
 
-    /// Does what `key` means while the menu is open. Returns whether that is all of it.
+    /// Handles `key` while the menu is open. Returns true if the lesson must not handle it.
     pub(super) fn on_menu_key(
         &mut self,
         key: LessonKey,
@@ -138,7 +139,7 @@ impl Teacher {
         true
     }
 
-    /// Returns what can be done on `page`, with the digits.
+    /// Returns the actions on `page`, with their digits.
     fn acts(&self, page: Option<&LessonPage>) -> Vec<(usize, ClassAct)> {
         let asks = page.is_some_and(|page| votes::question(page, &self.state).is_some());
         let acts = (1..).zip(ACTS);
@@ -163,7 +164,7 @@ impl Teacher {
         lines
     }
 
-    /// Says what `act` would do now.
+    /// Returns the present effect of `act` in words.
     fn act_words(&self, act: ClassAct, page: Option<&LessonPage>) -> String {
         let asked = page.and_then(|page| votes::question(page, &self.state));
         let question = asked.map(|(_, question)| question).unwrap_or_default();
@@ -289,7 +290,7 @@ impl Teacher {
         list
     }
 
-    /// Closes the selected seat, or opens it; ends the wait of a seat that accepts no code.
+    /// Closes or opens the selected seat, or ends the wait of a seat that accepts no code.
     fn close_or_open(&mut self, selected: Option<&str>, lab: &mut Lab, page: Option<&LessonPage>) {
         let entries = self.entries(page);
         let at = selected_at(&entries, selected);
@@ -308,7 +309,7 @@ impl Teacher {
     }
 }
 
-/// Returns where the entry `selected` is; one that is gone: the first.
+/// Returns the position of the entry `selected`, or 0 if it is gone.
 fn selected_at(entries: &[SeatEntry<'_>], selected: Option<&str>) -> usize {
     let found = selected.and_then(|key| entries.iter().position(|entry| entry.key() == key));
     found.unwrap_or(0)
