@@ -27,7 +27,7 @@ pub struct Browser {
     folder: PathBuf,
     first: PathBuf,
     passed: Vec<PathBuf>,
-    /// Another folder, whose files are listed before those of `first`.
+    /// Another folder. Its files are listed first, before the files of `first`.
     pub also: Option<PathBuf>,
     /// Number of files in the folder that are not listed because they contain no run.
     pub others: usize,

@@ -1,4 +1,5 @@
-//! What the run is compared with: the exact motion, the run before an edit (its ghost), a pinned run, and measured data.
+//! The references with which the run is compared: the exact motion, the run before an edit (its ghost), a pinned run,
+//! and measured data.
 
 mod column;
 mod data;
@@ -22,19 +23,20 @@ pub use own_code::OwnCode;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// A run that is shorter than this share of its ghost does not replace the ghost: it was not played far enough.
+/// Minimum length of a run that replaces its ghost, as a share of the ghost's length. A shorter run was not played far
+/// enough.
 const SHORT_RUN_SHARE: f64 = 0.1;
-/// Computing time for reading the run at the measured times in each round of the loop, while the run moves and while it
-/// stands still.
+/// Computing time for reading the run at the measured times in each round of the main loop, while the run moves, and
+/// while it is paused (`CATCHING_UP`).
 const MEASURED_BUDGET: Duration = Duration::from_millis(6);
 const CATCHING_UP: Duration = Duration::from_millis(40);
 
 enum Pinned {
-    /// The present run: nothing has changed it since.
+    /// The present run, unchanged since it was pinned.
     Present,
     /// An earlier run, or the present one before an edit.
     Before(Box<Ghost>),
-    /// An earlier run that a session has kept: its pictures are being made again.
+    /// An earlier run from a session. Its pictures are being recomputed.
     Returning(PendingGhost),
 }
 
@@ -43,11 +45,11 @@ pub struct Comparison {
     ghost: Option<Ghost>,
     pinned: Option<Pinned>,
     data: Option<DataComparison>,
-    /// The column of the CSV that a strip of the traces shows.
+    /// The CSV column in the fourth strip of the traces.
     column: Option<RecordedColumn>,
 }
 
-/// The computing time for following the run of `player` in one round of the loop.
+/// Returns the computing time for following the run of `player` in one round of the main loop.
 fn computing_share(player: &Player) -> Duration {
     if player.is_moving() {
         MEASURED_BUDGET
@@ -57,8 +59,9 @@ fn computing_share(player: &Player) -> Duration {
 }
 
 impl Comparison {
-    /// To be called before the run of `player` goes over to `scenario`: keeps its pictures as ghost or pinned run, and
-    /// begins to compare the data with the other one.
+    /// Prepares for the change of the run of `player` to `scenario`, and must be called before it.
+    ///
+    /// Keeps the pictures of the run as ghost or pinned run, and starts comparing the data with `scenario`.
     pub(super) fn leave(&mut self, player: &Player, change: RunChange, scenario: &Arc<Scenario>) {
         let run = player.run();
         match change {
@@ -104,7 +107,7 @@ impl Comparison {
         }
     }
 
-    /// Records `quantity` of the run of `player` from its start on, or nothing.
+    /// Starts recording `quantity` of the run of `player` from its start, or stops recording.
     pub(super) fn record_column(
         &mut self,
         quantity: Option<&'static RunQuantity>,
@@ -118,8 +121,8 @@ impl Comparison {
         self.column = quantity.map(|wanted| RecordedColumn::new(wanted, scenario));
     }
 
-    /// Keeps `run` as the ghost if it was played far enough, unless `keeps_ghost`. A pinned run does not become the ghost,
-    /// since it is drawn as the pinned run.
+    /// Keeps `run` as the ghost if it was played far enough, unless `keeps_ghost` is true. A pinned run does not become
+    /// the ghost, because it is drawn as the pinned run.
     fn leave_ghost(&mut self, run: &LiveRun, keeps_ghost: bool) {
         let is_pinned = matches!(self.pinned, Some(Pinned::Present));
         self.keep_pinned(run);
@@ -157,7 +160,7 @@ impl Comparison {
         })
     }
 
-    /// Puts the measured data `name` beside the run, or takes away those that are there.
+    /// Shows the measured data `name` with the run, or removes the present ones.
     pub(super) fn measure(
         &mut self,
         name: Option<&str>,
@@ -177,8 +180,13 @@ impl Comparison {
         Ok(notes.map_or(Done::SILENT, Done::saying))
     }
 
-    /// Reads the measured data `name` and puts them beside the run. `may_wait` says whether they may be a FIFO or a device,
-    /// which is read for any length of time. Returns what is not read, and what cannot be right, in words.
+    /// Reads the measured data `name` and shows them with the run. Returns notes about ignored columns and implausible
+    /// values.
+    ///
+    /// If `may_wait` is true, the data may be a FIFO or a device, which can take any length of time to read.
+    ///
+    /// # Errors
+    /// Returns an error if the data cannot be read or are not a time series.
     pub(super) fn put_beside(
         &mut self,
         name: &str,
@@ -198,8 +206,11 @@ impl Comparison {
         Ok((!notes.is_empty()).then(|| notes.join(" · ")))
     }
 
-    /// Refuses `text`, the file `name`, where it could not stand beside the run. Returns why it cannot be judged as rows of
-    /// an own program, where that is so.
+    /// Checks that `text`, the file `name`, can be compared with the run. Returns the reason if it cannot be judged as
+    /// rows of the user's own program.
+    ///
+    /// # Errors
+    /// Returns an error if `text` is not a time series.
     pub(super) fn check(
         &self,
         name: &str,
@@ -220,8 +231,11 @@ impl Comparison {
             .flatten())
     }
 
-    /// To be called after the run went over from `before` to another scenario, or another `[view]`. Puts the data that its
-    /// `[view]` names beside its run, and removes those that the `[view]` of `before` named. Returns why that is not possible.
+    /// Shows the data that the `[view]` of the run names, and removes the data that the `[view]` of `before` named.
+    /// Must be called after the run has changed from `before` to another scenario or another `[view]`.
+    ///
+    /// # Errors
+    /// Returns an error if the data cannot be shown.
     pub(super) fn measure_as_opened(
         &mut self,
         before: &Scenario,
@@ -241,8 +255,8 @@ impl Comparison {
             .map(drop)
     }
 
-    /// Compares the data with the run as it goes on, for at most its share of the computing time, and takes the pictures
-    /// of a pinned run once they are made again. Returns whether there was something to do.
+    /// Continues comparing the data with the run, for at most its share of the computing time, and takes the pictures
+    /// of a pinned run once they are recomputed. Returns true if there was something to do.
     pub(super) fn advance(&mut self, player: &Player, clock: &mut dyn FnMut() -> Duration) -> bool {
         self.follow(player, clock) | self.follow_column(player, clock) | self.take_pinned()
     }
@@ -266,7 +280,7 @@ impl Comparison {
         };
         let deadline = clock() + computing_share(player);
         data.follow(step, || clock() >= deadline);
-        // While the run moves, numbers are read a few times a second.
+        // While the run moves, numbers are read only a few times a second.
         if !is_moving {
             self.compare(player);
         }
@@ -283,8 +297,8 @@ impl Comparison {
         false
     }
 
-    /// Holds rows of an own program against the run of `player`, which is called `name`. Returns whether a verdict has just
-    /// been found, and the first one in words.
+    /// Compares the rows of the user's own program with the run of `player`, which is called `name`. Returns true if a
+    /// verdict has just been found, and the first verdict in words.
     pub(super) fn judge(&mut self, name: &str, player: &Player) -> (bool, Option<String>) {
         let data = self.data.as_mut();
         let Some((data, own)) = data.and_then(|data| Some((&data.name, data.own.as_mut()?))) else {
@@ -294,12 +308,15 @@ impl Comparison {
         (is_found, is_found.then(|| own.first_told(data)).flatten())
     }
 
-    /// The rows of an own program among the measured data.
+    /// Returns the rows of the user's own program, if the measured data are such rows.
     pub fn own_code(&self) -> Option<&OwnCode> {
         self.data.as_ref()?.own.as_ref()
     }
 
-    /// The commands that go to the first step at which such rows differ, with the time step taken apart.
+    /// Returns the commands that go to the first step at which such rows differ, and show the step pane.
+    ///
+    /// # Errors
+    /// Returns an error if there are no such rows or no difference was found.
     pub fn to_difference(&self, view: &View) -> Result<Vec<Command>, String> {
         let none = "there are no rows of a program of one's own beside a run of the report's scheme: gyrolab method-1 --measured mine.csv";
         let data = self.data.as_ref().ok_or(none)?;
@@ -316,7 +333,7 @@ impl Comparison {
         Ok(commands)
     }
 
-    /// Reads the run on to the present step, however long that takes.
+    /// Follows the run to the present step, however long that takes.
     pub(super) fn catch_up(&mut self, player: &Player) {
         if let Some(data) = &mut self.data {
             data.follow(player.step_number(), || false);
@@ -326,7 +343,7 @@ impl Comparison {
         }
     }
 
-    /// Compares the data with the run as far as it has come.
+    /// Compares the data with the run up to its present time.
     pub(super) fn compare(&mut self, player: &Player) {
         let step = player.step_number();
         if let Some(data) = &mut self.data {
@@ -337,7 +354,7 @@ impl Comparison {
         }
     }
 
-    /// The run before, where an edit has begun this one anew.
+    /// Returns the previous run, if an edit restarted the run.
     pub fn ghost(&self) -> Option<&Ghost> {
         self.ghost.as_ref()
     }
@@ -358,7 +375,8 @@ impl Comparison {
         self.pinned.is_some()
     }
 
-    /// The pictures of the pinned run; `None` where none is pinned, or where it is the present run.
+    /// Returns the pictures of the pinned run; `None` if there is none, if it is the present run, or if its pictures
+    /// are not ready.
     pub fn pinned(&self) -> Option<&Ghost> {
         match &self.pinned {
             Some(Pinned::Before(run)) => Some(run),
@@ -366,8 +384,8 @@ impl Comparison {
         }
     }
 
-    /// The time that the pinned run had reached, s, where `run` is the present one; `None` where none is pinned, or its
-    /// pictures are not made yet.
+    /// Returns the time that the pinned run had reached, s; `None` if there is none or its pictures are not ready.
+    /// `run` is the present run.
     pub fn pinned_end_s(&self, run: &LiveRun) -> Option<f64> {
         match &self.pinned {
             Some(Pinned::Present) => Some(furthest_s(run)),
@@ -376,7 +394,7 @@ impl Comparison {
         }
     }
 
-    /// What a session keeps of the pinned run.
+    /// Returns the data about the pinned run for a session.
     pub(super) fn reference(&self) -> Option<Reference> {
         let (scenario, step) = match self.pinned.as_ref()? {
             Pinned::Present => return Some(Reference::default()),
@@ -387,7 +405,7 @@ impl Comparison {
         Some(Reference { step, run })
     }
 
-    /// Pins `reference` again, if there is one: its pictures come a little later.
+    /// Pins `reference` again, if there is one. Its pictures are recomputed in the background.
     pub(super) fn pin_again(&mut self, reference: Option<Reference>) {
         self.pinned = reference.map(|Reference { step, run }| {
             run.map_or(Pinned::Present, |run| {
@@ -396,7 +414,7 @@ impl Comparison {
         });
     }
 
-    /// The name of the measured data beside the run, for a session. A file has its full path, unless the lab is
+    /// Returns the name of the measured data for a session. A file is given by its full path, unless the lab is
     /// confined to a folder.
     pub(super) fn data_to_keep(&self, files: &Files) -> Option<String> {
         let name = &self.data.as_ref()?.name;
@@ -409,7 +427,7 @@ impl Comparison {
     }
 }
 
-/// Draws the exact motion beside the run, or takes it away.
+/// Shows or hides the exact motion.
 pub(super) fn show_exact(shown: bool, player: &mut Player) -> Done {
     if shown != player.run().shows_exact() {
         player.run.set_overlay(shown);

@@ -7,7 +7,7 @@ use tui_input::{Input, InputRequest};
 /// Maximum number of characters in a field.
 const MOST_TYPED: usize = 1000;
 
-/// A line of text input. The cursor moves by visible characters, each of which may consist of several code points.
+/// A line of text input. The cursor moves by visible characters, which may consist of several code points each.
 #[derive(Clone, Debug, Default)]
 pub struct InputField {
     pub label: String,

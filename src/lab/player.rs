@@ -82,13 +82,13 @@ pub struct Player {
     goal: Option<Goal>,
     /// The time at which the run ends, s.
     pub end_s: f64,
-    /// Clock that limits the steps that are taken before a function returns.
+    /// Clock that limits the duration of stepping before a function returns.
     clock: fn() -> Instant,
     /// The replay after the last edit that restarted the run; `None` after any other edit.
     replay: Option<Replay>,
     pub reading: Reading,
     read_at: Duration,
-    /// Time at which the window of the traces was last held.
+    /// Time at which the window of the traces was last fixed.
     window_held_at: Duration,
     seen_swing: Option<window::SeenSwing>,
     at_cursor: Option<CursorNumbers>,

@@ -100,13 +100,12 @@ impl Runs {
         self.original = Original::find(self.name(), file);
     }
 
-    /// Returns `scenario`, that of the present run, for writing to a file. Texts that describe another motion are
-    /// marked.
+    /// Returns the present `scenario` for writing to a file. Texts that describe another motion are marked.
     pub(super) fn flag_stale_text(&self, scenario: &Arc<Scenario>) -> Arc<Scenario> {
         self.original.flag_stale_text(scenario)
     }
 
-    /// Compares `scenario`, that of the present run, with the scenario as it was opened, and records the differences.
+    /// Compares the present `scenario` with the scenario as it was opened, and records the differences.
     pub(super) fn compare_with_file(&mut self, scenario: &Scenario) {
         self.changed_from_file = self.original.difference(scenario);
     }

@@ -214,7 +214,7 @@ impl CommandScript {
         }
     }
 
-    /// Fails the command in progress if the commands have taken too many `steps` in total.
+    /// Stops the command in progress if the commands need too many `steps` in total.
     ///
     /// # Errors
     /// Returns an error if that is so. The other commands are then dropped.

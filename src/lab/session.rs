@@ -1,4 +1,7 @@
-//! The content of a session: the journal of its runs, and the present snapshot, each as TOML.
+//! Converts the lab to and from the content of a session: the journal of its runs, and the present snapshot, each as
+//! TOML.
+//!
+//! The files of sessions belong to [`storage`](super::storage).
 
 use super::comparison::Comparison;
 use super::edits::Edits;
@@ -25,13 +28,13 @@ struct KeptRuns {
     pinned: Option<KeptPinned>,
 }
 
-/// The pinned run: its pictures are made again from its scenario.
+/// The pinned run. Its pictures are recomputed from its scenario.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct KeptPinned {
-    /// The step up to which it was played; of no meaning for the present run.
+    /// The step up to which it was played; unused if the present run is pinned.
     step: u64,
-    /// The run file with all that was done to the run; `None` where the present run is pinned.
+    /// The run file with all edits; `None` if the present run is pinned.
     run: Option<ScenarioFile>,
 }
 
@@ -48,7 +51,7 @@ impl KeptPinned {
     }
 }
 
-/// What a session keeps beside its runs: the snapshot, and what belongs to this screen.
+/// The part of a session besides its runs: the snapshot, and the state of this screen.
 #[derive(Serialize, Deserialize)]
 pub(super) struct KeptPlace {
     #[serde(flatten)]
@@ -56,9 +59,9 @@ pub(super) struct KeptPlace {
     focus: String,
     filled: bool,
     exporting: Option<String>,
-    /// The measured data beside the run.
+    /// The measured data shown with the run.
     pub(super) measured: Option<String>,
-    /// What its columns are called instead.
+    /// The new names of its columns.
     #[serde(default)]
     map: Vec<Renaming>,
     /// The uncertainties of columns without any.
@@ -70,7 +73,7 @@ pub(super) struct KeptPlace {
     lessons: Table,
 }
 
-/// What a list of sessions shows of a session.
+/// The entry of a session in a list.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SessionSummary {
     /// The name under which the user opened the scenario: a preset or a file.
@@ -92,17 +95,17 @@ impl SessionSummary {
     }
 }
 
-/// Why the content of a session cannot be read.
+/// The error that the content of a session cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct Unreadable(String);
 
-/// Returns the state of the lessons in `content`; empty where there is none, or it cannot be read.
+/// Returns the state of the lessons in `content`; empty if there is none or it cannot be read.
 pub fn lessons_in(content: &SessionContent) -> Table {
     read("the place in it", &content.place).map_or(Table::new(), |place: KeptPlace| place.lessons)
 }
 
-/// `journal` as a session keeps it, with the pinned run. The text is written by the thread that first reads it.
+/// Returns the text of `journal` and the pinned run for a session. It is written on the thread that first reads it.
 pub(super) fn written(journal: &Journal, reference: Option<&Reference>) -> SharedText {
     let (journal, reference) = (journal.clone(), reference.cloned());
     later(move || {
@@ -121,7 +124,7 @@ fn read<'a, T: Deserialize<'a>>(what: &str, text: &'a str) -> Result<T, Unreadab
     })
 }
 
-/// What the content of a session holds: the journal and its present scenario, the pinned run, the place.
+/// The parsed content of a session: the journal, its present scenario, the pinned run, and the rest.
 pub(super) type KeptContent = (Journal, Arc<Scenario>, Option<KeptPinned>, KeptPlace);
 
 pub(super) fn kept(content: &SessionContent) -> Result<KeptContent, Unreadable> {
@@ -166,7 +169,7 @@ impl KeptPlace {
         }
     }
 
-    /// Shows in `view` what the session showed.
+    /// Restores the display of the session in `view`.
     pub(super) fn restore(&self, view: &mut View) -> Result<(), Unreadable> {
         let look = &self.snapshot.look;
         let table = Value::try_from(look).map_err(|error| Unreadable(error.to_string()))?;
@@ -180,7 +183,7 @@ impl KeptPlace {
         Ok(())
     }
 
-    /// Describes what the session restores.
+    /// Returns the message about the restored session.
     pub(super) fn in_words(&self) -> String {
         match &self.exporting {
             Some(path) => {

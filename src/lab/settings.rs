@@ -1,7 +1,7 @@
 //! The settings of the display. A dialog lists them with their present values.
 //!
 //! Choices of markers, colors, background, frame rate and mouse are saved for the next session. A new setting is a row
-//! of [`SETTINGS`].
+//! of `SETTINGS`.
 
 use super::command::Command;
 use super::view::theme::{Background, Marker, Palette};

@@ -1,5 +1,5 @@
-//! The values that the user can edit: the values of the scenario at the present step, and those of the next push. One
-//! of them is selected.
+//! The values that the user can edit: the values of the scenario at the present step, and of the next push. One of them
+//! is selected.
 
 pub mod list;
 
@@ -33,7 +33,7 @@ const GROUP_ORDER: [&str; 7] = [
 #[derive(Clone)]
 pub struct Values {
     pub list: ValueList,
-    /// The next push. The list shows a change after [`list_again`](Self::list_again).
+    /// The next push. The list shows a change once it is listed again.
     pub next_push: NextPush,
     /// The scenario's file when the list was made, including the edits up to then.
     file: ScenarioFile,

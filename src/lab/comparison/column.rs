@@ -1,7 +1,7 @@
-//! A column of the run's CSV, recorded over time for a strip of its own.
+//! A column of the run's CSV, recorded over time for a separate strip.
 //!
-//! A second simulation of the run's scenario follows the run, as that of the measured data does, and the value of the column
-//! is recorded at each of its steps.
+//! A second simulation of the run's scenario follows the run, as for measured data. The value of the column is recorded
+//! at each of its steps.
 
 use crate::engine::data::RunQuantity;
 use crate::engine::recording::Recording;
@@ -12,10 +12,10 @@ use std::sync::Arc;
 pub struct RecordedColumn {
     pub quantity: &'static RunQuantity,
     simulation: Simulation,
-    /// The column stands in the place of x.
+    /// The recording of the column, in the place of x.
     recording: Recording,
     before: Option<Recording>,
-    /// Whether the run's numbers stopped being finite on the way.
+    /// True if the run's numbers stopped being finite on the way.
     has_broken: bool,
 }
 
@@ -36,7 +36,7 @@ impl RecordedColumn {
         &self.recording
     }
 
-    /// Returns the recording of the previous run, as far as it had come.
+    /// Returns the recording of the previous run, as far as it was played.
     pub fn before(&self) -> Option<&Recording> {
         self.before.as_ref()
     }
@@ -49,13 +49,13 @@ impl RecordedColumn {
         };
     }
 
-    /// Begins with `scenario`, and keeps what was recorded as that of the previous run.
+    /// Restarts with `scenario`, and keeps the recording for comparison.
     pub(super) fn begin_after_ghost(&mut self, scenario: &Arc<Scenario>) {
         self.before = Some(std::mem::take(&mut self.recording));
         self.begin(scenario);
     }
 
-    /// Goes on with `scenario`, which has the same motion up to `step`.
+    /// Continues with `scenario`, which has the same motion up to `step`.
     pub(super) fn branch(&mut self, scenario: &Arc<Scenario>, step: u64) {
         if self.simulation.step_number() > step || self.has_broken {
             self.begin(scenario);

@@ -1,8 +1,9 @@
-//! Measured data beside the run: the values of the same quantities in the run at the same times, and their residuals.
+//! Measured data compared with the run: the values of the same quantities in the run at the same times, and the
+//! residuals.
 //!
 //! A second simulation of the run's scenario follows the run, like the exact motion does, and reads it at the measured
-//! times. It also records the quantities that were measured and that the run's own recording does not have, so that their
-//! curves can be drawn. [`Compared`] has the two side by side.
+//! times. It also records the measured quantities that the run's own recording does not contain, so that their curves
+//! can be drawn. [`Compared`] holds data and run side by side.
 
 use super::OwnCode;
 use crate::engine::data::compared::Compared;
@@ -13,13 +14,13 @@ use crate::engine::scenario::{Problems, Scenario};
 use nalgebra::Vector3;
 use std::sync::Arc;
 
-/// Quantities that a recording holds beside the tilt: in the places of x, y and z.
+/// Number of quantities in a recording besides the tilt: in the places of x, y and z.
 const IN_A_RECORDING: usize = RecordedCurve::OF_POINT.len();
 
-/// Measured data, and the run's values for them so far.
+/// Measured data, and the corresponding values of the run so far.
 pub struct DataComparison {
     pub name: String,
-    /// What the user says of its columns.
+    /// The user's options for its columns.
     pub(in crate::lab) options: ColumnOptions,
     pub measured: Arc<MeasuredData>,
     pub own: Option<OwnCode>,
@@ -28,13 +29,16 @@ pub struct DataComparison {
     reader: RunReader<Arc<TimeSeries>>,
     recorded: Vec<Recording>,
     before: Vec<Recording>,
-    /// Whether the run's numbers stopped being finite on the way.
+    /// True if the run's numbers stopped being finite on the way.
     has_broken: bool,
     pub compared: Compared,
 }
 
 impl DataComparison {
-    /// `measured` beside the run of `scenario`, of which nothing has been read yet.
+    /// Creates a comparison of `measured` with the run of `scenario`, without any values of the run yet.
+    ///
+    /// # Errors
+    /// Returns an error if the data are not a time series.
     pub(super) fn new(
         name: &str,
         options: &ColumnOptions,
@@ -67,7 +71,8 @@ impl DataComparison {
         self.series.times_s.last().copied()
     }
 
-    /// The recording that has the quantity of this index, and its curve there; `None` where it is not recorded here.
+    /// Returns the recording that contains the quantity with this index, and its curve there; `None` if it is not
+    /// recorded here.
     pub fn recorded(&self, index: usize) -> Option<(&Recording, RecordedCurve)> {
         self.place_of(index, &self.recorded)
     }
@@ -86,7 +91,7 @@ impl DataComparison {
         Some((recording, RecordedCurve::OF_POINT[place % IN_A_RECORDING]))
     }
 
-    /// The quantities that the run's own recording does not have, each with its index.
+    /// Returns the quantities that the run's own recording does not contain, with their indices.
     fn recorded_here(&self) -> impl Iterator<Item = (usize, &'static RunQuantity)> + '_ {
         let quantities = self.quantities().enumerate();
         quantities.filter(|(_, quantity)| {
@@ -105,13 +110,13 @@ impl DataComparison {
         self.record();
     }
 
-    /// Begins with `scenario`, and keeps what was recorded as that of the ghost.
+    /// Restarts with `scenario`, and keeps the recordings of the previous run for comparison.
     pub(super) fn begin_after_ghost(&mut self, scenario: &Arc<Scenario>) {
         self.before = std::mem::take(&mut self.recorded);
         self.begin(scenario);
     }
 
-    /// Goes on with `scenario`, which has the same motion up to `step`.
+    /// Continues with `scenario`, which has the same motion up to `step`.
     pub(super) fn branch(&mut self, scenario: &Arc<Scenario>, step: u64) {
         if self.simulation.step_number() > step || self.has_broken {
             return self.begin(scenario);
@@ -120,7 +125,7 @@ impl DataComparison {
         self.reader.forget_after(self.simulation.now().time_s());
     }
 
-    /// Whether it is behind a run that stands at `step`.
+    /// Returns true if it is behind a run that is at `step`.
     pub(super) fn is_behind(&self, step: u64) -> bool {
         let has_to_go_on = !self.recorded.is_empty() || self.reader.next_time_s().is_some();
         has_to_go_on && !self.has_broken && self.simulation.step_number() < step
@@ -140,7 +145,7 @@ impl DataComparison {
             }
         }
         if !self.has_broken && self.simulation.step_number() <= step {
-            // The value measured at this very step. Where the next step breaks down, the run says so.
+            // Reads values measured at exactly this step. If the next step breaks down, the run reports it.
             self.has_broken = self.reader.read_to_next_step(&self.simulation).is_err();
         }
     }

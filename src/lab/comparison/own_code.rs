@@ -1,5 +1,5 @@
-//! Measured data that are rows of somebody's own program of the report's scheme: the verdict of `gyrolab verify --against`
-//! about the run as it stands, found in the background.
+//! Measured data that are rows of the user's own program of the report's scheme. The verdict of `gyrolab verify
+//! --against` about the present run is computed in the background.
 
 use crate::engine::data::quantity::TIME_COLUMN;
 use crate::engine::data::{self, ColumnOptions, MeasuredData};
@@ -14,19 +14,20 @@ use std::sync::Arc;
 
 type VerdictResult = Result<Verdict, String>;
 
-/// The rows of a program, and what is found out about them.
+/// The rows of a program, and the verdict about them.
 pub struct OwnCode {
     text: Arc<str>,
     map: Arc<[Renaming]>,
-    /// The run that they are held against, and the search for its verdict.
+    /// The run with which the rows are compared, and the computation of the verdict.
     judged: Option<(Arc<Scenario>, BackgroundJob<VerdictResult>)>,
-    /// Whether the first verdict was found; further ones, about edited runs, are not told.
+    /// True if the first verdict was reported. Further verdicts, about edited runs, are not reported.
     is_told: bool,
 }
 
 impl OwnCode {
-    /// Reads the data in `text`, the file `name`, to stand beside the run of `scenario`. Where they are rows as a program of
-    /// the report's scheme writes them, they need no times, and the rows come back too.
+    /// Reads the data in `text`, the file `name`, for comparison with the run of `scenario`.
+    ///
+    /// Rows as a program of the report's scheme writes them need no times. They are returned as well.
     pub(super) fn read(
         name: &str,
         text: &str,
@@ -40,12 +41,12 @@ impl OwnCode {
             return Ok((measured?, None));
         }
         let rows = match rows::read(text, map, None, time_step_s) {
-            // A program knows of no uncertainty.
+            // Rows of a program have no uncertainties.
             Ok(rows) if rows.left_out.iter().any(|it| it.contains("uncertainty")) => {
                 return Ok((measured?, None));
             }
             Ok(rows) => rows,
-            // Neither a time series nor a scenario.
+            // The text is neither a time series nor a scenario.
             Err(problems)
                 if measured.is_err() && ![TIME_COLUMN, "="].iter().any(|it| text.contains(it)) =>
             {
@@ -70,8 +71,8 @@ impl OwnCode {
         Ok((measured, Some(own)))
     }
 
-    /// Begins to hold the rows against the run of `scenario`, called `name`, unless that has begun. Returns whether a verdict
-    /// has just been found.
+    /// Starts comparing the rows with the run of `scenario`, called `name`, unless that has started already. Returns
+    /// true if a verdict has just been found.
     pub(super) fn judge(&mut self, name: &str, scenario: &Arc<Scenario>) -> bool {
         if let Some((judged, job)) = &mut self.judged
             && Arc::ptr_eq(judged, scenario)
@@ -105,13 +106,13 @@ impl OwnCode {
         self.verdict()?.trial.as_ref()
     }
 
-    /// The verdict in words, if it is the first.
+    /// Returns the verdict in words, if it is the first.
     pub(super) fn first_told(&mut self, name: &str) -> Option<String> {
         let is_told = std::mem::replace(&mut self.is_told, true);
         (!is_told).then(|| self.told(name))
     }
 
-    /// The verdict in words.
+    /// Returns the verdict in words.
     pub(super) fn told(&self, name: &str) -> String {
         let name = Path::new(name)
             .file_name()

@@ -1,4 +1,4 @@
-//! Work in the background, beside a run that goes on.
+//! Computations in the background while the run continues.
 
 use crate::engine::analysis::health::{Advice, advise_while};
 use crate::engine::scenario::Scenario;
@@ -6,18 +6,21 @@ use std::sync::{Arc, OnceLock};
 use std::thread;
 use std::time::Duration;
 
-/// Delay before a search begins. A held key nudges a value many times a second; each search is then dropped before it begins.
+/// Delay before a search begins. A held key nudges a value many times a second, and each search is then dropped before
+/// it begins.
 const DELAY: Duration = Duration::from_millis(200);
 
-/// Work in progress or finished. Dropping it ends the work: one that nobody waits for would take the processor from the
-/// run that is edited.
+/// A computation in progress or finished.
+///
+/// Dropping it ends the computation, so that useless work does not take the processor from the run that is edited.
 pub struct BackgroundJob<T> {
     answer: Arc<OnceLock<T>>,
     is_reported: bool,
 }
 
 impl<T: Send + Sync + 'static> BackgroundJob<T> {
-    /// Begins `work`, which can ask whether its answer is still wanted. If the system gives no thread, there is no answer.
+    /// Starts `work`, which can ask whether its answer is still wanted. If the system provides no thread, there is
+    /// never an answer.
     pub fn begin(
         name: &str,
         work: impl FnOnce(&(dyn Fn() -> bool + Sync)) -> Option<T> + Send + 'static,
@@ -27,7 +30,7 @@ impl<T: Send + Sync + 'static> BackgroundJob<T> {
         let _ = thread::Builder::new().name(name.to_owned()).spawn(move || {
             let found = work(&|| asker.strong_count() > 0);
             if let (Some(waiting), Some(found)) = (asker.upgrade(), found) {
-                let _ = waiting.set(found); // it is set only here, so this succeeds
+                let _ = waiting.set(found); // succeeds: this is the only place that sets it
             }
         });
         Self {
@@ -47,7 +50,7 @@ impl<T: Send + Sync + 'static> BackgroundJob<T> {
     }
 }
 
-/// Searches for a change that makes an unreliable run reliable, by trial runs: it may take a second.
+/// Searches for a change that makes an unreliable run reliable. The search does trial runs and may take a second.
 pub fn advice(scenario: Arc<Scenario>) -> BackgroundJob<Advice> {
     BackgroundJob::begin("advice", move |is_wanted| {
         thread::sleep(DELAY);

@@ -1,22 +1,25 @@
-//! Where the columns of a picture cannot resolve the swings of a curve, and the envelope that is drawn there.
+//! Finds where the columns of a picture cannot resolve the swings of a curve, and computes the envelope that is drawn
+//! there.
 
-/// The fewest dots by which a curve must turn back for a turning point: less is no swing. Slow motion drops out, because
-/// it does not turn back.
+/// Minimum reversal of a curve that counts as a turning point, dots. Slow motion is excluded, because it does not turn
+/// back.
 const LEAST_SWING_DOTS: f64 = 2.0;
-/// Columns on either side in which turning points are counted. Swings are unresolved if half of the columns have one: they
-/// are then shorter than four columns.
+/// Columns on either side in which turning points are counted.
+///
+/// Swings are unresolved if half of the columns have a turning point: the swings are then shorter than four columns.
 const NEIGHBORS: usize = 5;
-/// A gap in the envelope is closed if it is shorter than this, and a shorter piece of it is drawn as a line, columns.
+/// Minimum length of a gap in the envelope, columns. A shorter gap is closed. A piece of the envelope below
+/// `SHORTEST_PIECE` columns is drawn as a line.
 const SHORTEST_GAP: usize = 8;
 const SHORTEST_PIECE: usize = 6;
-/// Columns on either side over which the envelope takes the least and the greatest value.
+/// Columns on either side over which the envelope takes the minimum and the maximum.
 const REACH: usize = 2;
 
-/// The rows that a curve has in a column, in dots from the top: the upper end and the lower one.
+/// The upper and the lower end of a curve in a column, in dots from the top.
 pub type Rows = (f64, f64);
 
-/// Returns for each column the upper and the lower edge of the envelope where the swings of `columns` are unresolved,
-/// else `None`.
+/// Returns the upper and the lower edge of the envelope for each column in which the swings of `columns` are
+/// unresolved; `None` for the other columns.
 pub fn envelope(columns: &[Option<Rows>]) -> Vec<Option<Rows>> {
     let turning = turning_points(columns);
     let mut is_unresolved: Vec<bool> = (0..columns.len())
@@ -39,11 +42,14 @@ pub fn envelope(columns: &[Option<Rows>]) -> Vec<Option<Rows>> {
         .collect()
 }
 
-/// Returns the columns in which the curve turns back by [`LEAST_SWING_DOTS`] or more. In each column it goes from the end
-/// that is nearer to where it was to the other one.
+/// Returns true for each column in which the curve turns back by more than [`LEAST_SWING_DOTS`].
+///
+/// In each column the curve is assumed to start from the end nearer to its previous position and to go to the other
+/// end.
 fn turning_points(columns: &[Option<Rows>]) -> Vec<bool> {
     let mut turning = vec![false; columns.len()];
-    // Where the curve was, the farthest point in its direction, and the column of that; the direction is downward if true.
+    // The position of the curve, the farthest point in its direction, and that point's column. `is_down` is the
+    // direction.
     let mut position: Option<f64> = None;
     let (mut farthest, mut farthest_column, mut is_down) = (0.0, 0, true);
     for (index, column) in columns.iter().enumerate() {
@@ -75,7 +81,7 @@ fn turning_points(columns: &[Option<Rows>]) -> Vec<bool> {
     turning
 }
 
-/// Replaces each run of `value` that is shorter than `shortest` and has the other value on both sides.
+/// Flips each sequence of `value` that is shorter than `shortest` and has the other value on both sides.
 fn fill_short(values: &mut [bool], value: bool, shortest: usize) {
     let mut begin = 0;
     while begin < values.len() {
@@ -94,7 +100,8 @@ fn fill_short(values: &mut [bool], value: bool, shortest: usize) {
 mod tests {
     use super::*;
 
-    /// 200 columns of a sine of `period` columns and `height` dots that drifts by `drift` dots a column.
+    /// Returns 200 columns of a sine with a period of `period` columns and `height` dots, which drifts by `drift` dots
+    /// per column.
     fn columns(period: f64, height: f64, drift: f64) -> Vec<Option<Rows>> {
         let row =
             |at: f64| 0.5 * height * libm::sin(at / period * std::f64::consts::TAU) + drift * at;

@@ -1,5 +1,5 @@
-//! The pictures of the previous run, kept when an edit restarts the run, so that both can be compared, and the making of
-//! such pictures anew, in the background.
+//! The pictures of the previous run, kept for comparison when an edit restarts the run; and recomputing such pictures
+//! in the background.
 
 use super::background::BackgroundJob;
 use super::live::LiveRun;
@@ -19,7 +19,7 @@ pub struct Ghost {
 }
 
 impl Ghost {
-    /// Returns the pictures of `run`, up to the furthest step that it has reached.
+    /// Copies the pictures of `run`, up to the furthest step that it has reached.
     pub fn capture(run: &LiveRun) -> Self {
         let (recording, path) = run.pictures();
         Self {
@@ -36,7 +36,7 @@ impl Ghost {
     }
 }
 
-/// The pictures of a run that is played again in the background. Dropping it ends that.
+/// The pictures of a run that is being replayed in the background. Dropping this value stops the replay.
 pub struct PendingGhost {
     pub scenario: Arc<Scenario>,
     pub furthest: u64,
@@ -44,7 +44,7 @@ pub struct PendingGhost {
 }
 
 impl PendingGhost {
-    /// Begins to play `scenario` up to the step `furthest`, or up to where its numbers stop being finite.
+    /// Starts playing `scenario` up to the step `furthest`, or until its numbers stop being finite.
     pub fn begin(scenario: Arc<Scenario>, furthest: u64) -> Self {
         let played = Arc::clone(&scenario);
         let job = BackgroundJob::begin("pinned", move |is_wanted| {

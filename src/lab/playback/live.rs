@@ -1,7 +1,7 @@
-//! A run that is being watched: the simulation, and the data of its pictures.
+//! A run on the screen: the simulation, and the data of its pictures.
 //!
-//! It can return to any step that it has reached before: it loads the last checkpoint before that step and steps on from
-//! there, with the same bits as the first time. The pictures of the steps that then lie ahead are stored separately.
+//! It can return to any step that it has reached before. It loads the last checkpoint before that step and steps on
+//! from there, with the same bits as the first time. The pictures of later steps are stored separately.
 
 mod pictures;
 
@@ -18,18 +18,18 @@ pub use pictures::Overlay;
 use pictures::Pictures;
 use std::sync::Arc;
 
-/// Steps between two readings of the clock for a body of one point; a body of n points takes 1/n of that.
+/// Steps between two readings of the clock for a body of one point. A body of n points takes 1/n of that.
 const STEPS_PER_LOOK: usize = 4096;
 
-/// Cost of a step besides its points, in points.
+/// Cost of a step in addition to its points, in points.
 const COST_OF_A_STEP: u64 = 60;
 /// Cost of an integration of the exact motion, in points per radian.
 const COST_OF_A_RADIAN: f64 = 1000.0;
 
-/// The greatest cost of integrations for the workings of a step: about half a second.
+/// Maximum cost of integrations for the intermediate results of a step: about half a second.
 const MOST_INTEGRATION: u64 = 250_000_000;
 
-/// A remaining time below this share of a time step is rounding.
+/// A remaining time below this share of a time step is rounding error.
 const DUE_TIME_ROUNDING: f64 = 1e-6;
 
 pub struct LiveRun {
@@ -40,13 +40,13 @@ pub struct LiveRun {
     shows_exact: bool,
     overlay: Option<Overlay>,
     keeps_workings: bool,
-    /// The workings that were asked for last without having been kept, and of which step they are.
+    /// The intermediate results that were last recomputed, with the number of their step.
     explained: Option<(u64, Arc<Workings>)>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PlayEnd {
-    /// The run has stepped all the simulated time that it was given.
+    /// The run has stepped the whole simulated time.
     InTime,
     CutShort,
     AtStop,
@@ -74,7 +74,7 @@ impl LiveRun {
     /// Takes one time step.
     ///
     /// # Errors
-    /// When the numbers stop being finite; the run then stays at the step before.
+    /// Returns an error if the numbers stop being finite. The run then stays at the previous step.
     pub fn step(&mut self) -> Result<(), NotFinite> {
         let step = self.simulation.step()?;
         self.monitor.record(step);
@@ -86,7 +86,7 @@ impl LiveRun {
     /// Steps until the run is at `step`, or until `is_over` returns true: see [`play`](Self::play).
     ///
     /// # Errors
-    /// If the numbers stop being finite; the run then stays at the step before.
+    /// Returns an error if the numbers stop being finite. The run then stays at the previous step.
     pub fn step_to(&mut self, step: u64, is_over: impl FnMut() -> bool) -> Result<(), NotFinite> {
         match self.play(f64::INFINITY, step, is_over, |_| false) {
             PlayEnd::NotFinite(error) => Err(error),
@@ -99,7 +99,7 @@ impl LiveRun {
         self.pictures.furthest()
     }
 
-    /// Begins to go to `step`, or to the furthest step that the run has reached if that is earlier. The run is then at that
+    /// Starts seeking `step`, or the furthest step that the run has reached if that is earlier. The run is then at that
     /// step, or at an earlier one with the step as its [`seek_target`](Self::seek_target).
     pub fn begin_seek(&mut self, step: u64) {
         self.cancel_seek();
@@ -116,13 +116,14 @@ impl LiveRun {
         self.pictures.keep(self.simulation.step_number());
     }
 
-    /// Returns the step that the run seeks; `None` if it has arrived. Calling [`step`](Self::step) repeatedly leads there.
+    /// Returns the step that the run seeks; `None` if it has arrived. Repeated calls of [`step`](Self::step) lead
+    /// there.
     pub fn seek_target(&self) -> Option<u64> {
         let (step, target) = (self.simulation.step_number(), self.pictures.followed_to);
         (step < target).then_some(target)
     }
 
-    /// Stays at the present step instead of going to the seek target. Where the recording lacks steps, it is filled with the
+    /// Stays at the present step instead of the seek target. If the recording lacks steps, it is filled with the
     /// present sample.
     pub fn cancel_seek(&mut self) {
         if self.seek_target().is_some() {
@@ -130,7 +131,7 @@ impl LiveRun {
         }
     }
 
-    /// Returns a copy of the run at the last stored state that is at `step` or before, to step through its past.
+    /// Returns a copy of the run at the last stored state that is not later than `step`, to step through its past.
     pub(super) fn again_before(&self, step: u64) -> Simulation {
         let Some(stored) = self.checkpoint_before(step) else {
             return self.simulation.clone();
@@ -142,7 +143,7 @@ impl LiveRun {
         again
     }
 
-    /// Returns the last checkpoint that is at `step` or before; `None` where the present state is the later one.
+    /// Returns the last checkpoint that is not later than `step`; `None` if the present state is nearer.
     fn checkpoint_before(&self, step: u64) -> Option<&Checkpoint> {
         let stored = self.checkpoints.before(step);
         let here = self.simulation.step_number();
@@ -150,7 +151,7 @@ impl LiveRun {
         (!is_nearer || self.simulation.has_ended()).then_some(stored)
     }
 
-    /// Moves the run to the latest stored state that is not later than `latest`: a checkpoint, or the present one.
+    /// Moves the run to the last stored state that is not later than `latest`: a checkpoint, or the present state.
     fn load_checkpoint(&mut self, latest: u64) {
         let Some(stored) = self.checkpoint_before(latest) else {
             return;
@@ -162,8 +163,9 @@ impl LiveRun {
         self.replace_metadata(&scenario);
     }
 
-    /// Makes `scenario`, which has the same past, the one that the simulation and its measurements follow from the present
-    /// step on. The pictures stay: where it leads to other numbers, call [`branch`](Self::branch).
+    /// Makes the simulation and its measurements follow `scenario`, which has the same past, from the present step on.
+    ///
+    /// The pictures stay. If `scenario` leads to other numbers, call [`branch`](Self::branch).
     pub fn replace_metadata(&mut self, scenario: &Arc<Scenario>) {
         if !Arc::ptr_eq(self.simulation.scenario(), scenario) {
             self.simulation.branch(Arc::clone(scenario));
@@ -171,7 +173,7 @@ impl LiveRun {
         }
     }
 
-    /// Continues with `scenario`, which has the same motion up to the present step and up to the seek target. Drops the
+    /// Continues with `scenario`, which has the same motion up to the present step and the seek target. Drops the
     /// pictures of later steps.
     pub fn branch(&mut self, scenario: &Arc<Scenario>) {
         self.pictures.ahead = None;
@@ -190,8 +192,10 @@ impl LiveRun {
         }
     }
 
-    /// Plays for `time_s` simulated seconds, in whole steps. It ends earlier at the step `stop`, at a step where
-    /// `is_fulfilled` returns true, or when `is_over` returns true because the time for computing is used up.
+    /// Plays for `time_s` simulated seconds, in whole steps.
+    ///
+    /// It ends earlier at the step `stop`, at a step for which `is_fulfilled` returns true, or when `is_over` returns
+    /// true because the computing time is used up.
     pub fn play(
         &mut self,
         time_s: f64,
@@ -227,8 +231,8 @@ impl LiveRun {
         }
     }
 
-    /// Returns the number of steps between two looks at the clock. An integrated step may take long without any
-    /// warning: a push may set in.
+    /// Returns the number of steps between two readings of the clock. An integrated step may take long without warning,
+    /// because a push may begin.
     fn steps_per_look(&self) -> usize {
         if !has_closed_form(self.scenario()) {
             return 1;
@@ -236,7 +240,7 @@ impl LiveRun {
         (STEPS_PER_LOOK / self.scenario().body.mechanics.points().len()).max(1)
     }
 
-    /// Returns the cost of a step, in points of a body: its points, a constant share, and the integration of the exact
+    /// Returns the cost of a step, in points of a body: its points, a constant, and the integration of the exact
     /// motion.
     pub fn cost_of_a_step(&self) -> u64 {
         let points = self.scenario().body.mechanics.points().len() as u64;
@@ -244,7 +248,7 @@ impl LiveRun {
         (points + COST_OF_A_STEP).saturating_add(integration_cost(&self.simulation, beside))
     }
 
-    /// Shows the exact motion beside the run where that can be had, or does not.
+    /// Shows the exact motion if it is affordable, or hides it.
     pub fn set_overlay(&mut self, shown: bool) {
         let scenario = self.simulation.scenario();
         self.overlay = (shown && is_affordable(scenario)).then(|| Overlay::new(scenario));
@@ -267,19 +271,19 @@ impl LiveRun {
         self.overlay.as_ref()
     }
 
-    /// Returns the present sample of the exact motion, if it is shown and has reached the time of the run.
+    /// Returns the present sample of the exact motion if it is shown and has reached the time of the run.
     pub fn exact_now(&self) -> Option<&RecordedSample> {
         let now = &self.overlay.as_ref()?.now;
         (now.time_s >= self.now().time_s).then_some(now)
     }
 
-    /// Returns the exact motion at the present time, whether or not it is shown; `None` where it is not known.
+    /// Returns the exact motion at the present time, even if it is hidden; `None` if it is unknown.
     pub fn exact_moment(&mut self) -> Option<Moment> {
         let now = self.simulation.now();
         exact_moment(&mut self.monitor.beside, now.time_s(), now.scenario())
     }
 
-    /// Returns the exact motion at `time_s` (s), the time of `step`; `None` where it is not known.
+    /// Returns the exact motion at `time_s` (s), the time of `step`; `None` if it is unknown.
     pub(super) fn exact_moment_at(&self, step: u64, time_s: f64) -> Option<Moment> {
         let scenario = self.scenario();
         let mut beside = match self.checkpoint_before(step) {
@@ -290,7 +294,7 @@ impl LiveRun {
         exact_moment(&mut beside, time_s, scenario)
     }
 
-    /// Returns true if the exact motion is shown and its time is earlier than the run's.
+    /// Returns true if the exact motion is shown and is behind the run.
     pub fn overlay_is_behind(&self) -> bool {
         let now_s = self.now().time_s;
         let overlay = self.overlay.as_ref();
@@ -302,20 +306,22 @@ impl LiveRun {
         Readouts::new(&self.simulation, &mut self.monitor, &health, None)
     }
 
-    /// Reads those of `source` off it again, of `readouts` that were read at an earlier step.
+    /// Updates the part `source` of `readouts`, which were read at an earlier step.
     pub fn read_again(&mut self, readouts: &mut Readouts, source: ReadoutSource) {
         readouts.read_again(source, &self.simulation, &mut self.monitor);
     }
 
-    /// Sets whether the workings of every further step are kept, for a pane that shows them while the run plays.
+    /// Sets whether the intermediate results of every further step are kept, for a pane that shows them while the run
+    /// plays.
     pub fn keep_workings(&mut self, kept: bool) {
         self.keeps_workings = kept;
         self.simulation.keep_workings(kept);
     }
 
-    /// Returns what the scheme computed in the step taken last; `None` at step 0. Where the workings were not kept,
-    /// that step is taken a second time, on a copy of the run that comes from the last checkpoint before it; `None`
-    /// where that takes long.
+    /// Returns the intermediate results of the latest step; `None` at step 0.
+    ///
+    /// If they were not kept, that step is repeated on a copy of the run, from the last checkpoint before it. Returns
+    /// `None` if that would take too long.
     pub fn workings(&mut self) -> Option<Arc<Workings>> {
         let now = self.simulation.now();
         let before = now.number().checked_sub(1)?;
@@ -338,7 +344,7 @@ impl LiveRun {
         Some(Arc::clone(workings))
     }
 
-    /// Returns the last state in which the body was a rigid one, and its step, where the scheme has broken down since.
+    /// Returns the step and the state at which the body was last rigid, if the scheme has broken down since.
     pub fn last_whole(&self) -> Option<&(u64, State)> {
         self.pictures.last_whole.as_ref()
     }
@@ -376,8 +382,8 @@ fn exact_moment(beside: &mut ExactReference, time_s: f64, scenario: &Scenario) -
     Some(Moment::of_exact_motion(scenario, &state))
 }
 
-/// Returns the cost of the integrations of the next step of `simulation`, in points of a body: that of its scheme, if
-/// that is the exact one, and of `others` more.
+/// Returns the cost of the integrations in the next step of `simulation`, in points of a body: one if its scheme is the
+/// exact one, and `others` more.
 pub fn integration_cost(simulation: &Simulation, others: u32) -> u64 {
     let (motion, _) = in_force(simulation.scenario(), simulation.step_number());
     let is_exact = motion.scheme.order.is_none();
@@ -389,16 +395,16 @@ pub fn integration_cost(simulation: &Simulation, others: u32) -> u64 {
     (integrations * rad_per_s * motion.time_step_s * COST_OF_A_RADIAN).ceil() as u64
 }
 
-/// Steps between two checkpoints at first; a power of two.
+/// Initial number of steps between two checkpoints; a power of two.
 const SPACING: u64 = 256;
 const MEMORY: usize = 24 << 20;
 const PER_POINT: usize = 64;
-/// Memory of one checkpoint besides its points, bytes.
+/// Memory of one checkpoint without its points, bytes.
 const PER_CHECKPOINT: usize = 16 << 10;
-/// Least number of checkpoints, however large the body.
+/// Minimum number of checkpoints, however large the body.
 const FEWEST_CHECKPOINTS: usize = 8;
 
-/// A run as it stood, and what was measured on its steps up to there.
+/// A copy of a run at one step, and the measurements on its steps up to there.
 struct Checkpoint {
     simulation: Simulation,
     monitor: Monitor,
@@ -418,7 +424,7 @@ impl Checkpoint {
             simulation: simulation.clone(),
             monitor: monitor.clone(),
         };
-        stored.simulation.keep_workings(false); // they may take much memory, and are found again by a step
+        stored.simulation.keep_workings(false); // they may need much memory, and one step recomputes them
         stored
     }
 
@@ -437,7 +443,8 @@ impl Checkpoints {
         }
     }
 
-    /// Stores a run and the measurements on its steps if its step is a multiple of the spacing. To be called after every step.
+    /// Stores a run and the measurements on its steps if its step is a multiple of the spacing. Must be called after
+    /// every step.
     #[inline]
     pub fn offer(&mut self, simulation: &Simulation, monitor: &Monitor) {
         if simulation.step_number() & (self.spacing - 1) == 0 {
@@ -469,7 +476,7 @@ impl Checkpoints {
 
 #[cfg(test)]
 impl LiveRun {
-    /// The run of a preset at the step `steps`.
+    /// Returns the run of a preset, played to the step `steps`.
     pub fn played(preset: &str, steps: u64) -> Self {
         let mut run = Self::new(crate::lab::for_tests::preset(preset));
         run.step_to(steps, || false).unwrap();

@@ -1,13 +1,13 @@
-//! The numbers of any step that a run has reached, computed again from its stored states, without moving the run.
+//! Computes the numbers of any step that a run has reached from its stored states, without moving the run.
 
 use super::live::{LiveRun, integration_cost};
 use crate::engine::run::{Moment, Sample, Simulation};
 
-/// The most time steps of a body of one point that are computed for an answer; a body of n points has 1/n of that, and steps
-/// that are integrated count as so many points.
+/// Maximum number of time steps computed for one lookup, for a body of one point. A body of n points has 1/n of that.
+/// Integrated steps count as several points.
 const MOST_LOOKUP_STEPS: u64 = 4_000_000;
 
-/// What a point of a body costs in one of these steps, as an integration's cost is counted.
+/// Cost of one point in one of these steps, in the units of [`integration_cost`].
 const COST_OF_A_POINT: u64 = 30;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -23,7 +23,7 @@ pub enum Missing {
 /// The numbers at one step of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepNumbers {
-    /// Those that its CSV has in that row.
+    /// The numbers in the CSV row of that step.
     pub sample: Sample,
     pub moment: Moment,
 }
@@ -31,7 +31,7 @@ pub struct StepNumbers {
 /// Returns the numbers at `step` of `run`.
 ///
 /// # Errors
-/// If the run has not been at the step, or computing it again would take too long.
+/// Returns an error if the run has not reached the step or computing it again would take too long.
 pub fn numbers(run: &LiveRun, step: u64) -> Result<StepNumbers, Missing> {
     if step > run.furthest() {
         return Err(Missing::NotReached);
@@ -46,7 +46,7 @@ pub fn numbers(run: &LiveRun, step: u64) -> Result<StepNumbers, Missing> {
     })
 }
 
-/// Returns the exact motion at `time_s` (s), the time of `step`, which `run` has reached; `None` where it is not known, or
+/// Returns the exact motion at `time_s` (s), the time of `step`, which `run` has reached; `None` if it is unknown or
 /// computing it again would take too long.
 pub fn exact(run: &LiveRun, step: u64, time_s: f64) -> Option<Moment> {
     let before = run.again_before(step);
@@ -56,10 +56,10 @@ pub fn exact(run: &LiveRun, step: u64, time_s: f64) -> Option<Moment> {
         .flatten()
 }
 
-/// Returns the step nearest to `from`, after or before it, at which the tilt of `run` turns up or down.
+/// Returns the nearest step after (`forward`) or before `from` at which the tilt of `run` has a turning point.
 ///
 /// # Errors
-/// Where there is none, or computing it would take too long.
+/// Returns an error if there is none or computing it would take too long.
 pub fn turn(run: &LiveRun, from: u64, forward: bool) -> Result<u64, Missing> {
     if forward {
         let mut steps = LookupSteps::before(run, from.saturating_sub(1));
@@ -70,12 +70,12 @@ pub fn turn(run: &LiveRun, from: u64, forward: bool) -> Result<u64, Missing> {
         }
         return Err(Missing::NoTurn);
     }
-    // From stored states further and further back, until the tilt turns after one of them.
+    // Start from earlier and earlier stored states, until the tilt turns after one of them.
     let (mut begin, mut left) = (from, None);
     while begin > 0 {
         let mut steps = LookupSteps::before(run, begin - 1);
         steps.left = left.unwrap_or(steps.left);
-        let end = from.min(begin + 1); // a turn is seen one step after it
+        let end = from.min(begin + 1); // a turning point is detected one step later
         begin = steps.step_number();
         let mut last = None;
         while steps.step_number() < end {
@@ -89,7 +89,11 @@ pub fn turn(run: &LiveRun, from: u64, forward: bool) -> Result<u64, Missing> {
     Err(Missing::NoTurn)
 }
 
-/// Returns the turns of the tilt of `run` from step `from` to step `to`: the time, s, and the tilt, degrees, of each.
+/// Returns the turning points of the tilt of `run` from step `from` to step `to`: the time (s) and the tilt (degrees)
+/// of each.
+///
+/// # Errors
+/// Returns an error if computing them would take too long.
 pub fn turns(run: &LiveRun, from: u64, to: u64) -> Result<Vec<(f64, f64)>, Missing> {
     let mut steps = LookupSteps::before(run, from.saturating_sub(1));
     let mut turns = Vec::new();
@@ -105,10 +109,10 @@ pub fn turns(run: &LiveRun, from: u64, to: u64) -> Result<Vec<(f64, f64)>, Missi
 
 struct LookupSteps {
     simulation: Simulation,
-    /// The points of the steps that may still be taken.
+    /// Remaining cost, in points of the body.
     left: u64,
     points: u64,
-    /// How the height of the axle changed in the last step, where it did.
+    /// The latest nonzero change of the axle's height in a step.
     change: f64,
 }
 
@@ -126,7 +130,7 @@ impl LookupSteps {
         self.simulation.step_number()
     }
 
-    /// Takes a step; gives the step before it where the tilt has turned there.
+    /// Takes a step. Returns the number of the previous step if the tilt has a turning point there.
     fn step(&mut self) -> Result<Option<u64>, Missing> {
         let cost = self.points + integration_cost(&self.simulation, 0) / COST_OF_A_POINT;
         self.left = self.left.checked_sub(cost).ok_or(Missing::TooFar)?;
@@ -159,7 +163,7 @@ mod tests {
 
     #[test]
     fn turns_of_the_tilt_are_found_on_both_sides() {
-        // It is highest at the cusps, every 0.8225 s, and lowest between them.
+        // The axle is highest at the cusps, every 0.8225 s, and lowest between them.
         let run = LiveRun::played("cusps", 3000);
         let turns: Vec<_> = std::iter::successors(Some(0), |&at| turn(&run, at, true).ok())
             .skip(1)

@@ -1,4 +1,4 @@
-//! How the axle moves at first: it dips, and goes sideways.
+//! The first motion of a released axle: it dips, and moves sideways.
 
 use super::live::integration_cost;
 use crate::engine::run::Simulation;
@@ -6,24 +6,24 @@ use crate::engine::scenario::Scenario;
 use std::sync::Arc;
 
 const MOST_DIP_STEPS: u64 = 4000;
-/// The most points of all its steps together. A step that is integrated costs as much as many points.
+/// Maximum number of points in all its steps together. An integrated step costs as much as many points.
 const MOST_COST: u64 = 2_000_000;
-/// An axle whose tilt has a smaller sine than this counts as upright: none of its sides is the lower one.
+/// An axle whose tilt has a smaller sine than this counts as upright: it has no lower side.
 const UPRIGHT_SINE: f64 = 1e-6;
 
-/// The first dip of a run: where the axle points after each step, as its top would draw it on the sphere about the pivot.
+/// The first dip of a run: the direction of the axle after each step, as a path on the sphere about the pivot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dip {
-    /// For each step from 0 on, how far the axle has gone sideways, in the direction of the weight's torque, and down: arcs
-    /// whose radius is the distance of the traced point from the pivot, m.
+    /// The displacement of the axle at each step from 0 on: sideways, in the direction of the weight's torque, and
+    /// down. Both are arcs, m, whose radius is the distance of the traced point from the pivot.
     pub way_m: Vec<(f64, f64)>,
-    /// Whether the axle has come up again at the end; if not, the run has not gone further, or the search was given up.
+    /// True if the axle has risen again at the end. Otherwise the run ends earlier, or the computation was given up.
     pub is_whole: bool,
 }
 
 impl Dip {
-    /// Returns the first dip of the run of `scenario`, or the part of it up to step `last`. The steps are computed
-    /// again for it. `None` if the axle is upright at the start: it has no lower side.
+    /// Computes the first dip of the run of `scenario`, or its part up to step `last`. Returns `None` if the axle is
+    /// upright at the start, because it then has no lower side.
     pub fn compute(scenario: &Arc<Scenario>, last: u64) -> Option<Self> {
         let mut run = Simulation::new(Arc::clone(scenario));
         let (tilt_deg, azimuth_deg) = (run.now().tilt_deg(), run.now().azimuth().degrees());
@@ -69,7 +69,7 @@ mod tests {
 
     #[test]
     fn a_released_top_dips_and_comes_up_to_its_side() {
-        // A nutation of the preset cusps takes 0.8225 s, and its tilt goes from 30 to 36.689 degrees.
+        // A nutation of the preset cusps takes 0.8225 s, and its tilt swings from 30 to 36.689 degrees.
         let cusps = scenario("cusps", &[]);
         let steps = (0.8225 / cusps.motion.time_step_s) as usize;
         let Dip { way_m, is_whole } = Dip::compute(&cusps, 1_000_000).unwrap();

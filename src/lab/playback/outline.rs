@@ -1,18 +1,18 @@
-//! Solid parts drawn as lines.
+//! The lines that draw solid parts.
 
 use crate::physics::part::{PlacedSolid, Shape};
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 
 const OUTLINE_PARTS: usize = 48;
-/// Lines along a round solid, from end to end.
+/// Number of lines along a round solid, from end to end.
 const SIDES: usize = 4;
-/// Lengths that differ by less than this share are drawn as equal.
+/// Relative difference below which lengths are drawn as equal.
 const SAME_SHARE: f64 = 0.02;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polyline {
-    /// The points that it goes through, body frame, m; at least two.
+    /// Its points, body frame, m. There are at least two.
     pub points: Vec<Vector3<f64>>,
     pub kind: LineKind,
 }
@@ -21,19 +21,19 @@ pub struct Polyline {
 pub enum LineKind {
     /// A line on a round part.
     Outline,
-    /// The one line by which the rotation of a round part about its axis is seen.
+    /// The single line that shows the rotation of a round part about its axis.
     Mark,
     /// An edge of a block.
     Edge {
-        /// The directions out of the two faces that meet there, body frame, unit vectors.
+        /// The outward normals of the two faces that meet there, unit vectors in the body frame.
         faces: [Vector3<f64>; 2],
-        /// Whether the ends of the block are told apart by it.
+        /// True if the edge distinguishes the two ends of the block.
         is_marked: bool,
     },
 }
 
-/// Returns the lines of `part`. A part that is given by its moments is drawn as the block that has them if the three differ,
-/// or else as the thin ellipsoid.
+/// Returns the lines of `part`. A part given by its moments is drawn as the block with these moments if the three
+/// differ, or else as the thin ellipsoid.
 pub fn lines(part: &PlacedSolid) -> Vec<Polyline> {
     let mut lines = own_lines(part);
     for line in &mut lines {
@@ -78,7 +78,7 @@ fn own_lines(part: &PlacedSolid) -> Vec<Polyline> {
     }
 }
 
-/// Returns whether each two of `distances` differ by more than [`SAME_SHARE`] of the greatest.
+/// Returns true if all pairs of `distances` differ by more than [`SAME_SHARE`] of the largest.
 fn are_distinct(distances: &[f64; 3]) -> bool {
     let [a, b, c] = *distances;
     let least = SAME_SHARE * a.max(b).max(c);
@@ -104,8 +104,10 @@ fn ellipsoid([x, y, z]: [f64; 3]) -> Vec<Polyline> {
     .to_vec()
 }
 
-/// Returns a round solid between two circles, radius and height of each, with the radius of its hole and a mark on top;
-/// of a flat one the circle alone, and none of radius 0.
+/// Returns the lines of a round solid between two circles, each given by radius and height, with the radius of its
+/// hole. A mark is on top.
+///
+/// A flat solid has only one circle. A circle of radius 0 is omitted.
 fn round(ends: [(f64, f64); 2], hole: Option<f64>) -> Vec<Polyline> {
     let [(lower, bottom), (upper, top)] = ends;
     let is_flat = bottom == top;
@@ -156,7 +158,7 @@ fn straight(ends: [Vector3<f64>; 2]) -> Polyline {
     }
 }
 
-/// Returns the edges of a block. Those at the end of +y, the upper edges of a phone, are marked.
+/// Returns the edges of a block. The edges at the +y end (the upper edges of a phone) are marked.
 fn block(size: &Vector3<f64>) -> Vec<Polyline> {
     let half = 0.5 * size;
     let mut edges = Vec::new();
@@ -192,7 +194,7 @@ mod tests {
         PlacedSolid::new(shape, 2.0, centre, &Vector3::new(1.0, 2.0, -2.0)).unwrap()
     }
 
-    /// How far the lines of a solid reach along its own x, y and axis, from the least to the greatest.
+    /// Returns the extent of a solid's lines along its own x, y and axis, from minimum to maximum.
     fn extents(shape: Shape) -> [(f64, f64); 3] {
         let part = part(shape);
         let lines = lines(&part);
@@ -210,7 +212,7 @@ mod tests {
         let (inner, outer) = (0.2, 0.5);
         let size = Vector3::new(0.2, 0.4, 0.6);
         let both = |half: [f64; 3]| half.map(|half| (-half, half));
-        // Of a shell of radius R the moments are 2 R²/3, three times: they are seen as the thin ellipsoid that has them.
+        // A shell of radius R has three moments of 2 R²/3: they are drawn as the thin ellipsoid with these moments.
         let moments = Vector3::repeat(2.0 / 3.0 * 0.25);
         for (shape, expected) in [
             (Shape::Ring { radius }, both([0.5, 0.5, 0.0])),
@@ -227,7 +229,7 @@ mod tests {
             (Shape::Ball { radius }, both([0.5; 3])),
             (Shape::Block { size }, both([0.1, 0.2, 0.3])),
             (Shape::Moments(moments), both([0.5; 3])),
-            // The apex of a cone is against its axis, three quarters of its length from the centre.
+            // The apex of a cone points against its axis, three quarters of its length from the center.
             (
                 Shape::Cone { radius, length },
                 [(-0.5, 0.5), (-0.5, 0.5), (-0.6, 0.2)],

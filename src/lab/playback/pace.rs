@@ -1,4 +1,4 @@
-//! Playback speed: how much simulated time passes per wall time, whatever the time step.
+//! Playback speed: simulated time per wall-clock time, independent of the time step.
 
 use crate::engine::scenario::{Scenario, keys};
 use crate::engine::text::nice_numbers::climbed;
@@ -6,10 +6,10 @@ use serde::{Deserialize, Serialize};
 use std::time::Duration;
 use toml::Value;
 
-/// The longest time that one frame counts: after a suspension, or on a slow line, the run does not make up for more.
+/// Maximum time that one frame counts. After a suspension, or on a slow line, the run does not catch up on more.
 const LONGEST_FRAME: Duration = Duration::from_millis(250);
 
-/// The ends of the 1-2-5 ladder of playback speeds, simulated seconds a second.
+/// Ends of the 1-2-5 series of playback speeds, simulated seconds per second.
 const SLOWEST: f64 = 1e-4;
 const FASTEST: f64 = 5e5;
 
@@ -36,18 +36,18 @@ impl Speed {
     }
 }
 
-/// Whether the run goes on, how fast, and how much simulated time is due.
+/// The playback state: running or paused, the speed, and the simulated time that is due.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pace {
     pub speed: Speed,
     pub is_running: bool,
-    /// Simulated time that is due and has not been stepped yet, s.
+    /// Simulated time that is due but not stepped yet, s.
     owed_s: f64,
     pub achieved: f64,
 }
 
 impl Pace {
-    /// Creates the pace of the run of `scenario`, with the speed that its `[view]` names.
+    /// Creates the pace of the run of `scenario`, with the speed in its `[view]`.
     pub fn of_scenario(scenario: &Scenario, running: bool) -> Self {
         let speed = scenario.file.viewed("speed").and_then(Value::as_float);
         Self::new(speed.unwrap_or(keys::DEFAULT_SPEED), running)
@@ -62,7 +62,7 @@ impl Pace {
         }
     }
 
-    /// Sets the speed; a speed that is not positive and finite is ignored.
+    /// Sets the speed. Ignores a speed that is not positive and finite.
     pub fn set_speed(&mut self, speed: Speed) {
         match speed {
             Speed::Times(times) if !(times > 0.0 && times.is_finite()) => return,
@@ -71,7 +71,7 @@ impl Pace {
         self.set_running(self.is_running);
     }
 
-    /// Returns true if the machine is too slow for the speed that is set: it reaches less than 80 % of it.
+    /// Returns true if the machine is too slow for the chosen speed: it reaches less than 80 % of it.
     pub fn falls_behind(&self) -> bool {
         matches!(self.speed, Speed::Times(speed) if self.is_running && self.achieved < 0.8 * speed)
     }
@@ -84,7 +84,7 @@ impl Pace {
         }
     }
 
-    /// Adds the simulated time for `wall`; returns all simulated time that is now due, s.
+    /// Adds the simulated time for `wall`. Returns all simulated time that is now due, s.
     pub fn earn(&mut self, wall: Duration) -> f64 {
         let wall_s = wall.min(LONGEST_FRAME).as_secs_f64();
         self.owed_s = match (self.is_running, self.speed) {
@@ -95,8 +95,10 @@ impl Pace {
         self.owed_s
     }
 
-    /// Subtracts `stepped_s` simulated seconds, which were stepped within `wall`. If `cut_short`, the time for computing was
-    /// used up; the rest that is due is then dropped, because the machine would never catch up.
+    /// Subtracts `stepped_s` simulated seconds, which were stepped within `wall`.
+    ///
+    /// If `cut_short` is true, the computing time was used up. The rest that is due is then dropped, because the
+    /// machine would never catch up.
     pub fn spend(&mut self, stepped_s: f64, wall: Duration, cut_short: bool) {
         self.owed_s = if cut_short {
             0.0
@@ -120,7 +122,7 @@ mod tests {
 
     const LONGEST_PACE_FRAME: Duration = Duration::from_millis(100);
 
-    /// The time stepped in this many frames at this speed by a machine that keeps up, in steps of `step_s`.
+    /// Returns the time stepped in `frames` frames at `speed`, in steps of `step_s`, by a machine that keeps up.
     fn stepped_s(speed: f64, frames: u32, step_s: f64) -> f64 {
         let mut pace = Pace::new(speed, true);
         (0..frames)

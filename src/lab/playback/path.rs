@@ -1,15 +1,15 @@
 //! The whole path of the traced point seen from above, in bounded memory.
 //!
-//! It is a list of the cells of a square raster about the pivot, each with the step of the path's first visit. The raster
-//! begins small and doubles its width when the path leaves it, so that the path of a nearly upright top is as fine as that
-//! of a falling one.
+//! It is a list of the cells of a square grid around the pivot, each with the step of the path's first visit. The grid
+//! starts small and doubles its width when the path leaves it. The path of a nearly upright top is thus resolved as
+//! finely as the path of a falling one.
 
 use nalgebra::Vector3;
 
-/// Cells along one side; a power of two, so that the raster can be halved about its middle.
+/// Cells along one side: a power of two, so that the grid can be halved about its center.
 const SIDE: usize = 512;
-/// The longest distance between two positions, in cells, that is drawn as a line. A longer one is left open, because the
-/// motion in between is unknown.
+/// Maximum distance of two positions that are joined by a line, in cells. A longer gap stays open, because the motion
+/// in between is unknown.
 const LONGEST_PATH_LINE_CELLS: f64 = 24.0;
 
 #[derive(Clone, Debug)]
@@ -53,7 +53,7 @@ impl PathFromAbove {
         let cell = 2.0 * self.half_width / SIDE as f64;
         let cells = way_x.abs().max(way_y.abs()) / cell;
         if cells > 1.0 && cells <= LONGEST_PATH_LINE_CELLS {
-            // ceil() is a call to a library where the processor has no instruction for it.
+            // On processors without an instruction for it, ceil() calls a library.
             let whole = cells as u32;
             let dots = whole + u32::from(f64::from(whole) < cells);
             for dot in 1..=dots {
@@ -84,8 +84,10 @@ impl PathFromAbove {
         ((share * SIDE as f64) as usize).min(SIDE - 1)
     }
 
-    /// Clears the cells that were first visited after `step`. The raster keeps its width; the radius is then exact to a
-    /// cell. Call [`continue_from`](Self::continue_from) before following the point further.
+    /// Clears the cells that were first visited after `step`. The grid keeps its width, and the radius is then exact to
+    /// a cell.
+    ///
+    /// Call [`continue_from`](Self::continue_from) before following the point further.
     pub fn cut_back(&mut self, step: u64) {
         let kept = self.visits.partition_point(|visit| visit.step <= step);
         for visit in self.visits.drain(kept..) {
@@ -98,7 +100,7 @@ impl PathFromAbove {
         self.last = Some((position.x, position.y));
     }
 
-    /// Doubles the width of the raster: four cells become one.
+    /// Doubles the width of the grid: four cells become one.
     fn double(&mut self) {
         let visits = std::mem::take(&mut self.visits);
         for visit in &visits {
@@ -111,7 +113,7 @@ impl PathFromAbove {
         }
     }
 
-    /// Returns the largest distance of the path from the place (`x`, `y`), m, to a cell.
+    /// Returns the largest distance of the path from the point (`x`, `y`), m, to the accuracy of a cell.
     pub fn radius_about(&self, x: f64, y: f64) -> f64 {
         let distances = self
             .dots()
@@ -170,7 +172,7 @@ mod tests {
             };
             let at = (share * positions.len() as f64) as usize;
             let (mut short, mut long) = (PathFromAbove::new(2.0), PathFromAbove::new(2.0));
-            // Both rasters as wide as they will be: cells of another width are other cells.
+            // Give both grids their final width, so that their cells can be compared.
             (short.half_width, long.half_width) = (2.0, 2.0);
             follow(&mut short, 0..at + 1);
             follow(&mut long, 0..positions.len());

@@ -1,5 +1,7 @@
-//! The numbers on the screen. They are updated four times a second: nobody can read digits that change in every frame,
-//! and sending them would load a slow line. Of a very fast run they are updated for every frame, so that they belong to it.
+//! The numbers on the screen.
+//!
+//! They are updated four times a second: nobody can read digits that change in every frame, and sending them would load
+//! a slow line. For a very fast run they are updated in every frame, so that they match the picture.
 
 use super::live::LiveRun;
 use super::pace::{Pace, Speed};
@@ -16,14 +18,14 @@ pub const READING_INTERVAL: Duration = Duration::from_millis(250);
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reading {
     pub readouts: Readouts,
-    /// Gravity, scheme and time step of the step that follows.
+    /// Gravity, scheme and time step of the next step.
     pub motion: Motion,
-    /// The state at that time. Where the scheme has broken down, the last state whose orientation is a rotation.
+    /// The present state. If the scheme has broken down, the last state whose orientation is a rotation.
     pub state: State,
-    /// The step of that state, if the scheme has broken down since; else `None`.
+    /// The step of that state if the scheme has broken down since; otherwise `None`.
     pub last_whole: Option<u64>,
     pub moment: Moment,
-    /// The exact motion at the same time, whether or not its curves are shown; `None` where it is not known.
+    /// The exact motion at the same time, even if its curves are hidden; `None` if it is unknown.
     pub exact: Option<Moment>,
     pub pace: String,
 }
@@ -42,7 +44,7 @@ impl Reading {
         }
     }
 
-    /// Returns the measured precession, degrees a second; `None` until its uncertainty is small enough.
+    /// Returns the measured precession, degrees per second; `None` until its uncertainty is small enough.
     pub fn precession_deg_per_s(&self) -> Option<f64> {
         self.readouts
             .precession
@@ -63,13 +65,13 @@ fn pace_in_words(pace: &Pace) -> String {
     }
 }
 
-/// Returns the speed that is reached; further digits than two change all the time.
+/// Returns the achieved speed to two digits. More digits would change all the time.
 fn achieved(pace: &Pace) -> String {
     let speed = rounded(pace.achieved, 2);
     short(if speed.is_finite() { speed } else { 0.0 })
 }
 
-/// Returns the speed in few characters: 20, 0.002, 5e5.
+/// Formats the speed in few characters: 20, 0.002, 5e5.
 fn short(speed: f64) -> String {
     match speed {
         n if n >= 1e5 => exponent(n, 0),

@@ -2,9 +2,9 @@
 
 use crate::engine::recording::Extent;
 
-/// A tick this share of the range beyond an end is at the end: the difference is rounding.
+/// Rounding error of a decimal logarithm, allowed when digits are counted.
 const STRIP_TICK_ROUNDING: f64 = 1e-9;
-/// Digits of the ends of a range: its third significant digit is the last.
+/// The last digit of the ends of a range is this fraction of the range: its third significant digit.
 const END_DIGITS: f64 = 100.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,7 +14,7 @@ pub struct StripScale {
 }
 
 impl StripScale {
-    /// Creates the scale that shows `extent`, with a range of at least `least`.
+    /// Creates a scale that shows `extent`, with a range of at least `least`.
     pub fn of(extent: Extent, least: f64) -> Self {
         let missing = (least - (extent.max - extent.min)).max(0.0);
         Self {
@@ -23,7 +23,7 @@ impl StripScale {
         }
     }
 
-    /// Creates the scale from `-reach` to `reach`.
+    /// Creates a scale from `-reach` to `reach`.
     pub fn about_zero(reach: f64) -> Self {
         let reach = reach.max(f64::MIN_POSITIVE);
         Self {
@@ -39,18 +39,18 @@ impl StripScale {
         }
     }
 
-    /// Returns the place of `value`: 0 at the high end, 1 at the low one.
+    /// Returns the position of `value`: 0 at the high end, 1 at the low end.
     pub fn from_top(&self, value: f64) -> f64 {
         (self.high - value) / (self.high - self.low)
     }
 
-    /// Digits after the point with which its ends are written: three significant digits of the range.
+    /// Returns the number of decimals of its ends: three significant digits of the range.
     pub fn decimals(&self) -> usize {
         decimals((self.high - self.low) / END_DIGITS)
     }
 }
 
-/// Digits after the point that numbers `apart` need to be told apart.
+/// Returns the number of decimals at which numbers that differ by `apart` can be distinguished.
 pub fn decimals(apart: f64) -> usize {
     (-libm::log10(apart) - STRIP_TICK_ROUNDING)
         .ceil()

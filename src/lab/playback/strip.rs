@@ -1,11 +1,11 @@
-//! The geometry of a curve over time: a window of time on the columns of a strip.
+//! The geometry of a curve over time: it maps a time window to the columns of a strip.
 
 use crate::engine::recording::{Extent, RecordedCurve, Recording, RecordingBin};
 use std::ops::Range;
 
-/// A stretch shorter than this share of a column is rounding.
+/// An interval shorter than this share of a column is rounding error.
 const STRETCH_ROUNDING: f64 = 1e-6;
-/// The longest window, s: small enough that adding it to a time does not overflow.
+/// Maximum length of a window, s. It is small enough that adding it to a time does not overflow.
 const LONGEST_S: f64 = f64::MAX / 4.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,7 +28,7 @@ impl Strip {
         self.begin_s + self.window_s
     }
 
-    /// Returns the column of `time_s` (s); `None` where it is not shown.
+    /// Returns the column of `time_s` (s); `None` if that time is not shown.
     pub fn column(&self, time_s: f64) -> Option<usize> {
         let is_shown = time_s >= self.begin_s && time_s <= self.end_s() && self.columns > 0;
         is_shown.then(|| self.place(time_s).min(self.columns - 1))
@@ -38,7 +38,7 @@ impl Strip {
         self.begin_s + (column as f64 + 0.5) / self.columns.max(1) as f64 * self.window_s
     }
 
-    /// Returns the columns in which some of the time from `begin_s` to `end_s` (s) is shown.
+    /// Returns the columns that show part of the interval from `begin_s` to `end_s` (s).
     pub fn shown(&self, begin_s: f64, end_s: f64) -> Range<usize> {
         let (begin_s, end_s) = (begin_s.max(self.begin_s), end_s.min(self.end_s()));
         if begin_s >= end_s {
@@ -46,7 +46,8 @@ impl Strip {
         }
         let [from, to] = [begin_s, end_s].map(|time_s| self.columns_before(time_s));
         let first = ((from + STRETCH_ROUNDING) as usize).min(self.columns.saturating_sub(1));
-        // A stretch that ends where a column begins does not include that column; every stretch has at least one column.
+        // An interval that ends where a column begins does not include that column. Every interval has at least one
+        // column.
         let end = ((to - STRETCH_ROUNDING).ceil() as usize).max(first + 1);
         first..end.min(self.columns)
     }
@@ -56,12 +57,12 @@ impl Strip {
         (time_s - self.begin_s) / self.window_s * self.columns as f64
     }
 
-    /// Returns the column of a time (s) that is not before the left edge; it may lie beyond the right one.
+    /// Returns the column of a time (s) that is not before the left edge. It may be beyond the right edge.
     fn place(&self, time_s: f64) -> usize {
         (self.columns_before(time_s).max(0.0) as usize).min(usize::MAX / 2)
     }
 
-    /// Places the bins of `recording` on the columns, for all its curves at once.
+    /// Maps the bins of `recording` to columns, for all its curves at once.
     pub fn bins(&self, recording: &Recording) -> PlacedBins {
         let column = |time_s: f64| self.place(time_s.max(self.begin_s));
         let bins = recording.in_columns(self.begin_s, self.end_s(), Some(column));
@@ -84,8 +85,10 @@ pub struct PlacedBins {
 }
 
 impl PlacedBins {
-    /// Returns the extremes of `curve` in each column: those of all steps, and of the straight lines to the steps before
-    /// and after. `None` where the recording has nothing. No line crosses a time of `cuts` (s).
+    /// Returns the minimum and maximum of `curve` in each column; `None` if the recording is empty there.
+    ///
+    /// They include all steps, and the straight lines to the steps before and after. No line crosses a time in `cuts`
+    /// (s).
     pub fn columns(&self, curve: RecordedCurve, cuts: &[f64]) -> Vec<Option<Extent>> {
         let mut pen = StripPen {
             columns: vec![DrawnColumn::default(); self.columns],
@@ -102,7 +105,7 @@ impl PlacedBins {
 
 #[derive(Clone, Copy, Debug, Default)]
 struct DrawnColumn {
-    /// The extremes of the lines from bin to bin, in the curve's unit; [`StripPen::finish`] adds those of the bins.
+    /// The extremes of the lines between bins, in the curve's unit. [`StripPen::finish`] adds the extremes of the bins.
     extent: Option<Extent>,
     stored: Option<Extent>,
 }
@@ -115,12 +118,12 @@ struct StripPen<'a> {
     columns: Vec<DrawnColumn>,
     curve: RecordedCurve,
     cuts: &'a [f64],
-    /// Of the previous bin: its end, s, its last column and its stored extremes.
+    /// End (s), last column and stored extremes of the previous bin.
     before: Option<(f64, usize, Extent)>,
 }
 
 impl StripPen<'_> {
-    /// Draws `bin` from column `first` to `last`; columns beyond the right edge are left out.
+    /// Draws `bin` from column `first` to `last`, up to the right edge.
     fn draw(&mut self, bin: &RecordingBin, first: usize, last: usize) {
         let stored = bin.stored(self.curve);
         if let Some((end_s, column, from)) = self.before
@@ -152,8 +155,8 @@ impl StripPen<'_> {
     }
 }
 
-/// Draws the straight line from one bin to the next: over the columns between them, and half a column in each of the
-/// bins' own. It may lead beyond the right edge.
+/// Draws the straight line from one bin to the next: over the columns between them, and half a column in the column of
+/// each bin. The line may extend beyond the right edge.
 fn join(columns: &mut [DrawnColumn], from: (usize, Extent), to: (usize, Extent)) {
     let ((begin, from), (end, to)) = (from, to);
     let (leave, arrive) = nearest(from, to);

@@ -5,8 +5,7 @@ use super::seek::{Seek, SeekPurpose};
 use crate::engine::run::{Clock, Simulation};
 use crate::lab::playback::live::LiveRun;
 
-/// Maximum [cost](Player::cost) of the steps of a replay that are taken before returning: about 50 ms for the first
-/// edit.
+/// Maximum [cost](Player::cost) of the steps of a replay before the function returns: about 50 ms for the first edit.
 ///
 /// A further nudge of a held key has slightly less: `MOST_COST_PER_NUDGE`.
 const MOST_COST_PER_EDIT: u64 = 10_000_000;
@@ -96,7 +95,7 @@ impl Player {
 
     /// Plays the run, which is at step 0, to the step nearest to the time of `replay`.
     ///
-    /// About 50 ms of steps (40 ms with `is_again`) are taken before returning, and the others over the next frames.
+    /// Takes about 50 ms of steps (40 ms with `is_again`) before it returns. The others follow over the next frames.
     pub(super) fn begin_replay(&mut self, replay: Replay, is_again: bool) {
         self.replay = Some(replay);
         let Replay {

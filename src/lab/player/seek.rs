@@ -23,14 +23,14 @@ pub(in crate::lab) const MOST_UNTIL: u64 = 10_000_000;
 
 /// Maximum [cost](Player::cost) of returning to a step within one frame: about 0.2 s.
 const MOST_COST_PER_FRAME: u64 = 100_000_000;
-/// Maximum cost of steps that are taken before the next key is read: a few milliseconds.
+/// Maximum cost of steps before the next key is read: a few milliseconds.
 ///
 /// Keys that arrive together then act one by one.
 const MOST_COST_PER_KEY: u64 = 1_000_000;
 /// Maximum duration of steps before the next key, in case their cost was underestimated.
 ///
-/// A push can make a step expensive, while the cost is estimated from the state before it. The remaining steps are
-/// taken over the next frames.
+/// A push can make a step expensive, while the cost is estimated from the state before it. The remaining steps follow
+/// over the next frames.
 const LONGEST_AT_ONCE: Duration = Duration::from_millis(200);
 
 pub(super) type Condition = Box<dyn FnMut(&mut LiveRun) -> bool>;
@@ -94,7 +94,7 @@ impl Player {
 
     /// Takes the steps to the run's seek target before returning, unless they take too long.
     ///
-    /// Steps from there to `step` that the run has not reached yet are taken as in [`take_steps`](Self::take_steps).
+    /// Then takes the steps to `step` that the run has not reached yet, as [`take_steps`](Self::take_steps) does.
     fn approach(&mut self, step: u64, purpose: SeekPurpose) {
         if let Some(target) = self.run.seek_target()
             && self.cost(target - self.step_number()) <= MOST_COST_PER_FRAME
@@ -108,8 +108,8 @@ impl Player {
         }
     }
 
-    /// Takes `steps` time steps as fast as possible and stops. A few steps are taken before returning; many are taken
-    /// over the next frames.
+    /// Takes `steps` time steps as fast as possible and stops. A few steps are complete when it returns. Many steps
+    /// follow over the next frames.
     pub(super) fn take_steps(&mut self, steps: u64, purpose: SeekPurpose) {
         let is_short = steps == 1 || self.cost(steps) <= MOST_COST_PER_KEY;
         self.fast_forward(steps, if is_short { steps } else { 0 }, purpose);

@@ -1,8 +1,8 @@
 //! Chooses the time window of the traces.
 //!
-//! The window is a few swings long and shows each of them. If it passes too fast to be followed, the strips are held,
-//! as on an oscilloscope. Once a second they change to a window that ends at a maximum of z, so that successive
-//! pictures match. A run with few swings, or none, is shown from its start.
+//! The window is a few swings long and shows each of them. If it passes too fast to be followed, it stays fixed, as on
+//! an oscilloscope. Once a second it changes to a window that ends at a maximum of z, so that successive pictures
+//! match. A run with few swings, or none, is shown from its start.
 
 use super::{Player, furthest_s};
 use crate::engine::recording::{Extent, RecordedCurve, Recording};
@@ -29,9 +29,9 @@ const HYSTERESIS: f64 = 0.1;
 const LEAST_SWING: f64 = 5e-4;
 /// Minimum range of values of a strip, as a share of the distance between pivot and traced point; for the tilt, rad.
 const LEAST_RANGE: f64 = 2e-3;
-/// A window that passes in less wall-clock time than this is held, s.
+/// Wall-clock time below which a passing window is held fixed, s.
 const PASSES_S: f64 = 4.0;
-/// Duration for which a window is held.
+/// Duration of a fixed window.
 const HOLD: Duration = Duration::from_secs(1);
 /// Share of its length by which the window jumps when the run leaves it.
 const JUMP: f64 = 0.5;
@@ -113,7 +113,8 @@ impl Player {
         }
     }
 
-    /// Returns the start and the length (s) of a window of `length_s` that follows the run, and true if it is held.
+    /// Returns the start and the length (s) of a window of `length_s` that follows the run, and true if it stays fixed
+    /// for a while.
     fn follow(
         &mut self,
         now: Duration,

@@ -1,6 +1,6 @@
-//! Hooks that run before the terminal is given back, whether the lab's own loop, a signal or a panic ends the lab.
+//! Hooks that run before the terminal is restored, whether the lab's main loop, a signal or a panic ends the lab.
 //!
-//! A part that has something to save or to clean up registers a [`hook`]; [`terminal`](crate::tui::terminal) runs all
+//! A part that has something to save or to clean up registers a [`hook`]. [`terminal`](crate::tui::terminal) runs all
 //! hooks.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -16,8 +16,10 @@ pub enum Release {
 }
 
 impl Release {
-    /// Returns how long all hooks together may delay it. On a busy machine a hook may need seconds until it runs at all;
-    /// only a disk that no longer answers makes the user wait for the whole of it.
+    /// Returns the time by which all hooks together may delay it.
+    ///
+    /// On a busy machine a hook may need seconds before it runs at all. The user waits for the whole time only if a
+    /// disk no longer responds.
     pub fn patience(self) -> Duration {
         match self {
             Self::Exit => Duration::from_secs(5),
@@ -28,7 +30,7 @@ impl Release {
 
 type Hook = Arc<dyn Fn(Release) + Send + Sync>;
 
-/// The registered hooks with their numbers, in the order in which they came.
+/// The registered hooks with their numbers, in the order of registration.
 static HOOKS: Mutex<Vec<(u64, Hook)>> = Mutex::new(Vec::new());
 
 fn hooks() -> MutexGuard<'static, Vec<(u64, Hook)>> {
@@ -46,8 +48,9 @@ impl Drop for Registered {
     }
 }
 
-/// Registers `hook`, which is called on a thread of its own before the terminal is given back. It may be called more than
-/// once, and while the lab is still running. It should give up after [`Release::patience`].
+/// Registers `hook`, which is called on a separate thread before the terminal is restored.
+///
+/// It may be called more than once, and while the lab is still running. It should give up after [`Release::patience`].
 pub fn hook(hook: impl Fn(Release) + Send + Sync + 'static) -> Registered {
     let mut registered = hooks();
     let number = registered.last().map_or(0, |(last, _)| last + 1);
@@ -55,23 +58,23 @@ pub fn hook(hook: impl Fn(Release) + Send + Sync + 'static) -> Registered {
     Registered(number)
 }
 
-/// Calls every hook and waits until all have returned, but no longer than [`Release::patience`].
+/// Calls all hooks and waits until all have returned, but no longer than [`Release::patience`].
 pub fn run_hooks(release: Release) {
     let (done, all_done) = mpsc::channel::<()>();
     let registered = hooks().clone();
     for (_, hook) in registered {
         let (thread_hook, thread_done) = (Arc::clone(&hook), done.clone());
-        // Each on its own thread, so that one that hangs or panics does not affect the others.
+        // Each hook runs on its own thread, so that one that hangs or panics does not affect the others.
         let spawned = thread::Builder::new().spawn(move || {
             call(&thread_hook, release);
             drop(thread_done);
         });
         if spawned.is_err() {
-            call(&hook, release); // the system gives no thread: run it here
+            call(&hook, release); // the system provides no thread: run it here
         }
     }
     drop(done);
-    let _ = all_done.recv_timeout(release.patience()); // nothing is sent: receiving ends when the last sender is dropped
+    let _ = all_done.recv_timeout(release.patience()); // nothing is sent: it ends when the last sender is dropped
 }
 
 fn call(hook: &Hook, release: Release) {

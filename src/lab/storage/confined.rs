@@ -1,14 +1,14 @@
 //! The only folder in which a lab may read and write, if the command line names one with `--folder`. It is meant for a
-//! login that several people share and that may run nothing but the lab.
+//! login that several people share and that may run only the lab.
 
 use crate::engine::text::printable::{PrintablePath, printable};
 use std::fs;
 use std::io;
 use std::path::{Component, Path, PathBuf};
 
-/// Subfolder for the sessions of a confined lab, and for its class.
+/// Name of the subfolder for the sessions of a confined lab, and for its class.
 pub const SESSIONS: &str = ".gyrolab";
-/// The most that the files of a seat take together, bytes.
+/// Maximum total size of the files of a seat, bytes.
 pub const MOST_OF_SEAT: u64 = 20_000_000;
 
 /// A folder that the lab's reads and writes never leave.
@@ -16,7 +16,8 @@ pub const MOST_OF_SEAT: u64 = 20_000_000;
 pub struct Confined {
     root: PathBuf,
     sessions: PathBuf,
-    /// The folder of the class whose seat this is: its lessons and scenarios are read too, and nothing is written there.
+    /// The folder of the class to which this seat belongs. The lab may read its lessons and scenarios, but writes
+    /// nothing there.
     class: Option<PathBuf>,
 }
 
@@ -41,12 +42,12 @@ impl Confined {
         })
     }
 
-    /// Keeps the sessions in `folder`, such as that of the teacher.
+    /// Stores the sessions in `sessions`, for example in a folder of the teacher.
     pub fn keeping_in(self, sessions: PathBuf) -> Self {
         Self { sessions, ..self }
     }
 
-    /// Makes it the folder of a seat of the class in `folder`.
+    /// Makes this the folder of a seat of the class in `folder`.
     pub fn as_seat_of(self, folder: &Path) -> Self {
         let class = Some(folder.to_owned());
         Self { class, ..self }
@@ -60,12 +61,15 @@ impl Confined {
         self.class.is_some()
     }
 
-    /// Returns the folder whose lessons are listed: that of the class, or its own.
+    /// Returns the folder whose lessons are listed: the class's folder, or its own.
     pub fn lessons(&self) -> &Path {
         self.class.as_deref().unwrap_or(&self.root)
     }
 
-    /// Returns the folder for sessions; it may not exist yet.
+    /// Returns the folder for sessions, which may not exist yet.
+    ///
+    /// # Errors
+    /// Returns an error if it exists and is not a folder.
     pub fn sessions(&self) -> Result<PathBuf, String> {
         match fs::symlink_metadata(&self.sessions) {
             Ok(there) if !there.is_dir() => Err(format!(
@@ -76,7 +80,11 @@ impl Confined {
         }
     }
 
-    /// Checks that the file `path` may be read: it lies in the folder, or in that of the class. Its full path is allowed.
+    /// Checks that the file `path` may be read: it must be in the folder, or in the class's folder. A full path is
+    /// allowed.
+    ///
+    /// # Errors
+    /// Returns an error if it may not, with the reason.
     pub fn check_reading(&self, path: &Path) -> Result<(), String> {
         for root in [Some(&self.root), self.class.as_ref()]
             .into_iter()
@@ -91,7 +99,11 @@ impl Confined {
         self.check(path)
     }
 
-    /// Checks that the file `path` may be written: as [`check`](Self::check), and a seat has room for it.
+    /// Checks that the file `path` may be written: [`check`](Self::check) must succeed, and a seat must have space
+    /// left.
+    ///
+    /// # Errors
+    /// Returns an error if it may not, with the reason.
     pub fn check_writing(&self, path: &Path) -> Result<(), String> {
         self.check(path)?;
         if self.is_seat() && size_of(&self.root) >= MOST_OF_SEAT {
@@ -103,8 +115,12 @@ impl Confined {
         Ok(())
     }
 
-    /// Checks that the file `path`, existing or not, lies in the folder: the path is relative, has no `..`, and no symbolic
-    /// link in it leads out of the folder.
+    /// Checks that the file `path`, existing or not, is inside the folder.
+    ///
+    /// The path must be relative and contain no `..`, and no symbolic link in it may lead out of the folder.
+    ///
+    /// # Errors
+    /// Returns an error if it is not inside, with the reason.
     pub fn check(&self, path: &Path) -> Result<(), String> {
         let mut full = self.root.clone();
         for component in path.components() {
@@ -150,7 +166,7 @@ impl Confined {
     }
 }
 
-/// Returns what the files in `folder` take together, bytes.
+/// Returns the total size of the files in `folder`, bytes.
 fn size_of(folder: &Path) -> u64 {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     entries

@@ -1,5 +1,5 @@
-//! Exports a run to a CSV file, or draws a figure of it, in the background; how large the CSV will be, and how it is fetched
-//! from this machine.
+//! Exports a run to a CSV file, or draws a figure of it, in the background. Also estimates the size of the CSV, and
+//! creates the command that copies a file from this machine.
 
 use super::at_exit::{self, Registered, Release};
 use crate::engine::export::destination::{Destination, DestinationError};
@@ -37,7 +37,7 @@ pub struct Written {
     pub rows: Option<u64>,
     pub bytes: u64,
     pub warnings: Vec<String>,
-    /// Where the run's numbers stopped being finite, if they did. The file has the rows before that.
+    /// The step at which the numbers stopped being finite, if they did. The file contains the rows before it.
     pub not_finite: Option<NotFinite>,
 }
 
@@ -47,13 +47,15 @@ struct Shared {
     steps: u64,
     is_cancelled: AtomicBool,
     has_ended: AtomicBool,
-    /// Whether the end of the process has cancelled it.
+    /// True if the end of the process has cancelled it.
     is_cut_off: AtomicBool,
 }
 
 impl Exporting {
-    /// Starts writing the run of `scenario`, from step 0 to its last step, to the file `path`. It writes the same bytes as
-    /// `gyrolab run -o`, with the rows and columns of `layout`. The file appears once it is complete.
+    /// Starts writing the run of `scenario`, from step 0 to its last step, to the file `path`.
+    ///
+    /// It writes the same bytes as `gyrolab run -o`, with the rows and columns of `layout`. The file appears once it is
+    /// complete.
     pub fn begin(
         scenario: Arc<Scenario>,
         path: &Path,
@@ -71,8 +73,9 @@ impl Exporting {
         .map_err(refused)
     }
 
-    /// Starts drawing the figure of `source` to the file `path` in this `format`. It writes the same bytes as
-    /// `gyrolab figure -o`. The file appears once it is complete.
+    /// Starts drawing the figure of `source` to the file `path` in `format`.
+    ///
+    /// It writes the same bytes as `gyrolab figure -o`. The file appears once it is complete.
     pub fn begin_figure(
         source: FigureSource,
         path: &Path,
@@ -124,13 +127,15 @@ impl Exporting {
         (self.shared.step.load(Ordering::Relaxed), self.shared.steps)
     }
 
-    /// Asks the export to stop and to remove its temporary file; [`outcome`](Self::outcome) tells when it has.
+    /// Asks the export to stop and to remove its temporary file. [`outcome`](Self::outcome) reports when it has.
     pub fn cancel(&self) {
         self.shared.cancel();
     }
 
-    /// Returns what was written, or why nothing was. `None` while the export is in progress, after the result has been
-    /// returned once, and where the end of the process cuts the export off: the session then keeps that it was under way.
+    /// Returns the description of the written file, or the reason why there is none.
+    ///
+    /// Returns `None` while the export is in progress and after the result was returned once. It also returns `None` if
+    /// the end of the process cuts the export off: the session then records that it was in progress.
     pub fn outcome(&mut self) -> Option<Result<Written, String>> {
         if self.shared.is_cut_off.load(Ordering::SeqCst) {
             return None;
@@ -155,7 +160,7 @@ impl Shared {
         self.is_cancelled.store(true, Ordering::SeqCst);
     }
 
-    /// Notes that `step` has been reached; breaks where the export has been cancelled.
+    /// Records that `step` has been reached. Breaks if the export has been cancelled.
     fn reach(&self, step: u64) -> ControlFlow<()> {
         self.step.store(step.min(self.steps), Ordering::Relaxed);
         if self.is_cancelled.load(Ordering::SeqCst) {
@@ -165,7 +170,7 @@ impl Shared {
         }
     }
 
-    /// Before the process ends, cancels the export and waits until its temporary file is removed. A suspended process
+    /// Cancels the export before the process ends, and waits until its temporary file is removed. A suspended process
     /// continues its export when it is resumed.
     fn prepare_for(&self, release: Release) {
         if release == Release::Suspend {
@@ -253,8 +258,10 @@ pub struct Estimate {
     pub bytes: u64,
 }
 
-/// Estimates the size of the export of `scenario` with every `every`-th row. It takes a few milliseconds: it writes
-/// 64 rows with the numbers of the run's beginning and with steps and times spread over the whole run.
+/// Estimates the size of the export of `scenario` with every `every`-th row.
+///
+/// It takes a few milliseconds: it writes 64 rows with numbers from the beginning of the run, and with steps and times
+/// spread over the whole run.
 pub fn estimate(scenario: &Arc<Scenario>, every: NonZeroU64) -> Estimate {
     let rows = rows(scenario.steps, every.get());
     let csv = sample_rows(scenario, every.get()).unwrap_or_default(); // writing to memory does not fail
@@ -272,12 +279,13 @@ pub fn estimate(scenario: &Arc<Scenario>, every: NonZeroU64) -> Estimate {
     }
 }
 
-/// Returns the number of rows of a run that ends at step `last`: rows 0, `every`, twice `every` and so on, and the last.
+/// Returns the number of rows of a run that ends at step `last`: rows 0, `every`, 2 `every` and so on, and the last.
 fn rows(last: u64, every: u64) -> u64 {
     last / every + 1 + u64::from(!last.is_multiple_of(every))
 }
 
-/// Returns a CSV of 64 rows that have the numbers of the run's beginning, and steps and times spread over the whole run.
+/// Returns a CSV of 64 rows with numbers from the beginning of the run, and with steps and times spread over the whole
+/// run.
 fn sample_rows(scenario: &Arc<Scenario>, every: u64) -> io::Result<Vec<u8>> {
     const ROWS_PER_SLICE: u64 = 64;
     const MOST_INTEGRATION: u64 = 50_000_000; // about 0.1 s
@@ -298,7 +306,7 @@ fn sample_rows(scenario: &Arc<Scenario>, every: u64) -> io::Result<Vec<u8>> {
             time_s: Clock::at(scenario, step).time_s(step),
             ..simulation.sample()
         })?;
-        // Where the numbers stop being finite, or steps take long, it repeats the last state.
+        // If the numbers stop being finite, or steps take long, the last state is repeated.
         for _ in simulation.step_number()..((row + 1) * apart).min(scenario.steps) {
             left = left.saturating_sub(integration_cost(&simulation, 0));
             if left == 0 || simulation.step().is_err() {
@@ -309,9 +317,10 @@ fn sample_rows(scenario: &Arc<Scenario>, every: u64) -> io::Result<Vec<u8>> {
     csv.finish()
 }
 
-/// Returns the `scp` command that the user types on their own machine to fetch the file `path` from this one; `None` where
-/// the lab does not run over SSH. Where the name of the file, the user or the machine cannot be typed in a shell, a
-/// message that says so.
+/// Returns the `scp` command that the user types on their own machine to fetch the file `path`; `None` if the lab does
+/// not run over SSH.
+///
+/// If the name of the file, the user or the machine cannot be typed in a shell, returns a message that says so.
 pub fn scp_line(path: &Path) -> Option<String> {
     // ssh sets it to "CLIENT CLIENT_PORT SERVER SERVER_PORT".
     let connection = std::env::var("SSH_CONNECTION").ok()?;
@@ -325,7 +334,10 @@ pub fn scp_line(path: &Path) -> Option<String> {
     }))
 }
 
-/// Returns the command, or which part of it cannot be typed. An empty `user` is left out.
+/// Returns the command. An empty `user` is omitted.
+///
+/// # Errors
+/// Returns an error if a part of it cannot be typed: the name of that part.
 fn scp_line_from(
     port: &str,
     user: &OsStr,
@@ -347,7 +359,7 @@ fn scp_line_from(
     Ok(format!("scp {option}{quoted} ."))
 }
 
-/// `text` if it is a name of a user or a machine that scp does not mistake for an option or a path.
+/// Returns `text` if it is a name of a user or a machine that scp does not mistake for an option or a path.
 fn name(text: &OsStr) -> Option<&str> {
     text.to_str().filter(|name| {
         !name.is_empty()

@@ -1,6 +1,11 @@
-//! What the lab keeps on the disk: [`session`]s that can be resumed, [`settings`] that the user chose, and [`exporting`] in
-//! the background. [`at_exit`] holds the hooks that save or clean up however the process ends; [`confined`] restricts paths
-//! to one folder; [`shared`] reads and writes the files that two accounts share.
+//! The lab's data on the disk.
+//!
+//! - [`session`]: sessions that can be resumed.
+//! - [`settings`]: settings that the user chose.
+//! - [`exporting`]: exports in the background.
+//! - [`at_exit`]: hooks that save or clean up however the process ends.
+//! - [`confined`]: restricts paths to one folder.
+//! - [`shared`]: reads and writes the files that two accounts share.
 
 pub mod at_exit;
 pub mod confined;

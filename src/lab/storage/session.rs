@@ -1,8 +1,8 @@
-//! A session: what the lab needs to resume where it was. A thread saves it to the disk while the lab runs, at most a second
-//! late, so that it survives whatever ends the process.
+//! A session: the data from which the lab resumes where it was. A thread saves it to the disk while the lab runs, at
+//! most a second late, so that it survives any end of the process.
 //!
-//! The content is two texts, which this module does not interpret: the work, which changes seldom and may be long, and the
-//! place in it, which changes all the time.
+//! The content is two texts, which this module does not interpret: the work, which rarely changes and may be long, and
+//! the place, which changes all the time.
 
 use super::at_exit::{self, Registered};
 use super::private_files::make_folder;
@@ -17,22 +17,22 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, SystemTime};
 
-/// How long a flush may hold up the loop.
+/// Maximum time for which a flush may block the main loop.
 const FLUSH_LIMIT: Duration = Duration::from_millis(400);
-/// How often what was noted is saved; a running run does not keep the disk busy.
+/// Interval at which new content is saved. It is long enough that a running run does not keep the disk busy.
 const SAVE_INTERVAL: Duration = Duration::from_millis(500);
 
-/// What is left of a session that has ended.
+/// The final state of a session that has ended.
 #[derive(Debug)]
 pub struct ClosedSession {
-    /// The content that was saved last; `None` if none was.
+    /// The content that was last saved; `None` if none was.
     pub kept: Option<SessionContent>,
-    /// Why that is not the content that was noted last.
+    /// The reason why that is not the latest content.
     pub trouble: Option<String>,
 }
 
-/// The session of this process. No other process can take it while this value lives; dropping it saves the session and
-/// frees it.
+/// The session of this process. No other process can open it while this value exists. Dropping the value saves and
+/// releases the session.
 #[derive(Debug)]
 pub struct Session {
     name: String,
@@ -42,14 +42,14 @@ pub struct Session {
     _at_end: Registered,
 }
 
-/// Each asks the writer to save at once and to answer, and tells whether it is to end then.
+/// Requests to the writer to save at once and to answer; with true, the writer then ends.
 type Flushes = Sender<(Sender<()>, bool)>;
 
 /// The content to save, and what has been saved.
 #[derive(Debug, Default)]
 struct SaveState {
     noted: Option<SessionContent>,
-    /// Whether what was noted last is still to be saved.
+    /// True if the latest content is not saved yet.
     is_news: bool,
     kept: Option<SessionContent>,
     trouble: Option<String>,
@@ -58,11 +58,11 @@ struct SaveState {
 /// The result of looking for a session to resume.
 #[derive(Debug)]
 pub struct SessionSearch<T> {
-    /// The newest session that is not in use and can be read, and what `read` made of its content.
+    /// The newest session that is not in use and can be read, and the value that `read` returned for it.
     pub resumed: Option<(Session, T)>,
-    /// Newer files that cannot be read or are another version's or user's; they are unchanged.
+    /// Newer files that cannot be read, or that belong to another version or user. They are left unchanged.
     pub left_alone: Vec<LeftAlone>,
-    /// Process numbers of the processes that use newer sessions, as far as they are known.
+    /// Process IDs of the processes that use newer sessions, as far as known.
     pub in_use_by: Vec<u32>,
 }
 
@@ -76,13 +76,13 @@ pub struct LeftAlone {
 #[derive(Debug)]
 pub struct ListedSession {
     pub name: String,
-    /// When it was saved last.
+    /// Time at which it was last saved.
     pub written: SystemTime,
-    /// Whether a running process holds it.
+    /// True if a running process uses it.
     pub is_in_use: bool,
-    /// The number of that process, if known.
+    /// Process ID of that process, if known.
     pub owner: Option<u32>,
-    /// What it holds, or why it cannot be read.
+    /// Its content, or the reason why it cannot be read.
     pub content: Result<SessionContent, String>,
 }
 
@@ -98,8 +98,11 @@ pub fn folder() -> Result<PathBuf, String> {
     }
 }
 
-/// Resumes the newest session in `folder` that no running process holds and that `read` accepts, or `only` that of one
-/// name.
+/// Resumes the newest session in `folder` that no running process uses and that `read` accepts, or the session called
+/// `only`.
+///
+/// # Errors
+/// Returns an error if the folder cannot be read or there is no session called `only`.
 pub fn resume<T>(
     folder: &Path,
     only: Option<&str>,
@@ -142,13 +145,13 @@ pub fn resume<T>(
     Ok(found)
 }
 
-/// Lists the sessions in `folder`, the one saved last first. It changes nothing.
+/// Lists the sessions in `folder`, the latest first, without changing anything.
 pub fn list(folder: &Path) -> io::Result<Vec<ListedSession>> {
     let names = sessions(folder)?.into_iter();
     Ok(names.map(|name| listed(folder, name)).collect())
 }
 
-/// Returns the session called `name` in `folder`, as [`list`] has it; `None` if there is none.
+/// Returns the entry of the session called `name` in `folder`, as in [`list`]; `None` if there is none.
 pub fn look_at(folder: &Path, name: &str) -> Option<ListedSession> {
     let names = sessions(folder).ok()?;
     names
@@ -167,7 +170,7 @@ fn listed(folder: &Path, name: String) -> ListedSession {
     }
 }
 
-/// Returns the names of all sessions in `folder`, the one saved last first; none where there is no such folder.
+/// Returns the names of all sessions in `folder`, the latest first; empty if there is no such folder.
 fn sessions(folder: &Path) -> io::Result<Vec<String>> {
     let found = session_file::sessions(folder);
     found.map_err(|error| error_about(&error, "cannot look for sessions in", folder))
@@ -181,7 +184,7 @@ fn error_about(error: &io::Error, what: &str, folder: &Path) -> io::Error {
 }
 
 impl Session {
-    /// Begins a new session in `folder`, which is created if it does not exist, and removes the oldest unused sessions.
+    /// Starts a new session in `folder`, which is created if it does not exist, and removes the oldest unused sessions.
     /// Nothing is saved before the first [`note`](Self::note).
     pub fn begin(folder: &Path) -> io::Result<Self> {
         let begun = make_folder(folder).and_then(|()| {
@@ -194,7 +197,7 @@ impl Session {
         }
     }
 
-    /// Returns the session of `held`, of which the disk holds `kept`.
+    /// Starts the session of `held`, whose content on the disk is `kept`.
     fn start(held: HeldSession, kept: Option<SessionContent>) -> io::Result<Self> {
         let name = held.name().to_owned();
         let state = Arc::new(Mutex::new(SaveState {
@@ -217,7 +220,7 @@ impl Session {
         })
     }
 
-    /// Makes `content` the content to save. It is quick, and may be called in every round of the loop.
+    /// Sets the content to save. This is fast, and may be called in every round of the main loop.
     pub fn note(&self, content: SessionContent) {
         let mut state = locked(&self.state);
         if !state
@@ -234,18 +237,19 @@ impl Session {
         &self.name
     }
 
-    /// Saves at once, and gives up after 0.4 s. Returns whether saving was attempted in that time;
-    /// [`trouble`](Self::trouble) tells whether it failed.
+    /// Saves at once, and gives up after 0.4 s. Returns true if saving was attempted in that time.
+    /// [`trouble`](Self::trouble) says whether it failed.
     pub fn flush(&self) -> bool {
         flush(&self.flushes, FLUSH_LIMIT, false)
     }
 
-    /// Returns why the last attempt to save failed; `None` if it succeeded. The thread tries again every half second.
+    /// Returns the reason why the last attempt to save failed; `None` if it succeeded. The thread tries again every
+    /// half second.
     pub fn trouble(&self) -> Option<String> {
         locked(&self.state).trouble.clone()
     }
 
-    /// Saves and ends the session. It waits at most `patience` for the disk.
+    /// Saves and ends the session. Waits at most `patience` for the disk.
     pub fn close(mut self, patience: Duration) -> ClosedSession {
         let is_in_time = self.end(patience);
         let state = locked(&self.state);
@@ -260,7 +264,7 @@ impl Session {
         }
     }
 
-    /// Saves and ends the writer. One that hangs in a write to a dead disk is left to itself after `patience`.
+    /// Saves and ends the writer. A writer that hangs in a write to a dead disk is abandoned after `patience`.
     fn end(&mut self, patience: Duration) -> bool {
         let Some(writer) = self.writer.take() else {
             return true;
@@ -283,14 +287,14 @@ fn locked(state: &Mutex<SaveState>) -> MutexGuard<'_, SaveState> {
     state.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Makes the writer save, and waits for it at most `patience`. Returns whether it tried in that time.
+/// Makes the writer save, and waits for it at most `patience`. Returns true if it tried in that time.
 fn flush(flushes: &Flushes, patience: Duration, ends: bool) -> bool {
     let (done, is_done) = channel();
     let _ = flushes.send((done, ends));
     is_done.recv_timeout(patience).is_ok()
 }
 
-/// The body of the writer. It returns when the session is closed; one that was never saved leaves nothing.
+/// The body of the writer thread. It returns when the session is closed. A session that was never saved is removed.
 fn keep_writing(
     held: HeldSession,
     state: &Mutex<SaveState>,
@@ -298,7 +302,7 @@ fn keep_writing(
 ) {
     loop {
         let flushed = flushes.recv_timeout(SAVE_INTERVAL);
-        // A flush saves even what has not changed, so that the session left last has the newest file.
+        // A flush saves unchanged content too, so that the session that was left last has the newest file.
         if flushed.is_ok() || locked(state).is_news {
             save(&held, state);
         }

@@ -1,20 +1,20 @@
-//! The files of one session, and the lock by which a process holds it.
+//! The files of one session, and the lock with which a process reserves it.
 //!
 //! ```text
 //! N.session    the place and the work
-//! N.lock       locked by the process that holds the session, and contains its number; kill -9 unlocks it
+//! N.lock       locked by the process that uses the session, and contains its ID; kill -9 unlocks it
 //! ```
 //!
-//! A session begins with three lines, and the two texts follow:
+//! A session file begins with three lines. The two texts follow:
 //!
 //! ```text
 //! gyrolab session 5
-//! sum 8d4f1d92          CRC-32 of all that follows this line
-//! place 204             bytes of the place
+//! sum 8d4f1d92          CRC-32 of everything after this line
+//! place 204             length of the place, bytes
 //! ```
 //!
-//! The number in the first line is raised when the format or the meaning of the texts changes. Nothing is synced to the
-//! disk: sessions must survive the death of the process, not of the machine.
+//! Raise the number in the first line when the format or the meaning of the texts changes. Nothing is synced to the
+//! disk: sessions must survive a crash of the process, not of the machine.
 
 use super::confined::SESSIONS;
 use super::{private_files, shared};
@@ -30,19 +30,20 @@ use std::thread::sleep;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 const SESSION_FORMAT: &str = "gyrolab session 5";
-/// The most sessions that are kept, of a user and of a login that several share.
+/// Maximum number of sessions that are kept, for a user, and for a login that several people share.
 const MOST_KEPT_SESSIONS: usize = 20;
 const MOST_SHARED_SESSIONS: usize = 200;
-/// The longest file of a session, bytes.
+/// Maximum size of a session file, bytes.
 const LONGEST_SESSION: usize = 64 << 20;
-/// The longest lock file, bytes: the number of a process.
+/// Maximum size of a lock file, bytes. It contains a process ID.
 const LONGEST_LOCK: usize = 100;
-/// A lock that is held for a shorter time belongs to a process that only looks at the session.
+/// Duration of a lock by a process that only inspects the session. A longer lock means that the session is in use.
 const GLANCE: Duration = Duration::from_millis(10);
-/// How long the system may take to unlock what a process held that has ended. On a busy machine it is more than a glance.
+/// Time that the system may take to release the lock of a process that has ended. On a busy machine it is longer than
+/// `GLANCE`.
 const UNLOCKING: Duration = Duration::from_secs(1);
 
-/// A text that is written once, when it is first read; a clone shares it.
+/// A text that is created when it is first read. Clones share it.
 pub type SharedText = Arc<LazyLock<String, Box<dyn FnOnce() -> String + Send>>>;
 
 pub fn later(write: impl FnOnce() -> String + Send + 'static) -> SharedText {
@@ -52,9 +53,9 @@ pub fn later(write: impl FnOnce() -> String + Send + 'static) -> SharedText {
 /// The content of a session.
 #[derive(Clone, Debug)]
 pub struct SessionContent {
-    /// What changes seldom, such as the runs and their journals.
+    /// The part that rarely changes, such as the runs and their journals.
     pub work: SharedText,
-    /// What changes all the time, such as the present step. It is short.
+    /// The part that changes all the time, such as the present step. It is short.
     pub place: String,
 }
 
@@ -64,7 +65,7 @@ impl SessionContent {
     }
 }
 
-/// A session that this process holds as long as this value lives.
+/// A session that this process has locked as long as this value exists.
 pub(super) struct HeldSession {
     folder: PathBuf,
     name: String,
@@ -75,7 +76,7 @@ pub(super) fn file(folder: &Path, name: &str, kind: &str) -> PathBuf {
     folder.join(format!("{name}.{kind}"))
 }
 
-/// Returns the names of the files in `folder` that end in `kind`, without that.
+/// Returns the names of the files in `folder` with the extension `kind`, without the extension.
 fn names(folder: &Path, kind: &str) -> io::Result<Vec<String>> {
     let entries = match fs::read_dir(folder) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
@@ -89,7 +90,7 @@ fn names(folder: &Path, kind: &str) -> io::Result<Vec<String>> {
         .collect())
 }
 
-/// Returns the names of the sessions in `folder`, the one written last first.
+/// Returns the names of the sessions in `folder`, the latest first.
 pub(super) fn sessions(folder: &Path) -> io::Result<Vec<String>> {
     let mut names = names(folder, "session")?;
     names.sort_by_cached_key(|name| (written_at(folder, name), name.clone()));
@@ -97,7 +98,7 @@ pub(super) fn sessions(folder: &Path) -> io::Result<Vec<String>> {
     Ok(names)
 }
 
-/// Returns when the session was written last; the beginning of 1970 if it is not there.
+/// Returns the time at which the session was last written; the beginning of 1970 if it does not exist.
 pub(super) fn written_at(folder: &Path, name: &str) -> SystemTime {
     shared::modified(&file(folder, name, "session")).unwrap_or(UNIX_EPOCH)
 }
@@ -107,7 +108,7 @@ pub(super) fn is_in_use(folder: &Path, name: &str) -> bool {
     lock.is_ok_and(|lock| matches!(lock.try_lock_shared(), Err(TryLockError::WouldBlock)))
 }
 
-/// Returns the number of the process that holds, or last held, the session; `None` where its lock file does not tell.
+/// Returns the ID of the process that uses, or last used, the session; `None` if its lock file does not contain one.
 pub(super) fn owner(folder: &Path, name: &str) -> Option<u32> {
     let bytes = private_files::read(&file(folder, name, "lock"), LONGEST_LOCK).ok()?;
     str::from_utf8(&bytes).ok()?.parse().ok()
@@ -118,7 +119,7 @@ fn is_running(process: u32) -> bool {
     id.is_some_and(|id| test_kill_process(id) != Err(Errno::SRCH))
 }
 
-/// Reads the session, whether or not a process holds it.
+/// Reads the session, even if a process uses it.
 pub(super) fn stored(folder: &Path, name: &str) -> Result<SessionContent, String> {
     let bytes = private_files::read(&file(folder, name, "session"), LONGEST_SESSION)
         .map_err(|error| error.to_string())?;
@@ -133,7 +134,7 @@ pub(super) fn stored(folder: &Path, name: &str) -> Result<SessionContent, String
     }
 }
 
-/// Returns the content from the text of a session behind its first line; `None` if it is incomplete or changed.
+/// Parses the text of a session after its first line; `None` if it is incomplete or changed.
 fn content(text: &str) -> Option<SessionContent> {
     let (sum, summed) = text.split_once('\n')?;
     if sum != sum_of(summed) {
@@ -154,7 +155,7 @@ fn sum_of(text: &str) -> String {
     format!("sum {:08x}", crc32(text.as_bytes()))
 }
 
-/// Removes all but the newest unused sessions, and lock files without a session. What is another user's stays.
+/// Removes all but the newest unused sessions, and lock files without a session. Files of another user stay.
 pub(super) fn prune(folder: &Path) {
     let is_shared = folder.ends_with(SESSIONS);
     let mut left = if is_shared {
@@ -182,13 +183,13 @@ pub(super) fn prune(folder: &Path) {
     }
 }
 
-/// Returns whether there is anything at `path`; a symbolic link to nothing counts too.
+/// Returns true if anything exists at `path`, even a dangling symbolic link.
 fn exists(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok()
 }
 
 impl HeldSession {
-    /// Returns a new session. Its name is the number above the largest in the folder.
+    /// Creates a new session. Its name is one more than the largest number in the folder.
     pub(super) fn new(folder: &Path) -> io::Result<Self> {
         let used = [names(folder, "session")?, names(folder, "lock")?].concat();
         let numbers = used.iter().filter_map(|name| name.parse::<u64>().ok());
@@ -196,7 +197,7 @@ impl HeldSession {
         loop {
             number = number.wrapping_add(1);
             let name = number.to_string();
-            // Another process may have taken the number meanwhile.
+            // Another process may have used the number meanwhile.
             if let Some(held) = Self::lock(folder, &name)?
                 && !exists(&file(folder, &name, "session"))
             {
@@ -205,7 +206,7 @@ impl HeldSession {
         }
     }
 
-    /// Locks the session; `None` if a running process holds it. A file system without locks refuses nobody.
+    /// Locks the session; `None` if a running process uses it. On a file system without locks this always succeeds.
     pub(super) fn lock(folder: &Path, name: &str) -> io::Result<Option<Self>> {
         let path = file(folder, name, "lock");
         let mut options = OpenOptions::new();
@@ -219,10 +220,10 @@ impl HeldSession {
             }
             sleep(Duration::from_millis(1));
         }
-        // The last owner may have removed the file between opening and locking.
+        // The previous owner may have removed the file between opening and locking.
         let is_there = fs::symlink_metadata(&path);
         if is_there.is_ok_and(|there| lock.metadata().is_ok_and(|own| own.ino() == there.ino())) {
-            // The number serves messages of other processes; the lock holds without it.
+            // The process ID is for messages of other processes. The lock works without it.
             let written = lock.set_len(0);
             let _ = written.and_then(|()| write!(lock, "{}", std::process::id()));
             Ok(Some(Self {
@@ -239,9 +240,10 @@ impl HeldSession {
         &self.name
     }
 
-    /// Writes `content`. If writing fails, the old file is unchanged.
+    /// Writes `content`. If this fails, the old file is unchanged.
     pub(super) fn save(&self, content: &SessionContent) -> io::Result<()> {
-        // Somebody may have removed it. Where more is gone, such as the seat of a class, nothing of it is to come back.
+        // The folder may have been removed. If its parent is gone too, such as the seat of a class, do not create it
+        // again.
         if self.folder.parent().is_some_and(Path::is_dir) {
             private_files::make_folder(&self.folder)?;
         }
@@ -257,7 +259,8 @@ impl HeldSession {
         private_files::replace(&path, &text)
     }
 
-    /// Removes the session's files, the lock file last: until then no other process can take the session.
+    /// Removes the session's files. The lock file goes last, because no other process can open the session while it
+    /// exists.
     pub(super) fn remove(self) {
         for kind in ["session", "lock"] {
             let _ = fs::remove_file(file(&self.folder, &self.name, kind));
@@ -266,8 +269,8 @@ impl HeldSession {
 }
 
 impl Drop for HeldSession {
-    /// Unlocks explicitly: closing alone keeps the lock while a child process that is just being started still has the
-    /// file open.
+    /// Unlocks explicitly. Closing the file is not enough while a child process that is just being started still has it
+    /// open.
     fn drop(&mut self) {
         let _ = self.lock.unlock();
     }

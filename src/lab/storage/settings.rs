@@ -1,8 +1,9 @@
-//! Settings of the lab that hold for every run: what dots are made of, colors, frames a second, the mouse.
+//! Settings of the lab that apply to every run: markers, colors, frame rate, the mouse.
 //!
-//! Two files hold them. `settings.toml` beside the sessions is the program's: it is written when the user chooses a setting
-//! in the lab. `config.toml` in the configuration folder is the user's: it wins, and is never written. Both are checked as a
-//! scenario is, by the table [`SETTINGS_KEYS`]; a setting that breaks a rule is not used, the others are.
+//! They are stored in two files. `settings.toml`, in the folder of the sessions, belongs to the program, which writes
+//! it when the user chooses a setting in the lab. `config.toml` in the configuration folder belongs to the user: it has
+//! priority, and the program never writes it. Both are checked as a scenario is, against the table [`SETTINGS_KEYS`]. A
+//! setting that breaks a rule is ignored, and the others are used.
 
 use super::private_files;
 use crate::engine::scenario::kind::ValueKind::{Flag, OneOf, Whole};
@@ -16,7 +17,7 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 pub const SETTINGS_FILE: &str = "settings.toml";
-/// The longest file of settings, bytes.
+/// Maximum size of a settings file, bytes.
 const LONGEST_SETTINGS: usize = 1 << 20;
 
 const SETTINGS_HEADER: &str = "# What was chosen in the lab. gyrolab writes this file; config.toml in the configuration folder is yours, and wins.\n";
@@ -32,15 +33,15 @@ pub const SETTINGS_KEYS: &[SchemaRow] = &[
 
 const SETTINGS_SCHEMA: Schema = Schema(&[SETTINGS_KEYS]);
 
-/// The settings of one file, and what is wrong with it.
+/// The settings of one file, and the problems in it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SettingsFile {
-    /// Those of its settings that break no rule, by the keys of [`SETTINGS_KEYS`].
+    /// The valid settings, under the keys of [`SETTINGS_KEYS`].
     pub settings: Table,
     pub problems: Option<Problems>,
 }
 
-/// Returns the settings of the file `path` whose bytes are `read`; where there is no such file, there are no settings.
+/// Returns the settings of the file `path` with the content `read`. A missing file has no settings.
 fn checked(path: &Path, read: io::Result<Vec<u8>>) -> SettingsFile {
     let origin = path.display().to_string();
     let document = match read {
@@ -69,7 +70,7 @@ fn checked(path: &Path, read: io::Result<Vec<u8>>) -> SettingsFile {
     }
 }
 
-/// Returns the settings in `table` that break no rule, and what is wrong with the others.
+/// Returns the valid settings in `table`, and the problems of the others.
 fn sifted(table: &Table) -> (Table, Problems) {
     let (mut good, mut problems) = (Table::new(), Problems::default());
     for (key, value) in table {
@@ -80,7 +81,7 @@ fn sifted(table: &Table) -> (Table, Problems) {
         let setting = Table::from_iter([(name.to_owned(), value.clone())]);
         match SETTINGS_SCHEMA.check(&setting).or(setting) {
             Ok(setting) => good.extend(setting),
-            // At the key as the file spells it.
+            // Report the problem at the key as spelled in the file.
             Err(found) => found.list.into_iter().for_each(|problem| {
                 problems.add(|| Problem {
                     key: key.clone(),
@@ -93,7 +94,7 @@ fn sifted(table: &Table) -> (Table, Problems) {
 }
 
 /// Returns the user's file: `$XDG_CONFIG_HOME/gyrolab/config.toml`, by default `~/.config/gyrolab/config.toml`; `None`
-/// where the user has no home.
+/// if the user has no home folder.
 pub fn config() -> Option<PathBuf> {
     let folder = Xdg::new().ok()?.config_dir();
     folder
@@ -110,20 +111,20 @@ pub fn read_config(path: &Path) -> SettingsFile {
     checked(path, bytes)
 }
 
-/// Reads the file that the program has written in `folder`, if it is the user's own; no symbolic link is followed.
+/// Reads the program's file in `folder`, if it belongs to the user. Symbolic links are not followed.
 pub fn read(folder: &Path) -> SettingsFile {
     let path = folder.join(SETTINGS_FILE);
     checked(&path, private_files::read(&path, LONGEST_SETTINGS))
 }
 
-/// Replaces the setting `key` in the file of `folder`, which is created if it does not exist. What is wrong in the file is
-/// left out.
+/// Replaces the setting `key` in the file in `folder`, which is created if it does not exist. Invalid settings in the
+/// file are dropped.
 pub fn remember(folder: &Path, key: &str, value: Value) -> Result<(), String> {
     let path = folder.join(SETTINGS_FILE);
     let remembered = || -> io::Result<()> {
         private_files::make_folder(folder)?;
         let mut table = match private_files::read(&path, LONGEST_SETTINGS) {
-            // What is no TOML was reported when the lab was opened.
+            // Invalid TOML was reported when the lab was opened.
             Ok(bytes) => sifted(&toml::from_slice(&bytes).unwrap_or_default()).0,
             Err(error) if error.kind() == ErrorKind::NotFound => Table::new(),
             Err(error) => return Err(error),

@@ -1,6 +1,7 @@
-//! Files and folders that two accounts share through a group, such as the teacher's and the class's. Their modes are set
-//! explicitly, whatever the umask is. A file is read only if it belongs to the user or to the owner of its folder: others
-//! may be able to write in that folder too.
+//! Reads and writes files and folders that two accounts share through a group, such as the teacher's and the class's.
+//!
+//! Their modes are set explicitly, whatever the umask is. A file is read only if it belongs to the user or to the owner
+//! of its folder, because others may be able to write in that folder too.
 
 use super::private_files::{self, refused};
 use std::fs::{self, File, OpenOptions, Permissions};
@@ -9,7 +10,7 @@ use std::os::unix::fs::{MetadataExt, PermissionsExt};
 use std::path::Path;
 use std::time::SystemTime;
 
-/// Creates the folder with this mode if it does not exist; returns whether it did. One that exists keeps its mode.
+/// Creates the folder with `mode` if it does not exist. Returns true if it did. An existing folder keeps its mode.
 pub fn make_folder(path: &Path, mode: u32) -> io::Result<bool> {
     match fs::create_dir(path) {
         Ok(()) => fs::set_permissions(path, Permissions::from_mode(mode)).map(|()| true),
@@ -24,7 +25,10 @@ pub fn make_folder(path: &Path, mode: u32) -> io::Result<bool> {
     }
 }
 
-/// Reads the text of the file at `path`; `None` where there is none. A file of more than `most` bytes is refused.
+/// Reads the text of the file at `path`; `None` if it does not exist.
+///
+/// # Errors
+/// Returns an error if the file has more than `most` bytes or a wrong owner, or if it cannot be read.
 pub fn read(path: &Path, most: usize) -> io::Result<Option<String>> {
     let Some(file) = opened(path)? else {
         return Ok(None);
@@ -37,7 +41,8 @@ pub fn read(path: &Path, most: usize) -> io::Result<Option<String>> {
     text_of(file, most).map(Some)
 }
 
-/// As [`read`], whoever owns the file: for files that both accounts write, in a folder that either may have made.
+/// Does the same as [`read`] for a file with any owner. It is for files that both accounts write, in a folder that
+/// either may have created.
 pub fn read_of_anyone(path: &Path, most: usize) -> io::Result<Option<String>> {
     opened(path)?.map(|file| text_of(file, most)).transpose()
 }
@@ -53,18 +58,18 @@ fn text_of(file: File, most: usize) -> io::Result<String> {
     String::from_utf8(private_files::read_at_most(file, most)?).map_err(io::Error::other)
 }
 
-/// Replaces the file at `path` by one that contains `text`. The file is complete at any moment; where the new one cannot be
-/// written, the old one stays.
+/// Replaces the file at `path` by one that contains `text`. The file is complete at any moment. If the new one cannot
+/// be written, the old one stays.
 pub fn replace(path: &Path, text: &str) -> io::Result<()> {
     private_files::replace_with_mode(path, text, 0o640)
 }
 
-/// Sets the time of the user's own file at `path` to now. It needs no room on the disk.
+/// Sets the modification time of the user's own file at `path` to now. This needs no disk space.
 pub fn touch(path: &Path) -> io::Result<()> {
     private_files::open(path, OpenOptions::new().write(true))?.set_modified(SystemTime::now())
 }
 
-/// Returns when the file was written or touched last; `None` where it is not there.
+/// Returns the time at which the file was last written or touched; `None` if it does not exist.
 pub fn modified(path: &Path) -> Option<SystemTime> {
     fs::symlink_metadata(path).ok()?.modified().ok()
 }

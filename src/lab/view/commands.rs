@@ -1,4 +1,4 @@
-//! The commands that change how the run is looked at, and those that the keys of its panes mean.
+//! Carries out the commands of the view, and returns the commands for the keys of its panes.
 
 use super::swings;
 use super::{FourthStrip, Pane, View};
@@ -16,18 +16,18 @@ use crate::lab::step_pane::StepPane;
 use crate::plot::camera::{Camera, Zoom};
 use toml::Table;
 
-/// The share of the window by which a key moves the cursor, and by which it moves the window.
+/// Shares of the window by which a key moves the cursor, and the window.
 const CURSOR_SHARE: f64 = 0.02;
 const PAN_SHARE: f64 = 0.5;
-/// What is said of residuals that are shown, and that are refused.
+/// The messages about residuals: shown, and refused.
 const RESIDUALS_TEXT: &str = "measured less run, where something was measured; m shows both again";
 const NO_DATA: &str = "there are no measured data beside the run: gyrolab --measured FILE";
 const TURN_DEG: f64 = 10.0;
-/// Swings are counted in words up to this number.
+/// Maximum number of swings that is given in a message.
 const MOST_COUNTED_SWINGS: f64 = 100.0;
 
 impl View {
-    /// Shows the run as `patch`, keys of `[view]` and their values, says.
+    /// Sets the display settings in `patch`, a table with keys of `[view]`.
     pub(in crate::lab) fn look(
         &mut self,
         patch: &Table,
@@ -108,7 +108,7 @@ impl View {
         Ok(Done::SILENT)
     }
 
-    /// Marks the step of the cursor; where another is marked, says what the swings of the tilt between are.
+    /// Marks the step of the cursor. If another step is marked, reports the swings of the tilt between the two.
     fn mark_turn(&mut self, player: &Player) -> ActionResult {
         let none = "the cursor is nowhere: ) and ( put it on a turn of the tilt";
         let here = self.cursor.ok_or(none)?;
@@ -129,16 +129,18 @@ impl View {
         })
     }
 
-    /// Leaves the cursor at its time where the run of `player` has gone over to another scenario: that may be another step.
+    /// Keeps the cursor at its time after the run of `player` has changed to another scenario, in which that time may
+    /// be another step.
     pub(in crate::lab) fn keep_cursor(&mut self, player: &Player) {
         if let (Some(_), Some(cursor)) = (self.cursor, player.cursor()) {
             self.cursor = Some(Simulation::step_at(player.run().scenario(), cursor.time_s));
         }
     }
 
-    /// Turns the camera so that the axle is seen aslant at the start of a run, unless its direction was chosen. Later it stays:
-    /// where it turned at a pause, the axle would seem to jump. So it does for a run that an edit began anew, to be compared
-    /// with the previous.
+    /// Turns the camera so that the axle is seen at an angle at the start of a run, unless its direction was chosen.
+    ///
+    /// Later the camera stays, because the axle would seem to jump if the camera turned at a pause. It also stays for a
+    /// run that an edit restarted, which is compared with the previous run.
     pub(in crate::lab) fn turn_camera(&mut self, player: &Player) {
         if self.look.camera.is_some() {
             return;
@@ -155,8 +157,8 @@ impl View {
         self.cursor.unwrap_or(player.step_number())
     }
 
-    /// The command that shows the whole run in the traces, or a few swings of it where they show the whole run. With a
-    /// `count` it shows so many swings.
+    /// Returns the command that shows the whole run in the traces, or a few swings if the traces show the whole run.
+    /// With a `count`, it shows that number of swings.
     pub fn other_window(&self, count: Option<u64>, player: &Player) -> Result<Command, String> {
         let whole_s = player.whole_s();
         if self.window.has_overview && count.is_none() {
@@ -173,12 +175,12 @@ impl View {
         }
     }
 
-    /// The commands that show the usual window at the run's time.
+    /// Returns the commands that show the default window at the run's time.
     pub fn usual_window(&self) -> Vec<Command> {
         vec![Command::look("detail_s", AUTO), Command::SinceS(None)]
     }
 
-    /// The commands that show half the time about `about_s` (s), or twice the time.
+    /// Returns the commands that halve the window about `about_s` (s), or double it.
     pub fn zoomed_window(
         &self,
         about_s: f64,
@@ -220,7 +222,7 @@ impl View {
         }
     }
 
-    /// The command that shows another fourth strip in the traces.
+    /// Returns the command that moves `times` choices on in the list of fourth strips.
     pub fn other_fourth_strip(&self, times: i32) -> Command {
         let fixed = [
             FourthStrip::Auto,
@@ -252,19 +254,19 @@ impl View {
         Command::Cursor(CursorTo::Place(SeekTarget::Step(step)))
     }
 
-    /// The command that moves the window to later times, `times` halves of its length, or to earlier ones.
+    /// Returns the command that moves the window by `times` halves of its length; negative to earlier times.
     pub fn panned(&self, times: i32) -> Command {
         let by_s = PAN_SHARE * self.window.length_s() * f64::from(times);
         Command::SinceS(Some((self.window.begin_s + by_s).max(0.0)))
     }
 
-    /// The command that doubles the magnification `notches` times, or halves it.
+    /// Returns the command that doubles the magnification `notches` times, or halves it if negative.
     pub fn other_magnification(&self, notches: i32) -> Command {
         let times = self.magnified * 2_f64.powi(notches);
         Command::Magnify(times.clamp(1.0, MOST_MAGNIFIED))
     }
 
-    /// The command that shows the round picture in focus `rungs` larger.
+    /// Returns the command that zooms the picture in focus in by `rungs` zoom levels, or out if negative.
     pub fn other_zoom(&self, rungs: i32) -> Result<Command, String> {
         let now = match self.focus {
             Pane::ThreeD => self.look.zoom.three_d,
@@ -277,7 +279,7 @@ impl View {
         }
     }
 
-    /// The command that shows the round picture in focus `factor` times as large as the whole.
+    /// Returns the command that sets the zoom of the picture in focus to `factor`; 1 shows the whole picture.
     pub fn zoom_to(&self, factor: f64) -> Result<Command, String> {
         let mut zoom = self.look.zoom;
         match self.focus {
@@ -288,7 +290,7 @@ impl View {
         Ok(Command::look("zoom", zoom))
     }
 
-    /// The command that turns the camera as an arrow key does that is pressed `times` times.
+    /// Returns the command that turns the camera by `times` presses of an arrow key.
     pub fn turned(&self, direction: Direction, times: i32) -> Command {
         let degrees = f64::from(signed(direction, times)) * TURN_DEG;
         let mut camera = self.camera;
@@ -300,7 +302,7 @@ impl View {
         Command::look("camera", camera)
     }
 
-    /// The command that fills the screen with the pane in focus, or shows all panes again.
+    /// Returns the command that fills the screen with the pane in focus, or leaves full screen.
     pub fn fill_toggled(&self) -> Command {
         Command::Fill((!self.fullscreen).then_some(self.focus))
     }
@@ -323,7 +325,7 @@ fn fourth_strip_in_words(strip: FourthStrip) -> String {
     words.to_owned()
 }
 
-/// Refuses a length of time that is less than two time steps.
+/// Returns the error for a length of time below two time steps.
 fn too_short(what: &str, least_s: f64) -> ActionResult {
     Err(format!("the {what} two time steps at least: {least_s} s").into())
 }

@@ -1,10 +1,10 @@
-//! Which pane has the focus, and whether it fills the screen.
+//! The focus: the pane that has it, and full screen.
 
 use super::{Pane, View};
 use crate::lab::command::Command;
 
 impl View {
-    /// The commands that show `pane`, one that is shown on request, beside another one, or take it away.
+    /// Returns the commands that show `pane`, which is shown on request only, or hide it.
     pub(in crate::lab) fn toggled(&self, pane: Pane) -> Vec<Command> {
         let with_it = [Pane::Traces, Pane::ThreeD, pane];
         let mut commands = Vec::new();
@@ -24,14 +24,15 @@ impl View {
         commands
     }
 
-    /// Fills the screen with `pane` and moves the focus there; with `None` shows all panes again.
+    /// Fills the screen with `pane` and moves the focus there. With `None`, leaves full screen.
     pub fn fill(&mut self, pane: Option<Pane>) {
         self.fullscreen = pane.is_some();
         self.focus_on(pane.unwrap_or(self.focus));
         self.is_touched |= self.fullscreen;
     }
 
-    /// Whether the title of `pane` shows the focus: not before the user has turned to a pane.
+    /// Returns true if the title of `pane` is marked as having the focus. It is not marked before the user has moved to
+    /// a pane.
     pub fn marks_focus_of(&self, pane: Pane) -> bool {
         self.focus == pane && self.is_touched
     }
@@ -40,8 +41,10 @@ impl View {
         self.fullscreen && self.focus == pane
     }
 
-    /// The panes that can have the focus, from left to right. One that is not on the screen comes there with the focus. Beside
-    /// a page they are those that it names, and the one that the user has turned to.
+    /// Returns the panes that can have the focus, from left to right. A pane that is not on the screen appears with the
+    /// focus.
+    ///
+    /// Next to a page, these are the panes that the page names and the one that the user has moved to.
     fn focusable(&self) -> Vec<Pane> {
         Pane::ALL
             .into_iter()
@@ -60,7 +63,7 @@ impl View {
         }
     }
 
-    /// Moves the focus to the next pane that can have it, or to the one before; after the last comes the first.
+    /// Moves the focus to the next pane that can have it, or to the previous one. The order is circular.
     pub fn shift_focus(&mut self, forward: bool) {
         let panes = self.focusable();
         let count = panes.len();
@@ -74,7 +77,7 @@ impl View {
         self.is_touched = true;
     }
 
-    /// Moves the focus to `pane`, which fills the screen if it may not stand beside others.
+    /// Moves the focus to `pane`. It fills the screen if it cannot be shown next to others.
     pub fn turn_to(&mut self, pane: Pane) {
         let is_filled = self.is_filled_by(pane);
         self.focus_on(pane);
@@ -82,8 +85,8 @@ impl View {
         self.is_touched = true;
     }
 
-    /// Moves the focus to the 3-D view, which takes the place of the path from above where there is room for one; or from
-    /// there back, in a lesson to its page.
+    /// Moves the focus to the 3-D view, which replaces the path from above if there is room for only one. From the 3-D
+    /// view, moves the focus back; in a lesson, to its page.
     pub(in crate::lab) fn toggle_three_d(&mut self) {
         if self.focus == Pane::ThreeD {
             self.turn_to(Pane::Above);
@@ -93,7 +96,7 @@ impl View {
         }
     }
 
-    /// Moves the focus from the parameters to the first other pane that can have it; returns whether it did.
+    /// Moves the focus from the values to the first other pane that can have it. Returns true if it did.
     pub fn leave_parameters(&mut self) -> bool {
         let mut others = self.focusable().into_iter();
         let other = others.find(|&pane| pane != Pane::Parameters);
@@ -105,8 +108,9 @@ impl View {
         true
     }
 
-    /// Moves the focus to the page, where there is one, once no pane fills the screen any more. On a screen that has no place
-    /// for the values beside the run, they fill it: leaving them shows the run again.
+    /// Moves the focus to the page, if there is one, after full screen was left.
+    ///
+    /// On a screen without room for the values next to the run, the values fill it. Leaving them shows the run again.
     pub(in crate::lab) fn leave_filled(&mut self) {
         self.turn_to_sheet();
         if !self.side_by_side.contains(&Pane::Parameters) {
@@ -114,7 +118,7 @@ impl View {
         }
     }
 
-    /// Moves the focus to the first pane that can have it, if the one in focus no longer can.
+    /// Moves the focus to the first pane that can have it, if the present one no longer can.
     pub fn keep_focus(&mut self) {
         self.keep_focus_among(&self.focusable());
         if ![Pane::Lesson, Pane::Parameters].contains(&self.focus) && !self.fullscreen {

@@ -1,8 +1,8 @@
-//! How a run is shown: which panes, which of them has the focus, how much time the traces show, and which dots and
-//! colors. `tui` draws accordingly. No number of a run depends on it.
+//! How a run is shown: the panes and the focus among them, the time that the traces show, markers and colors. `tui`
+//! draws accordingly. No number of a run depends on it.
 //!
-//! [`pane`] names the parts of the screen, `focus` moves between them; `commands` carries out the commands of the view;
-//! [`theme`] has the choices of markers and colors, [`step`] the pages of the step pane.
+//! [`pane`] names the parts of the screen, and `focus` moves between them. `commands` carries out the commands of the
+//! view. [`theme`] contains the choices of markers and colors, and [`step`] the pages of the step pane.
 
 mod commands;
 mod focus;
@@ -26,57 +26,60 @@ use theme::{Marker, Theme};
 use toml::{Table, Value};
 use window::TimeWindow;
 
-/// The panes of a bare screen, where none are chosen.
+/// The panes of a bare screen, unless others are chosen.
 const BARE: [Pane; 2] = [Pane::Traces, Pane::Above];
-/// How many swings the traces show where they have room for them.
+/// Number of swings in the traces if there is room for them.
 pub const USUAL_SWINGS: usize = 8;
-/// Frames a second at most, where nothing is chosen.
+/// Default maximum frame rate, frames per second.
 pub const FPS: u32 = 15;
 
-/// What is looked at: what `[view]` of a scenario, a session and commands say of the screen. serde reads and writes it
-/// under the keys of `[view]`, and [`patched`](Self::patched) with some of them makes another one.
+/// The display settings of a run, from `[view]` of a scenario, from a session and from commands. Serde reads and writes
+/// them under the keys of `[view]`.
+///
+/// [`patched`](Self::patched) returns new settings with some of the keys changed.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ViewSettings {
-    /// Length of time that the overview spans, s; `None`: the whole run.
+    /// Time span of the overview, s; `None` for the whole run.
     pub window_s: Option<f64>,
-    /// Length of time that the traces show, s; `None`: a few swings, or the whole run.
+    /// Length of the traces, s; `None` for a few swings, or the whole run.
     #[serde(deserialize_with = "where_known")]
     pub detail_s: Option<f64>,
-    /// The strip below those of x, y and z.
+    /// The strip below the strips of x, y and z.
     pub detail_of: FourthStrip,
-    /// Least and greatest value that it shows, in its unit; `None`: those of the run.
+    /// Minimum and maximum of that strip, in its unit; `None` for the range of the run.
     #[serde(deserialize_with = "where_known")]
     pub detail_range: Option<[f64; 2]>,
-    /// Least and greatest z that the strip of z shows, m; `None`: those of the run.
+    /// Minimum and maximum of the strip of z, m; `None` for the range of the run.
     #[serde(deserialize_with = "where_known")]
     pub z_range_m: Option<[f64; 2]>,
-    /// Where the 3-D view is looked at from, if that was chosen. Otherwise it is turned so that the axle is seen aslant.
+    /// The chosen camera of the 3-D view. With `None` the camera is turned so that the axle is seen at an angle.
     pub camera: Option<Camera>,
-    /// How much larger than the whole the round pictures are shown.
+    /// Magnification of the path from above and of the 3-D view; 1 shows the whole picture.
     pub zoom: Zoom,
-    /// The panes that share the screen; if empty, as many as there is room for.
+    /// The panes that share the screen. If empty, as many as there is room for.
     pub show: Vec<Pane>,
     pub hide: Vec<HideablePart>,
-    /// The page that the step pane shows.
+    /// The page of the step pane.
     pub phase: StepPageChoice,
-    /// How many rows of a table the step pane adds up; `None`: all.
+    /// Number of table rows that the step pane adds up; `None` for all.
     #[serde(deserialize_with = "where_known")]
     pub sum_to: Option<usize>,
-    /// The line about what there is to see, if a command has set it; otherwise the scenario's line is shown.
+    /// The line about what to look at, if a command has set it. Otherwise the scenario's line is shown.
     pub look_at: Option<String>,
-    /// The line about what to try after the run, if a command has set it; otherwise the scenario's or the preset's.
+    /// The line about what to try after the run, if a command has set it. Otherwise the line of the scenario or the
+    /// preset is shown.
     pub next: Option<String>,
-    /// Whether the screen is bare: few panes, and nothing around them but title and time.
+    /// True for a bare screen: few panes, with only title and time around them.
     pub bare: bool,
-    /// Whether what was measured is shown less what the run says.
+    /// True to show residuals: measured values minus the run.
     pub residuals: bool,
 }
 
-/// The strip of the traces below those of x, y and z.
+/// The strip of the traces below the strips of x, y and z.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FourthStrip {
-    /// The distance from the exact motion if that is shown, or else the tilt; on a large screen only.
+    /// The distance from the exact motion if that is shown, or else the tilt. Only a large screen has this strip.
     #[default]
     Auto,
     None,
@@ -84,14 +87,14 @@ pub enum FourthStrip {
     Y,
     Z,
     Tilt,
-    /// From the exact motion.
+    /// The distance from the exact motion.
     Distance,
-    /// The column of the run's CSV with this name.
+    /// The column with this name in the run's CSV.
     Column(&'static str),
 }
 
 impl FourthStrip {
-    /// Those that are no column of the CSV, and x, y, z and the tilt, with the names that files give them.
+    /// The strips with names of their own in files. All others are CSV columns.
     const NAMED: [(Self, &str); 7] = [
         (Self::Auto, AUTO),
         (Self::None, "none"),
@@ -102,7 +105,7 @@ impl FourthStrip {
         (Self::Distance, "distance"),
     ];
 
-    /// Returns the name that files give it.
+    /// Returns its name in files.
     pub fn name(self) -> &'static str {
         let mut named = Self::NAMED.iter();
         match self {
@@ -113,7 +116,7 @@ impl FourthStrip {
         }
     }
 
-    /// Returns the quantity of its column; `None` for what is recorded in any case.
+    /// Returns the quantity of its column; `None` for strips that are always recorded.
     pub fn column(self) -> Option<&'static RunQuantity> {
         match self {
             Self::Column(name) => RunQuantity::find(name),
@@ -140,36 +143,39 @@ impl<'de> Deserialize<'de> for FourthStrip {
     }
 }
 
-/// What a value says, or `None` for a word such as "auto" or "all".
+/// Deserializes a value, or `None` from a word such as "auto" or "all".
 fn where_known<'de, T: DeserializeOwned, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<Option<T>, D::Error> {
     Ok(Value::deserialize(deserializer)?.try_into().ok())
 }
 
-/// Whether `[view]` has the key or table `name`.
+/// Returns true if `[view]` has the key or table `name`.
 pub fn is_key(name: &str) -> bool {
     let path = format!("view.{name}");
     keys::find(&path).is_ok() || keys::SCENARIO.is_table(&path)
 }
 
 impl ViewSettings {
-    /// Whether `key` of `[view]` is of a look. Speed, measured data, exact motion and the pane that fills the screen are
-    /// not.
+    /// Returns true if `key` of `[view]` is a field of this type. Speed, measured data, exact motion and the
+    /// full-screen pane are not.
     pub fn has(key: &str) -> bool {
         const OTHER_VIEW_KEYS: [&str; 4] = ["speed", "exact", "measured", "fill"];
         !OTHER_VIEW_KEYS.contains(&key) && is_key(key)
     }
 
-    /// The look with the values of `patch`, a table as `[view]` is one.
+    /// Returns the settings changed by `patch`, a table with keys of `[view]`.
+    ///
+    /// # Errors
+    /// Returns an error if a value of `patch` is not valid.
     pub fn patched(&self, patch: &Table) -> Result<Self, String> {
         let mut all = Table::try_from(self).map_err(|error| error.to_string())?;
         all.extend(patch.clone());
         if patch.contains_key("phase") && !patch.contains_key("sum_to") {
-            all.remove("sum_to"); // all rows of the table on another page
+            all.remove("sum_to"); // another page adds up all rows of its table
         }
         if patch.contains_key("detail_of") && !patch.contains_key("detail_range") {
-            all.remove("detail_range"); // it is of another column
+            all.remove("detail_range"); // it belongs to the previous column
         }
         all.try_into()
             .map_err(|error: toml::de::Error| error.message().to_owned())
@@ -180,49 +186,49 @@ impl ViewSettings {
 pub struct View {
     pub look: ViewSettings,
     pub focus: Pane,
-    /// Whether the user turned to it, or pressed a key of its own: the footer then names those.
+    /// True if the user moved the focus there or pressed a key of that pane. The footer then lists the keys of the
+    /// pane.
     pub is_touched: bool,
     pub fullscreen: bool,
     pub marker: Marker,
     pub theme: Theme,
-    /// The time that the traces show.
+    /// The time window of the traces.
     pub window: TimeWindow,
-    /// How many swings of the run the traces show, if it has more.
+    /// Maximum number of swings in the traces.
     pub swings: usize,
-    /// Time at the left edge of the traces, s; `None`: they follow the run.
+    /// Time at the left edge of the traces, s. With `None` they follow the run.
     pub since_s: Option<f64>,
-    /// How many times the values of the traces are magnified: about the value at the cursor, or else about the run's
-    /// present one.
+    /// Magnification of the traces' values, about the value at the cursor, or else about the present value of the run.
     pub magnified: f64,
-    /// The step at which the traces are read off.
+    /// The step at which the traces are read.
     pub cursor: Option<u64>,
-    /// The step of a turn of the tilt from which swings are counted.
+    /// The step of a turning point of the tilt from which swings are counted.
     pub swing_mark: Option<u64>,
-    /// Where the 3-D view is looked at from.
+    /// The camera of the 3-D view.
     pub camera: Camera,
     /// The phase to which the step pane returns from its last page.
     pub page_before: StepPageChoice,
     pub pointed_at: Option<Pane>,
-    /// The pane beside the text where there is room for one: the last that had the focus, or the first that was chosen.
+    /// The pane next to the text if there is room for only one: the last with the focus, or the first that was chosen.
     pub beside: Option<Pane>,
-    /// From above or 3-D: the one that had the focus last, which is shown where there is room for one.
+    /// The path from above or the 3-D view: the last with the focus. It is shown if there is room for only one.
     pub path_view: Pane,
-    /// The text beside the panes.
+    /// The text next to the panes.
     pub sheet: Option<Arc<Sheet>>,
-    /// The first row of the text that is shown; `None`: the row that brings its important paragraph into view.
+    /// The first visible row of the text; `None` for the row that brings its important paragraph into view.
     pub sheet_scrolled: Option<usize>,
-    /// Whether measured data stand beside the run: a line then tells of them.
+    /// True if measured data are shown with the run. A line then describes them.
     pub measured: bool,
     pub fps: u32,
-    /// Whether the lab listens to the mouse; otherwise the terminal has it, to select text.
+    /// True if the lab receives the mouse. Otherwise the terminal uses it to select text.
     pub mouse: bool,
-    /// The panes that stand side by side on the screen, as it is now, while none fills it: from left to right, in the
-    /// order in which the focus goes through them. Until the screen is known, all panes.
+    /// The panes that fit side by side on the present screen, from left to right, in the order of the focus. They
+    /// include all panes until the size of the screen is known.
     pub side_by_side: Vec<Pane>,
 }
 
 impl View {
-    /// The view with which a lab starts: the first pane has the focus, and the traces show the run of `scenario`.
+    /// Creates the view of a new lab: the first pane has the focus, and the traces show the run of `scenario`.
     pub fn new(scenario: &Scenario, marker: Marker, theme: Theme) -> Self {
         let mut view = Self {
             look: ViewSettings::default(),
@@ -253,8 +259,9 @@ impl View {
         view
     }
 
-    /// Shows `sheet` beside the panes, or none. It stays scrolled as it is where title and page are the same. Returns whether
-    /// it is another one.
+    /// Shows `sheet` next to the panes, or removes the sheet. Returns true if that is a change.
+    ///
+    /// The sheet stays scrolled if title and page are the same.
     pub(super) fn set_sheet(&mut self, sheet: Option<Sheet>) -> bool {
         if self.sheet.as_deref() == sheet.as_ref() {
             return false;
@@ -271,14 +278,14 @@ impl View {
         true
     }
 
-    /// Scrolls the sheet by `rows`; it is `shown` rows high of `all`, and begins at the row `first` now.
+    /// Scrolls the sheet by `rows`. It has `all` rows, and `shown` of them are visible from the row `first` on.
     pub fn scroll_sheet(&mut self, rows: isize, first: usize, shown: usize, all: usize) {
         let last = all.saturating_sub(shown);
         let to = first.saturating_add_signed(rows).min(last);
         self.sheet_scrolled = Some(to);
     }
 
-    /// Whether a digit is for the sheet, which has the focus.
+    /// Returns true if the sheet has the focus and digits select or begin an answer in it.
     pub fn sheet_takes_digits(&self) -> bool {
         let takes = self.sheet.as_ref().is_some_and(|sheet| sheet.takes_digits);
         takes && self.focus == Pane::Lesson
@@ -291,18 +298,18 @@ impl View {
         }
     }
 
-    /// The panes that stand side by side on the screen while none fills it, from left to right.
+    /// Sets the panes that fit side by side on the screen, from left to right.
     pub fn set_side_by_side(&mut self, panes: Vec<Pane>) {
         self.side_by_side = panes;
         self.keep_focus();
     }
 
-    /// Changes to another scenario: the traces show its run, and the rest is as its `[view]` says.
+    /// Adapts the view to another scenario: the traces show its run, and the rest follows its `[view]`.
     pub fn fit(&mut self, scenario: &Scenario) {
         let mut patch = scenario.file.view.clone().unwrap_or_default();
-        patch.retain(|key, _| !["look_at", "next"].contains(&key)); // the scenario's, which may be edited
+        patch.retain(|key, _| !["look_at", "next"].contains(&key)); // read from the scenario, where they may be edited
         let usual = ViewSettings {
-            // What of these was chosen suits any run.
+            // The user's choices of these suit any run.
             camera: self.look.camera,
             zoom: self.look.zoom,
             bare: self.look.bare,
@@ -320,14 +327,14 @@ impl View {
         }
     }
 
-    /// Lets the camera turn to the axle once more, unless its direction was chosen.
+    /// Lets the camera turn to the axle again, unless its direction was chosen.
     pub(in crate::lab) fn forget_camera(&mut self) {
         if self.look.camera.is_none() {
             self.camera = Camera::default();
         }
     }
 
-    /// Shows the run as `look` says. A pane that is shown on request has the focus when it comes.
+    /// Sets the display settings. A pane that is newly shown on request gets the focus.
     pub fn set_look(&mut self, look: ViewSettings) {
         let before = std::mem::replace(&mut self.look, look);
         if before.show != self.look.show {
@@ -335,7 +342,7 @@ impl View {
             let mut shown = self.look.show.iter();
             let path_view = shown.find(|pane| [Pane::Above, Pane::ThreeD].contains(pane));
             self.path_view = path_view.copied().unwrap_or(Pane::Above);
-            self.side_by_side = self.to_show(); // until the lab is fitted to its screen again
+            self.side_by_side = self.to_show(); // until the lab is fitted to the screen again
         }
         let mut shown = self.look.show.iter();
         let requested = shown.find(|pane| pane.is_on_request() && !before.show.contains(pane));
@@ -348,23 +355,23 @@ impl View {
             self.page_before = before.phase;
         }
         self.camera = self.look.camera.unwrap_or(self.camera);
-        // The usual place is no choice.
+        // The default camera does not count as a choice.
         self.look
             .camera
             .take_if(|camera| *camera == Camera::default());
     }
 
-    /// Whether `part` is hidden: what answers an open question is, too.
+    /// Returns true if `part` is hidden. Parts that reveal the answer to an open question are hidden too.
     pub fn hides(&self, part: HideablePart) -> bool {
         self.look.hide.contains(&part) || part.is_answer() && self.hides_answers()
     }
 
-    /// The answer that the page beside the run waits for.
+    /// Returns the kind of answer for which the page next to the run waits.
     pub fn asked(&self) -> Option<AskedAnswer> {
         self.sheet.as_ref()?.asked
     }
 
-    /// Whether the page beside the run hides what answers its question.
+    /// Returns true if the page next to the run hides the parts that reveal its answer.
     pub fn hides_answers(&self) -> bool {
         let page = self.sheet.as_ref();
         page.is_some_and(|page| page.asked.is_some() || page.is_round_open)
@@ -375,7 +382,7 @@ impl View {
         (self.names(pane) || is_beside_page) && !self.hides(HideablePart::Pane(pane))
     }
 
-    /// Whether `pane` is among those that were chosen, or are shown where none were.
+    /// Returns true if `pane` was chosen, or is shown by default if none were chosen.
     fn names(&self, pane: Pane) -> bool {
         match (self.look.show.is_empty(), self.look.bare) {
             _ if pane == Pane::Lesson => self.sheet.is_some(),
@@ -385,8 +392,8 @@ impl View {
         }
     }
 
-    /// Whether `pane` stands beside a page that does not name it: the run is always to be seen there, and whatever the user
-    /// has turned to.
+    /// Returns true if `pane` is shown next to a page that does not name it. The run is always shown there, and so is
+    /// the pane that the user moved to.
     fn is_beside_page(&self, pane: Pane) -> bool {
         match pane {
             Pane::Lesson | Pane::Step => false,
@@ -398,7 +405,7 @@ impl View {
         }
     }
 
-    /// Whether `pane` is on the screen, if that has room for it.
+    /// Returns true if `pane` is on the screen, provided that there is room for it.
     pub fn shows(&self, pane: Pane) -> bool {
         self.is_filled_by(pane) || (!self.fullscreen && self.may_show(pane))
     }

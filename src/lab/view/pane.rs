@@ -1,4 +1,4 @@
-//! The parts of the screen, by the names that commands, `[view]` and sessions have for them.
+//! The parts of the screen, with their names in commands, `[view]` and sessions.
 
 pub use crate::engine::scenario::screen::Pane;
 use serde::{Deserialize, Serialize};
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub enum HideablePart {
     Health,
     Predicted,
-    /// The line that says what there is to see.
+    /// The line about what to look at.
     LookAt,
     /// The arrows of the 3-D view.
     Arrows,
@@ -17,7 +17,7 @@ pub enum HideablePart {
 }
 
 impl HideablePart {
-    /// Returns whether it can answer a question of a lesson.
+    /// Returns true if it can reveal the answer to a question of a lesson.
     pub fn is_answer(self) -> bool {
         matches!(self, Self::Health | Self::Predicted)
     }

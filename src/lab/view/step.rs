@@ -1,4 +1,4 @@
-//! What the step pane shows of the time step taken last: one of its phases, or why the axle goes sideways.
+//! The pages of the step pane: the phases of the latest time step, and the explanation of the sideways motion.
 
 use crate::engine::scenario::file::Choice;
 use crate::engine::scenario::screen::{LAST_PHASE, WHY};
@@ -10,12 +10,12 @@ use serde::{Deserialize, Deserializer, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(into = "Choice")]
 pub enum StepPageChoice {
-    /// The phase of this number, from 1; the last one where there are fewer.
+    /// The phase with this number, from 1, or the last one if there are fewer.
     Number(usize),
-    /// The first phase of this name; the first phase of all if no phase has it.
+    /// The first phase with this name, or the first phase if none has it.
     Named(PhaseName),
     Last,
-    /// Why sideways, not down?
+    /// Why the axle moves sideways, not down.
     Why,
 }
 
@@ -53,7 +53,7 @@ impl From<StepPageChoice> for Choice {
 }
 
 impl StepPageChoice {
-    /// The index of its phase in `workings`; `None` for the page that shows no phase, and where there are no phases.
+    /// Returns the index of its phase in `workings`; `None` for the page without a phase, and if there are no phases.
     pub fn index(self, workings: &Workings) -> Option<usize> {
         let last = workings.phases().count().checked_sub(1)?;
         match self {

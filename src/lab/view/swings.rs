@@ -1,10 +1,12 @@
-//! Swings of the tilt, counted from one of its turns to another.
+//! Describes the swings of the tilt between two of its turning points.
 
 use crate::engine::analysis::readouts::Readouts;
 use crate::engine::text::number::{short, uncertain};
 
-/// Number, period and mean of the swings between `turns`, the time, s, and the tilt, degrees, of each, beside theory's in
-/// `readouts`; `None` for fewer than two turns.
+/// Returns a message with number, period and mean of the swings between `turns`, and with the theory in `readouts`;
+/// `None` for fewer than two turning points.
+///
+/// `turns` contains the time (s) and the tilt (degrees) of each turning point.
 pub(super) fn in_words(
     turns: &[(f64, f64)],
     time_step_s: f64,
@@ -20,7 +22,7 @@ pub(super) fn in_words(
         return None;
     }
     let swings = 0.5 * parts;
-    // Each turn is known to a time step: it is off by dt/sqrt(12) in the mean square.
+    // Each turning point is known to a time step. Its error is dt/sqrt(12) (root mean square).
     let period_sigma_s = time_step_s / 6.0_f64.sqrt() / swings;
     let mean_deg = middles.iter().sum::<f64>() / parts;
     let squares = middles.iter().map(|it| (it - mean_deg) * (it - mean_deg));

@@ -1,22 +1,22 @@
-//! The user's choice of markers and colors. `tui` has the dots and colors themselves.
+//! The user's choice of markers and colors. The characters and colors themselves are in `tui`.
 
-/// The characters that dots are drawn with.
+/// The characters with which dots are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Marker {
     /// Two by four dots in a cell.
     Braille,
-    /// Two by four dots in a cell, without gaps between them (Unicode 16). Few fonts have them.
+    /// Two by four dots in a cell, without gaps (Unicode 16). Few fonts have these characters.
     Octant,
     /// Two halves of a cell, one above the other.
     HalfBlock,
     /// One round point in a cell.
     Dot,
-    /// One ASCII character in a cell; texts and borders are ASCII then too.
+    /// One ASCII character in a cell. Texts and borders are ASCII too.
     Ascii,
 }
 
 impl Marker {
-    /// Every marker, in the order in which the settings go through them.
+    /// All markers, in the order of the settings dialog.
     pub const ALL: [Self; 5] = [
         Self::Braille,
         Self::Octant,
@@ -25,8 +25,9 @@ impl Marker {
         Self::Ascii,
     ];
 
-    /// Whether a terminal that shows `other` shows this one too. Octants need most, then Braille, then half blocks and
-    /// points, then ASCII.
+    /// Returns true if a terminal that can show `other` can show this marker too.
+    ///
+    /// Octants need the most, then Braille, then half blocks and points, then ASCII.
     pub fn needs_no_more_than(self, other: Self) -> bool {
         self.need() <= other.need()
     }
@@ -50,7 +51,7 @@ impl Marker {
         }
     }
 
-    /// A wave drawn with it, which shows whether the terminal's font has its characters.
+    /// Returns a wave drawn with the marker. It shows whether the terminal's font has the characters.
     pub fn preview(self) -> &'static str {
         match self {
             Self::Braille => "⠔⠉⠑⢄⣀⠤",
@@ -79,10 +80,10 @@ impl Background {
     }
 }
 
-/// How many colors a screen has, from the fewest.
+/// The number of colors of a screen, in ascending order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Palette {
-    /// No color: roles differ by bold, faint, underlined and reversed.
+    /// No color: roles differ by bold, faint, underline and reverse video.
     Plain,
     /// The 16 colors that every color terminal has.
     Ansi16,
@@ -95,7 +96,7 @@ pub enum Palette {
 impl Palette {
     pub const ALL: [Self; 4] = [Self::Plain, Self::Ansi16, Self::Xterm256, Self::TrueColor];
 
-    /// Its word in `--color` and in the settings.
+    /// Returns its name in `--color` and in the settings.
     pub fn name(self) -> &'static str {
         match self {
             Self::Plain => "never",

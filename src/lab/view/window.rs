@@ -1,21 +1,21 @@
-//! The time that the traces show.
+//! The time window of the traces.
 
 use crate::engine::recording::{Extent, RecordedCurve};
 
-/// The window of the traces: all strips share it. From above and in 3-D, the path in the window is bright.
+/// The time window shared by all strips. In the views from above and in 3-D, the path within the window is bright.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeWindow {
     pub begin_s: f64,
     pub end_s: f64,
-    /// Period of the swings that the window was chosen by, s; `None` if nothing swings.
+    /// Period of the swings for which the window was chosen, s; `None` if nothing swings.
     pub swing_s: Option<f64>,
-    /// Whether the run is longer than the window, so that an overview of the whole run is shown below the panes.
+    /// True if the run is longer than the window, so that an overview of the whole run is shown below the panes.
     pub has_overview: bool,
-    /// Whether the window is replaced only once a second, because its time passes too fast to be followed.
+    /// True if the window stays fixed and changes only once a second, because it passes too fast to be followed.
     pub is_held: bool,
-    /// The range of values that each strip shows, in the order of [`RecordedCurve::ALL`]: m, and degrees for the tilt.
+    /// Value range of each strip, in the order of [`RecordedCurve::ALL`]: m; degrees for the tilt.
     pub ranges: [Extent; 4],
-    /// The time that the overview spans, s, and its range of z, m.
+    /// The time span of the overview, s. `overview` is its range of z, m.
     pub span_begin_s: f64,
     pub span_end_s: f64,
     pub overview: Extent,

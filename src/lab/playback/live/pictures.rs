@@ -1,5 +1,5 @@
-//! What the pictures of a run are drawn from: its curves over time, its path, where it stands, and the
-//! exact motion beside it.
+//! The data from which the pictures of a run are drawn: its curves over time, its path, its present sample, and the
+//! exact motion.
 
 use super::PathFromAbove;
 use crate::engine::recording::{RecordedSample, Recording};
@@ -10,19 +10,19 @@ use nalgebra::Vector3;
 use std::cmp::Ordering;
 use std::sync::Arc;
 
-/// The data of the pictures of one run; to be shown every step.
+/// The data of the pictures of one run. Every step must be passed to it.
 pub(super) struct Pictures {
     pub now: RecordedSample,
     pub recording: Recording,
     pub path: PathFromAbove,
-    /// The last step in the path. It is later than the present step while the run is still stepping towards it.
+    /// The last step in the path. It is later than the present step while the run seeks it.
     pub followed_to: u64,
     pub ahead: Option<Ahead>,
-    /// The last state in which the body was a rigid one, and its step; `None` where it still is one.
+    /// The last state in which the body was rigid, and its step; `None` if it still is rigid.
     pub last_whole: Option<(u64, State)>,
 }
 
-/// The pictures of a run up to the furthest step it has been at, while it stands at an earlier one.
+/// The pictures of a run up to the furthest step that it has reached, while it is at an earlier step.
 pub(super) struct Ahead {
     pub step: u64,
     pub recording: Recording,
@@ -44,7 +44,7 @@ impl Pictures {
         pictures
     }
 
-    /// Adds `step`, which the run has taken.
+    /// Adds `step`, the latest step of the run.
     #[inline]
     pub fn record(&mut self, step: &Step) {
         self.now = recorded_sample(step);
@@ -55,7 +55,7 @@ impl Pictures {
         self.keep(step.number());
     }
 
-    /// Adds the present sample, which is at `step`, to the recording and the path, unless they have it already.
+    /// Adds the present sample, at `step`, to the recording and the path, unless they contain it already.
     pub fn keep(&mut self, step: u64) {
         if step >= self.recording.samples() {
             self.recording.push(&self.now);
@@ -73,14 +73,14 @@ impl Pictures {
         }
     }
 
-    /// Makes `step`, to which the run has returned, the present one.
+    /// Sets `step`, to which the run has returned, as the present step.
     pub fn return_to(&mut self, step: &Step) {
         self.now = recorded_sample(step);
         self.last_whole.take_if(|(at, _)| *at >= step.number());
     }
 
-    /// Goes back, or forward, to `step`, which the run has reached, from the present step `here`. Returns the latest step
-    /// from which it has to be shown the steps up to there again.
+    /// Seeks `step`, which the run has reached, from the present step `here`. Returns the latest step from which the
+    /// pictures must be shown all steps again.
     pub fn begin_seek(&mut self, step: u64, here: u64) -> u64 {
         let ahead = self.ahead.get_or_insert_with(|| Ahead {
             step: here,
@@ -97,8 +97,8 @@ impl Pictures {
         step.min(recorded.saturating_sub(1))
     }
 
-    /// Cuts the recording back to at most `samples`, and so far that filling it again makes it fine enough. Returns how
-    /// many samples it keeps.
+    /// Cuts the recording back to at most `samples`, and further if needed for a fine enough recording after it is
+    /// refilled. Returns the number of samples that remain.
     fn cut_back_recording(&mut self, samples: u64) -> u64 {
         let kept = self.recording.cut_back(samples);
         match self.recording.coarse_since() {
@@ -107,8 +107,7 @@ impl Pictures {
         }
     }
 
-    /// Ends at the present step, `step`, where it was on its way to a later one. Where the recording lacks steps, it is
-    /// filled with the present sample.
+    /// Ends a seek at the present step, `step`. If the recording lacks steps, it is filled with the present sample.
     pub fn cancel_seek(&mut self, step: u64) {
         self.path.cut_back(step);
         self.path.continue_from(&self.now.position);
@@ -132,18 +131,18 @@ fn recorded_sample(step: &Step) -> RecordedSample {
     }
 }
 
-/// The most samples of the exact motion that one call of [`advance_to`](Overlay::advance_to) computes. If the run is further
-/// ahead, only every second, third, ... step is sampled.
+/// Maximum number of samples of the exact motion that one call of [`advance_to`](Overlay::advance_to) computes. If the
+/// run is further ahead, only every second, third, ... step is sampled.
 const MOST_SAMPLES: f64 = 20_000.0;
 
 pub struct Overlay {
     truth: Truth,
     traced: Vector3<f64>,
-    /// Least time between two samples, s.
+    /// Minimum time between two samples, s.
     time_step_s: f64,
     pub now: RecordedSample,
     pub recording: Recording,
-    /// The distance of the run's traced point from that of the exact motion, m, as its curve x.
+    /// The distance of the traced point from the exact motion, m, recorded as the curve x.
     pub distance: Recording,
     pub path: PathFromAbove,
     has_ended: bool,
@@ -207,7 +206,7 @@ impl Overlay {
         self.now = sample;
     }
 
-    /// Records how far the run is from the present sample, if the run's sample at that time is known.
+    /// Records the distance of the run from the present sample, if the run's sample at that time is known.
     fn record_distance(&mut self, run: &Recording) {
         let now_s = self.now.time_s;
         let half_s = 0.5 * self.time_step_s;
@@ -219,12 +218,12 @@ impl Overlay {
         }
     }
 
-    /// Returns true if it can go on from a run that is at `time_s` (s): it has not come further, nor ended.
+    /// Returns true if it can continue from a run that is at `time_s` (s): it has neither passed that time nor ended.
     pub fn can_continue_at(&self, time_s: f64) -> bool {
         !self.has_ended && self.now.time_s <= time_s
     }
 
-    /// Returns true if it has not come as far as `time_s` (s), and goes on.
+    /// Returns true if it has not reached `time_s` (s) and has not ended.
     pub fn is_before(&self, time_s: f64) -> bool {
         !self.has_ended && self.now.time_s < time_s
     }
