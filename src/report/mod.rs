@@ -3,8 +3,10 @@
 //! It uses [`plot`](crate::plot) to draw, and [`studies`](crate::studies) and the [`engine`](crate::engine) to compute. A new
 //! kind of figure, or a new part of a write-up, belongs here.
 //!
+//! - [`document`]: documents of text, tables and figures, written as Markdown and as TeX.
 //! - [`figure`]: pictures of runs and of tables, and the same pictures drawn again from their files.
 //! - [`writeup`]: a run as a folder of files for a write-up.
 
+pub mod document;
 pub mod figure;
 pub mod writeup;
