@@ -1,12 +1,12 @@
-//! The least and the largest value of four curves over all steps of a run, in bounded memory however long it is.
+//! Minimum and maximum of four curves over all steps of a run, in bounded memory.
 //!
-//! They are stored for bins of one sample, of four, of eight, of sixteen and so on. A size that still reaches back to
-//! the start has up to 16 384 bins, and of a smaller size the newest 2048 are kept (4096 of one sample). So any stretch
-//! of the run up to now is covered by a thousand bins or more, or by one for each step if it has fewer steps.
+//! They are stored for bins of one sample, four, eight, sixteen and so on. A size that still covers the whole run has
+//! up to 16 384 bins. Of a smaller size, only the newest 2048 bins are kept (4096 of one sample). So any time interval
+//! up to now is covered by a thousand bins or more, or by one bin per step if it has fewer steps.
 //!
-//! A recording can be [cut back](Recording::cut_back) to an earlier sample. Its bins there are coarser than they were
-//! when that sample was the newest; [`coarse_since`](Recording::coarse_since) tells from which sample on it should be
-//! recorded again.
+//! A recording can be [cut back](Recording::cut_back) to an earlier sample. The bins there are then coarser than they
+//! were when that sample was the newest. [`coarse_since`](Recording::coarse_since) returns the sample from which on it
+//! should be recorded again.
 
 mod bin;
 
@@ -14,15 +14,15 @@ pub use bin::{Extent, RecordedCurve, RecordedSample, RecordingBin};
 use std::collections::VecDeque;
 use std::ops::Range;
 
-/// A stretch is coarse if it has fewer bins than this, each of more than one step.
+/// Minimum number of bins in an interval. With fewer bins of more than one step, the interval is coarse.
 const COARSE: u64 = 256;
-/// A stretch is given in bins of the next size where it would have more of those than this.
+/// Maximum number of bins of the next size in an interval. With more, that next size is used.
 const MOST_STRETCH_BINS: u64 = 2048;
 
 #[derive(Clone, Debug, Default)]
 pub struct Recording {
     levels: Vec<Level>,
-    /// The values of the newest sample, and by how much each curve changed when it last did.
+    /// Values of the newest sample, and the last nonzero change of each curve.
     before: Option<([f64; 4], [f64; 4])>,
 }
 
@@ -32,7 +32,7 @@ impl Recording {
         self.push_values(sample.time_s, sample.values());
     }
 
-    /// Appends the values of the curves at the next sample, `time_s`.
+    /// Appends the values of the curves at the next sample, at `time_s`.
     #[inline]
     pub fn push_values(&mut self, time_s: f64, values: [f64; 4]) {
         let mut bin = RecordingBin::new(time_s, values, self.turned(values));
@@ -49,7 +49,7 @@ impl Recording {
         self.levels.push(largest);
     }
 
-    /// Returns 1 for each curve that turns at the newest sample, before the one that has `values`; else 0.
+    /// Returns 1 for each curve that turns at the newest sample, before the sample with `values`; otherwise 0.
     #[inline]
     fn turned(&mut self, values: [f64; 4]) -> [u32; 4] {
         let (before, last) = self.before.unwrap_or((values, [0.0; 4]));
@@ -66,8 +66,8 @@ impl Recording {
         self.levels.first().map_or(0, Level::count)
     }
 
-    /// Removes all samples after the first `samples`, and a few more where the small bins that are needed there have
-    /// been dropped. Returns how many remain; the caller pushes the missing ones again.
+    /// Removes all samples after the first `samples`, and a few more if the small bins needed there have been dropped.
+    /// Returns the number that remains. The caller must push the missing samples again.
     pub fn cut_back(&mut self, samples: u64) -> u64 {
         let wanted = self.samples().min(samples);
         let mut levels = self.levels.iter().rev();
@@ -80,11 +80,11 @@ impl Recording {
             level.dropped = level.dropped.min(count);
         }
         self.levels.retain(|level| level.count() > 0);
-        self.before = None; // a turn at the newest sample that is left is not counted
+        self.before = None; // a turn at the last remaining sample is not counted
         remaining
     }
 
-    /// Returns the sample from which on the run should be recorded again, if some stretch up to now is coarse.
+    /// Returns the sample from which on the run should be recorded again, if some interval up to now is coarse.
     pub fn coarse_since(&self) -> Option<u64> {
         let samples = self.samples();
         (0..u64::BITS)
@@ -101,31 +101,31 @@ impl Recording {
             .map(|length| samples - length)
     }
 
-    /// Returns the whole recording as one bin; `None` while nothing is recorded.
+    /// Returns the whole recording as one bin. `None` if nothing is recorded.
     pub fn whole(&self) -> Option<RecordingBin> {
         self.newest(self.levels.len()).reduce(RecordingBin::and)
     }
 
-    /// Returns the bins smaller than those of `size` that are in no larger one yet, in order of time.
+    /// Returns the bins smaller than those of `size` that are not yet in a larger one, in order of time.
     fn newest(&self, size: usize) -> impl Iterator<Item = RecordingBin> {
         let smaller = self.levels[..size].iter().rev();
         smaller.flat_map(Level::waiting).copied()
     }
 
-    /// Bins in order of time that cover everything from `since_s` (s) to now, as [`between`](Self::between) has them.
+    /// Returns bins in order of time that cover everything from `since_s` (s) to now; see [`between`](Self::between).
     pub fn since(&self, since_s: f64) -> impl Iterator<Item = RecordingBin> {
         self.between(since_s, f64::INFINITY)
     }
 
-    /// Bins in order of time that cover everything from `since_s` to `until_s` (s): those of the smallest size that
-    /// reaches back so far and has not too many, followed by smaller ones for the newest samples.
+    /// Returns bins in order of time that cover everything from `since_s` to `until_s` (s). They have the smallest size
+    /// that reaches back far enough and is not too numerous, followed by smaller bins for the newest samples.
     pub fn between(&self, since_s: f64, until_s: f64) -> impl Iterator<Item = RecordingBin> {
         self.in_columns(since_s, until_s, None::<fn(f64) -> usize>)
     }
 
-    /// Returns the same stretch for a picture in columns; `column` says in which one a time (s) is. Of the bins of one
-    /// column those at its edges are as [`between`](Self::between) has them, and those inside are given as larger ones:
-    /// of the same samples, but far fewer.
+    /// Returns the same bins, merged for a picture in columns. `column` returns the column of a time (s). The bins at
+    /// the edges of a column are those of [`between`](Self::between). Those inside it are replaced by far fewer, larger
+    /// bins with the same samples.
     pub fn in_columns(
         &self,
         since_s: f64,
@@ -143,7 +143,7 @@ impl Recording {
         covering.chain(newest.filter(move |bin| bin.begin_s <= until_s && bin.end_s >= since_s))
     }
 
-    /// Returns the size of the bins that cover a stretch of time (s), and their numbers.
+    /// Returns the size of the bins that cover a time interval (s), and their numbers.
     fn stretch(&self, since_s: f64, until_s: f64) -> (usize, Range<u64>) {
         let levels = self.levels.iter().enumerate();
         let mut suitable = levels.filter_map(|(size, level)| {
@@ -154,8 +154,8 @@ impl Recording {
         suitable.next().unwrap_or((0, 0..0))
     }
 
-    /// Returns the bin `next` of `size`, or the largest one that begins there, is inside of the stretch of these
-    /// `numbers` and has its neighbours there in its own column; and how many bins of `size` that one is.
+    /// Returns the bin `next` of `size`, or the largest bin that begins there, together with its length in bins of
+    /// `size`. The larger bin must lie inside the interval of `numbers`, and its neighbors must be in the same column.
     fn largest(
         &self,
         size: usize,
@@ -183,7 +183,7 @@ impl Recording {
         Some(largest)
     }
 
-    /// Returns the smallest bins that are stored of each part of the run, in order of time.
+    /// Returns the smallest stored bins of each part of the run, in order of time.
     pub fn finest(&self) -> impl Iterator<Item = RecordingBin> {
         let mut covered = 0;
         let levels = self.levels.iter().enumerate().rev();
@@ -197,7 +197,7 @@ impl Recording {
         })
     }
 
-    /// Returns the extremes of `curve` from `since_s` to `until_s` (s), in its unit; `None` where nothing is recorded.
+    /// Returns the extremes of `curve` from `since_s` to `until_s` (s), in its unit. `None` if nothing is recorded.
     pub fn extent_between(
         &self,
         since_s: f64,
@@ -211,17 +211,17 @@ impl Recording {
 }
 
 const WHOLE_RUN_BINS: usize = 16_384;
-/// How many are kept once there are more, for each one that a bin of the next size has. With more of them a step would
-/// take longer: they would not stay in the processor's nearer caches.
+/// Number of bins kept, once there are more than fit, per bin that makes one of the next size. With more, steps would
+/// take longer, because the bins would not stay in the processor's nearer caches.
 const RECENT: usize = 1024;
 
-/// The bins of one size, in order and without gaps. The first of the run has the number 0; the oldest may be dropped.
+/// Bins of one size, in order and without gaps. The first of the run has the number 0. The oldest ones may be dropped.
 #[derive(Clone, Debug)]
 struct Level {
     bins: VecDeque<RecordingBin>,
     dropped: u64,
     pub samples: u64,
-    /// How many of them make a bin of the next size; a power of two.
+    /// Number of bins that make one of the next size; a power of two.
     pub in_next: u64,
 }
 
@@ -252,12 +252,12 @@ impl Level {
     fn keep_recent(&mut self, kept: usize) {
         let excess = WHOLE_RUN_BINS - kept;
         self.bins.drain(..excess);
-        // A smaller memory is gone through in the processor's nearer caches.
+        // Smaller memory stays in the processor's nearer caches.
         self.bins.shrink_to(kept + 1);
         self.dropped += excess as u64;
     }
 
-    /// Returns the bin of the next size that the newest bins make, where they just make one.
+    /// Returns the bin of the next size that the newest bins have just completed, if any.
     #[inline]
     pub fn completed(&self) -> Option<RecordingBin> {
         if self.count() & (self.in_next - 1) != 0 {
@@ -272,7 +272,7 @@ impl Level {
         self.bins.range(begin..)
     }
 
-    /// Returns the newest bins, which are in no bin of the next size yet.
+    /// Returns the newest bins that are not yet in a bin of the next size.
     pub fn waiting(&self) -> impl Iterator<Item = &RecordingBin> {
         self.newest(self.count() & (self.in_next - 1))
     }
@@ -286,26 +286,25 @@ impl Level {
         self.samples * self.in_next
     }
 
-    /// Returns true if it can be cut back to `count` bins: those that will then be [waiting](Self::waiting) must not
-    /// have been dropped.
+    /// Returns true if the level can be cut back to `count` bins. The bins that will then be [waiting](Self::waiting)
+    /// must not have been dropped.
     pub fn can_be_cut_to(&self, count: u64) -> bool {
         let waiting = count & (self.in_next - 1);
         waiting == 0 || count - waiting >= self.dropped
     }
 
-    /// Returns true if the bin of this number and all later ones are stored, as far as there are any.
+    /// Returns true if the bin of this number and all later ones are stored, as far as they exist.
     pub fn has_from(&self, number: u64) -> bool {
         self.dropped == 0 || (!self.bins.is_empty() && self.dropped <= number)
     }
 
-    /// Returns true if all samples from `time_s` (s) on are in stored bins, but for the newest, which may be in none
-    /// yet.
+    /// Returns true if all samples from `time_s` (s) on are in stored bins. The newest samples may not be in a bin yet.
     pub fn reaches(&self, time_s: f64) -> bool {
         let front = self.bins.front();
         self.dropped == 0 || front.is_some_and(|bin| bin.begin_s <= time_s)
     }
 
-    /// Returns the numbers of the stored bins that have a sample from `since_s` to `until_s` (s).
+    /// Returns the numbers of the stored bins with samples from `since_s` to `until_s` (s).
     pub fn between(&self, since_s: f64, until_s: f64) -> Range<u64> {
         let first = self.bins.partition_point(|bin| bin.end_s < since_s);
         let end = self.bins.partition_point(|bin| bin.begin_s <= until_s);
@@ -333,7 +332,8 @@ mod tests {
         recording
     }
 
-    /// Checks that `bins` begin at `since` or before, and follow each other without a gap; the end of the last one.
+    /// Checks that `bins` begin at `since` or before, and follow each other without gaps. Returns the end of the last
+    /// one.
     fn end_of(bins: &[RecordingBin], since: f64) -> f64 {
         assert!(bins[0].begin_s <= since);
         for pair in bins.windows(2) {
@@ -365,14 +365,14 @@ mod tests {
             let mut rest = single.iter();
             for bin in &joined {
                 let parts: Vec<_> = rest.by_ref().take_while(|part| part.end_s < bin.end_s).collect();
-                // take_while() has taken the last part too.
+                // take_while() has consumed the last part too.
                 prop_assert!(parts.first().is_none_or(|part| part.begin_s == bin.begin_s));
                 prop_assert!(parts.is_empty() || column(bin.begin_s) == column(bin.end_s));
             }
             prop_assert_eq!(rest.count(), 0);
             let samples = |bins: &[RecordingBin]| bins.iter().map(RecordingBin::samples).sum::<u64>();
             prop_assert_eq!(samples(&single), samples(&joined));
-            // The first and the last of every column are the same, so that lines from column to column are.
+            // The first and last bin of each column are the same, so the lines from column to column are too.
             for pair in joined.windows(2).filter(|pair| column(pair[0].end_s) != column(pair[1].begin_s)) {
                 prop_assert!(single.contains(&pair[0]) && single.contains(&pair[1]));
             }
@@ -441,7 +441,7 @@ mod tests {
         assert_eq!(turns(&recording), 19);
         let bins = recording.since(0.0).map(|bin| bin.turns(RecordedCurve::X));
         assert_eq!(bins.sum::<u32>(), 19);
-        // It stands still, and goes on in the same direction: no turn.
+        // A pause before continuing in the same direction is not a turn.
         assert_eq!(turns(&recorded(&[0.0, 1.0, 1.0, 2.0, 2.0, 1.0])), 1);
     }
 
@@ -465,7 +465,7 @@ mod tests {
             larger <= 2048 * 8 + 2 * WHOLE_RUN_BINS as u64,
             "{larger} bins"
         );
-        // The smallest that there are cover the run without a gap.
+        // The smallest bins cover the run without a gap.
         let bins: Vec<_> = recording.finest().collect();
         assert_eq!(end_of(&bins, 0.0), 999_999.0);
         let newest = &bins[bins.len() - 4000..];

@@ -1,15 +1,15 @@
-//! Measured data held against a model: the residuals, from which everything that shows or fits measured data takes them, and
-//! each value beside the run's with statistics of all.
+//! Compares measured data with a model. Everything that shows or fits measured data uses the residuals computed here.
+//! [`Compared`] has each value next to the run's, with statistics.
 
 use super::{MeasuredCurve, MeasuredPlace, MeasuredPoint, RunQuantity, TimeSeries, places};
 use nalgebra::Vector3;
 
-/// Measured data, each value beside the run's.
+/// Measured data, each value with that of the run.
 #[derive(Clone, Debug, Default)]
 pub struct Compared {
-    /// The values of each column, in the order of time.
+    /// Values of each column, in order of time.
     pub curves: Vec<Vec<ComparedPoint>>,
-    /// Where the traced point was measured to be, from above; empty where the columns do not tell.
+    /// Measured positions of the traced point, seen from above. Empty if the columns do not determine them.
     pub places: Vec<MeasuredPlace>,
     pub sum: Sum,
     pub sums: Vec<Sum>,
@@ -18,24 +18,24 @@ pub struct Compared {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ComparedPoint {
     pub time_s: f64,
-    /// The value, in the unit of its column; of a direction, with the number of full turns at which it is nearest to the run.
+    /// Value, in the unit of its column. For a direction, full turns are added to bring it nearest to the run.
     pub value: f64,
-    /// One standard uncertainty of it, where it is stated.
+    /// Standard uncertainty of the value, if given.
     pub sigma: Option<f64>,
-    /// The value in the run; `None` for times that it has not reached.
+    /// Value in the run. `None` for times that the run has not reached.
     pub model: Option<f64>,
 }
 
 #[derive(Clone, Debug, Default)]
 pub struct Sum {
     pub points: usize,
-    /// How many of them the run has reached.
+    /// Number of points that the run has reached.
     pub compared: usize,
     pub weighed: usize,
-    /// The sum of the squares of their residuals in units of the uncertainty.
+    /// Sum of the squared residuals in units of the uncertainty.
     pub chi_squared: f64,
     pub largest: Option<Largest>,
-    /// The root of the mean square of the residuals without uncertainty, for each column that has some.
+    /// Root mean square of the residuals without uncertainty, for each column that has some.
     pub scatter: Vec<(&'static RunQuantity, f64)>,
 }
 
@@ -53,8 +53,8 @@ impl ComparedPoint {
 }
 
 impl Compared {
-    /// `series` against the `model`, the values of a run at the first points of each curve, up to `now_s`. `traced` is the
-    /// traced point, body frame, m.
+    /// Compares `series` with the `model`, which has the values of a run at the first points of each curve. Only points
+    /// up to `now_s` (s) are compared. `traced` is the traced point, body frame, m.
     pub fn new(series: &TimeSeries, model: &[Vec<f64>], now_s: f64, traced: &Vector3<f64>) -> Self {
         let mut compared = Self {
             places: places(series, traced),
@@ -73,20 +73,20 @@ impl Compared {
     }
 }
 
-/// How many of the points of `curve` were measured at `now_s` or before.
+/// Returns the number of points of `curve` that were measured at or before `now_s`.
 fn reached(series: &TimeSeries, curve: &MeasuredCurve, now_s: f64) -> usize {
     curve
         .points
         .partition_point(|point| series.times_s[point.row] <= now_s)
 }
 
-/// The points of `curve`. The first of them have the values `model` in the run.
+/// Returns the points of `curve`. The first of them have the values `model` in the run.
 fn shown(series: &TimeSeries, curve: &MeasuredCurve, model: &[f64]) -> Vec<ComparedPoint> {
     let held = residuals(Some(curve.quantity), &curve.points, model);
     let mut shown: Vec<ComparedPoint> = Vec::with_capacity(curve.points.len());
     for (index, point) in curve.points.iter().enumerate() {
         let residual = held.get(index);
-        // A direction that the run has not reached gets the number of turns that is nearest to the last one.
+        // A direction that the run has not reached gets the number of turns nearest to the last one.
         let value = match (residual, shown.last()) {
             (Some(residual), _) => residual.measured,
             (None, Some(before)) if curve.quantity.is_direction => {
@@ -140,35 +140,35 @@ impl Sum {
     }
 }
 
-/// What is left of a measured value when the model's is taken away.
+/// Difference between a measured value and the model's value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Residual {
     pub row: usize,
-    /// The measured value; of a direction, with the number of full turns that [`residuals`] gives it.
+    /// Measured value. For a direction, it includes the full turns that [`residuals`] adds.
     pub measured: f64,
-    /// One standard uncertainty of it, where it is stated.
+    /// Standard uncertainty of the value, if given.
     pub sigma: Option<f64>,
     pub model: f64,
 }
 
 impl Residual {
-    /// Measured less model, in the unit of both.
+    /// Returns the measured value minus the model's, in the unit of both.
     pub fn value(&self) -> f64 {
         self.measured - self.model
     }
 
-    /// The same in units of the uncertainty.
+    /// Returns the difference in units of the uncertainty.
     pub fn in_sigmas(&self) -> Option<f64> {
         self.sigma.map(|sigma| self.value() / sigma)
     }
 }
 
-/// `points` against the values of `model`, one each.
+/// Returns the residuals of `points` from the values of `model`, one for each.
 ///
-/// Of a direction, such as the azimuth, the number of full turns is another for everybody who counts from another zero.
-/// Where the values do not leave one turn, they are read as directions, and each is taken at the turn at which it is nearest
-/// to the model. Where they were counted on through full turns, that count stays as it was measured, and all are shifted
-/// by the same number of turns, so that the first is nearest to the model.
+/// For a direction, such as the azimuth, the number of full turns depends on the zero that was chosen. If the values
+/// stay within one turn, they are read as directions, and each is moved to the turn nearest to the model. If full turns
+/// were counted, the count stays as measured, and all values are shifted by the same number of turns so that the first
+/// is nearest to the model.
 pub fn residuals(
     quantity: Option<&RunQuantity>,
     points: &[MeasuredPoint],
@@ -193,7 +193,7 @@ pub fn residuals(
     all.collect()
 }
 
-/// Whether the directions of `points`, degrees, were counted on through full turns.
+/// Returns true if the directions of `points`, degrees, count full turns.
 pub fn is_counted(points: &[MeasuredPoint]) -> bool {
     let (least, most) = points.iter().map(|point| point.value).fold(
         (f64::INFINITY, f64::NEG_INFINITY),

@@ -1,4 +1,4 @@
-//! What cannot be right about measured data beside a scenario: most often a unit.
+//! Finds measured data that cannot be right for a scenario, most often because of a unit.
 
 use super::hint::MOST_TILT_RAD;
 use super::{MeasuredData, TimeSeries, at_times};
@@ -7,13 +7,14 @@ use crate::text::number::significant;
 use crate::text::printable::printable;
 use std::sync::Arc;
 
-/// By how much of its arm a point may be measured farther from the pivot than it is.
+/// Tolerance on the measured distance of a point from the pivot, as a fraction of its arm.
 const MARGIN: f64 = 0.05;
-/// Times at which the run's tilt is looked at, and the most steps for that.
+/// Maximum number of times at which the run's tilt is read.
 const MOST_TIMES: usize = 100;
+/// Maximum number of steps for reading the run's tilt.
 const MOST_STEPS: f64 = 1e5;
 
-/// Says what in `measured` cannot be right for the body of `scenario`; empty if nothing is found.
+/// Describes what cannot be right in `measured` for the body of `scenario`. Empty if nothing is found.
 pub fn doubts(measured: &MeasuredData, scenario: &Arc<Scenario>) -> Vec<String> {
     let Ok(series) = measured.series() else {
         return Vec::new();
@@ -30,7 +31,7 @@ pub fn doubts(measured: &MeasuredData, scenario: &Arc<Scenario>) -> Vec<String> 
         .collect()
 }
 
-/// A traced point that was measured farther from the pivot than its arm is long.
+/// Returns the doubt that a point was measured farther from the pivot than its arm.
 fn point_beyond_arm(series: &TimeSeries, arm_m: f64) -> Option<String> {
     let mut squares = vec![0.0; series.times_s.len()];
     let (mut names, mut sigma) = (Vec::new(), 0.0_f64);
@@ -73,7 +74,7 @@ fn point_beyond_arm(series: &TimeSeries, arm_m: f64) -> Option<String> {
     ))
 }
 
-/// A tilt that never exceeds pi, where the run's does.
+/// Returns the doubt that a tilt is in radians, because it never exceeds pi while the run's tilt does.
 fn tilt_in_radians(series: &TimeSeries, scenario: &Arc<Scenario>) -> Option<String> {
     let curve = series
         .curves

@@ -1,4 +1,4 @@
-//! The `--map` that would read a file whose columns were refused, filled in with its own names.
+//! Suggests a `--map` with which a rejected file can be read, filled in with the file's own names.
 
 use super::names::{is_known, named};
 use super::quantity::{RunQuantity, TIME_COLUMN, names};
@@ -10,16 +10,17 @@ use crate::scenario::problem::near;
 use crate::text::printable::{brief, is_steering};
 use crate::text::unit::{Unit, UnitKind, in_known_unit};
 
-/// A name shorter than this is near to too many others.
+/// Minimum length of a name for a suggestion. A shorter name is near to too many others.
 const LEAST_NEAR: usize = 4;
-/// A rate in rad/s is hardly above this; a gyroscope's in deg/s often is.
+/// Largest plausible rate in rad/s. The rate of a gyroscope in deg/s is often larger.
 const MOST_RATE: f64 = 40.0;
-/// A tilt in radians is at most this.
+/// Largest possible tilt in radians.
 pub(super) const MOST_TILT_RAD: f64 = 3.15;
-/// Rows from which units are guessed.
+/// Maximum number of rows from which units are guessed.
 const MOST_ROWS: usize = 2000;
 
-/// Says which `--map` reads `cells`, the file `origin`; `map` is the one given. Empty if none can be found.
+/// Describes the `--map` with which `cells`, the file `origin`, can be read. `map` is the one given. Empty if none can
+/// be found.
 pub(super) fn hint(cells: &Csv, map: &[Renaming], origin: &str) -> String {
     let mut tracks: Vec<&str> = Vec::new();
     for place in 0..cells.names.len() {
@@ -45,7 +46,7 @@ pub(super) fn hint(cells: &Csv, map: &[Renaming], origin: &str) -> String {
     }
 }
 
-/// The option with `map` and what it lacks, of several tracks for this one.
+/// Returns the option with `map` and the missing columns. If there are several tracks, only those of the track `only`.
 fn completed(cells: &Csv, map: &[Renaming], origin: &str, only: Option<&str>) -> Option<String> {
     let mut guess = Guess {
         cells,
@@ -64,7 +65,7 @@ fn completed(cells: &Csv, map: &[Renaming], origin: &str, only: Option<&str>) ->
     is_read.then(|| map_option(cells, map, &guess.added))?
 }
 
-/// The option that maps what `map` does, and the columns at these places.
+/// Returns the option that maps the columns in `map` and the `added` columns.
 pub fn map_option(cells: &Csv, map: &[Renaming], added: &[(usize, String)]) -> Option<String> {
     let given = map.iter().map(|(column, name)| format!("{column}={name}"));
     let also = added
@@ -81,7 +82,7 @@ pub fn map_option(cells: &Csv, map: &[Renaming], added: &[(usize, String)]) -> O
     Some(format!("--map {quoted}"))
 }
 
-/// The name by which `--map` finds the column at `place`, or its number.
+/// Returns the name with which `--map` finds the column at `place`, or its number.
 fn label(cells: &Csv, place: usize) -> String {
     let own = &cells.own[place];
     let is_alone = cells.own.iter().filter(|it| it.name == own.name).count() == 1;
@@ -99,7 +100,7 @@ fn label(cells: &Csv, place: usize) -> String {
     }
 }
 
-/// Returns whether a table of runs has columns of this name, and a time series has none.
+/// Returns true if only a table of runs has columns of this name, and not a time series.
 fn is_of_table(name: &str) -> bool {
     name.contains('.')
         || readouts::find(name).is_some()
@@ -107,7 +108,7 @@ fn is_of_table(name: &str) -> bool {
             && name != TIME_COLUMN
 }
 
-/// Columns and the names that they probably should have.
+/// Columns, and the names that they probably should have.
 struct Guess<'a> {
     cells: &'a Csv,
     added: Vec<(usize, String)>,
@@ -161,7 +162,7 @@ impl Guess<'_> {
         }
     }
 
-    /// Returns whether no column has this name, given by the user or as a guess.
+    /// Returns true if no column has this name, neither from the user nor as a guess.
     fn is_free(&self, name: &str) -> bool {
         let mut columns = self.cells.own.iter().zip(&self.cells.names);
         !columns.any(|(own, known)| own.is_mapped && known == name)
@@ -172,7 +173,7 @@ impl Guess<'_> {
         self.added.iter().any(|(added, _)| *added == place)
     }
 
-    /// Of a table of runs: the key or readout that was meant, or nothing.
+    /// Adds guesses for a table of runs: the key or readout that was probably meant, or that the column is left out.
     fn add_of_table(&mut self, places: &[usize]) {
         for &place in places {
             let name = &self.cells.names[place];
@@ -189,7 +190,7 @@ impl Guess<'_> {
         }
     }
 
-    /// The first numbers of a column.
+    /// Returns the first numbers of a column.
     fn numbers(&self, place: usize) -> Vec<f64> {
         let rows = self.cells.rows.iter().take(MOST_ROWS);
         rows.filter_map(|(_, row): &(u64, Vec<String>)| {
@@ -209,7 +210,8 @@ impl Guess<'_> {
             .fold(0.0, |most, number| most.max(number.abs()))
     }
 
-    /// The column that is probably the time: one called so, else one whose numbers increase, else the first with numbers.
+    /// Returns the column that is probably the time: one with such a name, else one with increasing numbers, else the
+    /// first with numbers.
     fn time(&self, places: &[usize]) -> Option<usize> {
         let columns: Vec<usize> = places
             .iter()
@@ -242,7 +244,7 @@ impl Guess<'_> {
         if Unit::split(&self.cells.own[place].name)
             .is_some_and(|(_, unit)| unit.kind == UnitKind::Time)
         {
-            return TIME_COLUMN; // its own unit is read
+            return TIME_COLUMN; // its own unit is used
         }
         let numbers = self.numbers(place);
         let span = numbers
@@ -267,13 +269,13 @@ impl Guess<'_> {
         })
     }
 
-    /// The quantity that the column probably is.
+    /// Returns the quantity that the column probably contains.
     fn quantity(&self, place: usize, is_gyroscope: bool) -> Option<String> {
         let own = &self.cells.own[place].name;
         if is_known(&self.cells.names[place])
             && RunQuantity::find(&self.cells.names[place]).is_some()
         {
-            // One that is alone is read without being mapped.
+            // A name that occurs only once is read without mapping.
             let name = &self.cells.names[place];
             let same = self.cells.names.iter().filter(|other| *other == name);
             return (same.count() > 1).then(|| name.clone());

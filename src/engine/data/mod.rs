@@ -1,14 +1,15 @@
-//! Measured data: a CSV file that somebody wrote at the bench, read and checked, and what a run says of the same quantities.
+//! Measured data: a CSV file from an experiment, read and checked, and the same quantities of a run.
 //!
-//! There are two kinds. A [`TimeSeries`] has the time in a column `t_s`, and beside it quantities that a run has at every
-//! step ([`quantity`]). A [`RunTable`] has a run in every row: columns named by keys of the scenario set it, columns named by
-//! readouts were measured on it. The uncertainty of a column stands in a column of its own, named as readouts name
-//! theirs: `tilt_uncertainty_deg` of `tilt_deg`.
+//! There are two kinds. A [`TimeSeries`] has the time in a column `t_s`, and quantities that a run has at every step
+//! ([`quantity`]). A [`RunTable`] has a run in each row: columns named after keys of the scenario set it, and columns
+//! named after readouts were measured on it. The uncertainty of a column is in a column of its own, named as for
+//! readouts: `tilt_uncertainty_deg` for `tilt_deg`.
 //!
-//! [`open`] reads a file, or data that come with the program; `names` says what its columns are, `numbers` what stands in
-//! them, `spellings` what other programs call theirs, and `hint` which `--map` would read a file that is refused.
-//! [`of_run`] reads a run at the times of a series, [`compared`] compares what was measured with it, and [`doubts`] says
-//! what cannot be right.
+//! - [`open`]: reads a file, or data that come with the program.
+//! - `names`: the roles of the columns; `numbers`: their cells; `spellings`: the names that other programs use.
+//! - `hint`: suggests a `--map` with which a rejected file can be read.
+//! - [`of_run`]: reads a run at the times of a series.
+//! - [`compared`]: compares the measured data with the run; [`doubts`]: finds data that cannot be right.
 
 pub mod compared;
 mod doubts;
@@ -44,22 +45,22 @@ use toml::Value;
 
 #[derive(Clone, Debug)]
 pub struct MeasuredData {
-    /// The file, as the user named it.
+    /// Name of the file, as the user typed it.
     pub origin: String,
-    /// Its content.
+    /// Content of the file.
     pub text: Arc<str>,
-    /// What was measured after this time was taken out, s.
+    /// Time after which the measured values were removed, s.
     pub until_s: Option<f64>,
-    /// Its comments before the columns' names, without their marks: where the data come from.
+    /// Comments above the names of the columns, without their marks. They describe the source of the data.
     pub about: String,
     pub lines: Vec<u64>,
-    /// The columns that are not known, and not read.
+    /// Names of unknown columns, which are not read.
     pub left_out: Vec<String>,
-    /// What columns with names of other programs were read as, in words.
+    /// Describes how columns with names of other programs were read.
     pub read_as: Option<String>,
-    /// The number of rows before t = 0, which are left out.
+    /// Number of rows before t = 0, which are ignored.
     pub rows_before: usize,
-    /// The number of rows outside of the time that was asked for, which are left out.
+    /// Number of rows outside the requested time, which are ignored.
     pub rows_outside: usize,
     pub data: DataKind,
 }
@@ -72,14 +73,14 @@ pub enum DataKind {
 
 #[derive(Clone, Debug)]
 pub struct TimeSeries {
-    /// The time of each row, s: not negative, and none before the row above.
+    /// Time of each row, s. Times are not negative and do not decrease.
     pub times_s: Vec<f64>,
-    /// A curve for each column, in the order of the file.
+    /// Curves of the columns, in the order of the file.
     pub curves: Vec<MeasuredCurve>,
 }
 
 impl TimeSeries {
-    /// The same as a CSV with the program's names.
+    /// Returns the series as a CSV with the program's names.
     pub fn to_csv(&self) -> String {
         let curves: Vec<(&MeasuredCurve, bool)> = self
             .curves
@@ -118,27 +119,27 @@ fn has_sigma(curve: &MeasuredCurve) -> bool {
 
 #[derive(Clone, Debug)]
 pub struct MeasuredCurve {
-    /// What was measured; its [`readout`](RunQuantity::readout) has name, unit and symbol.
+    /// Measured quantity. Its [`readout`](RunQuantity::readout) has name, unit and symbol.
     pub quantity: &'static RunQuantity,
-    /// The values, by rows; rows without one have no point.
+    /// Values, by rows. A row without a value has no point.
     pub points: Vec<MeasuredPoint>,
 }
 
 #[derive(Clone, Debug)]
 pub struct RunTable {
-    /// The columns that set the scenario, in the order of the file.
+    /// Columns that set the scenario, in the order of the file.
     pub settings: Vec<RunSetting>,
-    /// The columns that were measured, in the order of the file.
+    /// Columns that were measured, in the order of the file.
     pub readouts: Vec<MeasuredReadout>,
 }
 
-/// A key of the scenario that a table's rows set.
+/// A key of the scenario that the rows of a table set.
 #[derive(Clone, Debug)]
 pub struct RunSetting {
     pub key: String,
-    /// Its value in each row; `None` where the scenario's own stands.
+    /// Value in each row. `None` if the scenario's own value applies.
     pub values: Vec<Option<Value>>,
-    /// One standard uncertainty of the value in each row, where it is stated; in the value's unit.
+    /// Standard uncertainty of the value in each row, if given, in the value's unit.
     pub sigmas: Vec<Option<f64>>,
 }
 
@@ -146,24 +147,27 @@ pub struct RunSetting {
 #[derive(Clone, Debug)]
 pub struct MeasuredReadout {
     pub readout: &'static Readout,
-    /// The values, by rows; rows without one have no point.
+    /// Values, by rows. A row without a value has no point.
     pub points: Vec<MeasuredPoint>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeasuredPoint {
-    /// Its row, from 0: the index of the time, or of the settings.
+    /// Row, from 0: the index of the time, or of the settings.
     pub row: usize,
-    /// The value, in the unit of its column.
+    /// Value, in the unit of its column.
     pub value: f64,
-    /// One standard uncertainty of it, above 0, where it is stated.
+    /// Standard uncertainty of the value, positive, if given.
     pub sigma: Option<f64>,
 }
 
 const IS_RUN_TABLE: &str = "is a table of runs: each of its rows is a run of its own, so it cannot stand beside a single one. gyrolab fit holds such a table against a scenario; what stands beside a run has a column t_s";
 
 impl MeasuredData {
-    /// The data as quantities over the time of one run.
+    /// Returns the data as a time series of one run.
+    ///
+    /// # Errors
+    /// Returns an error if the data are a table of runs.
     pub fn series(&self) -> Result<&TimeSeries, Problems> {
         match &self.data {
             DataKind::Series(series) => Ok(series),
@@ -171,7 +175,7 @@ impl MeasuredData {
         }
     }
 
-    /// Says which columns and rows are not read, and what columns with names of other programs are read as.
+    /// Describes the columns and rows that are not read, and how columns with names of other programs are read.
     pub fn notes(&self) -> Vec<String> {
         let names = listed(self.left_out.iter().map(String::as_str));
         let columns = format!("columns left out, which gyrolab does not know: {names}");
@@ -197,7 +201,7 @@ impl MeasuredData {
             .collect()
     }
 
-    /// The same without what was measured after `until_s`, s, where that is given.
+    /// Returns the data without values measured after `until_s`, s, if that is given.
     #[must_use]
     pub fn until(mut self, until_s: Option<f64>) -> Self {
         if let (DataKind::Series(TimeSeries { times_s, .. }), Some(until_s)) = (&self.data, until_s)
@@ -208,8 +212,8 @@ impl MeasuredData {
         Self { until_s, ..self }
     }
 
-    /// Keeps the rows of a time series from `from_s` to `to_s`, and counts the time from `from_s` on. Returns whether there
-    /// are some.
+    /// Keeps the rows of a time series from `from_s` to `to_s`, and counts time from `from_s` on. Returns true if a
+    /// measured value remains.
     pub fn keep_between(&mut self, from_s: f64, to_s: f64) -> bool {
         let DataKind::Series(TimeSeries { times_s, .. }) = &mut self.data else {
             return false;
@@ -221,7 +225,7 @@ impl MeasuredData {
         self.keep_range(first..end)
     }
 
-    /// Leaves out the rows of a time series before t = 0. Returns whether a measured value remains.
+    /// Removes the rows of a time series before t = 0. Returns true if a measured value remains.
     fn leave_out_rows_before_0(&mut self) -> bool {
         let DataKind::Series(TimeSeries { times_s, .. }) = &self.data else {
             return true;
@@ -231,7 +235,7 @@ impl MeasuredData {
         rows.start == 0 || self.keep_range(rows)
     }
 
-    /// Keeps these rows of a time series. Returns whether a measured value remains.
+    /// Keeps these rows of a time series. Returns true if a measured value remains.
     fn keep_range(&mut self, rows: Range<usize>) -> bool {
         let DataKind::Series(series) = &mut self.data else {
             return false;
@@ -247,7 +251,8 @@ impl MeasuredData {
         !series.curves.is_empty()
     }
 
-    /// Keeps what was measured in the rows, counted from 0, that `is_kept` accepts, and returns how many values that are.
+    /// Keeps the measured values in the rows, counted from 0, for which `is_kept` is true. Returns the number of values
+    /// kept.
     pub fn keep_rows(&mut self, is_kept: impl Fn(usize) -> bool) -> usize {
         let keep = |points: &mut Vec<MeasuredPoint>| {
             points.retain(|point| is_kept(point.row));

@@ -1,4 +1,4 @@
-//! What the columns of a file are: the time, quantities, keys of the scenario, readouts, and uncertainties of these.
+//! Roles of the columns of a file: the time, quantities, keys of the scenario, readouts, and uncertainties of these.
 
 use super::quantity::{self, COUNTS, RunQuantity, TIME_COLUMN};
 use crate::analysis::readouts::{self, Readout, ReadoutSource};
@@ -8,27 +8,27 @@ use crate::scenario::keys;
 use crate::scenario::kind::ValueKind;
 use crate::text::unit::with_word;
 
-/// In the name of a column that is the uncertainty of another.
+/// Word in the name of a column that is the uncertainty of another.
 pub(super) const UNCERTAINTY_WORD: &str = "uncertainty";
 
 #[derive(Clone, Debug)]
 pub(super) enum ColumnRole {
     /// The time, s.
     Time,
-    /// A number of the run's steps or edits, which says nothing of the motion.
+    /// A count of the run's steps or edits, which has no effect on the motion.
     Count,
-    /// Nothing that is known: a column for another purpose.
+    /// An unknown column, for some other purpose.
     Foreign,
-    /// A quantity at the time of its row.
+    /// A quantity at the time of the row.
     Quantity(&'static RunQuantity),
-    /// What the scenario has in the run of its row.
+    /// A value of the scenario in the run of the row.
     Key(ValueKind),
-    /// A readout of the run of its row.
+    /// A readout of the run of the row.
     Readout(&'static Readout),
 }
 
 impl ColumnRole {
-    /// Whether a column may hold its uncertainty.
+    /// Returns true if another column may contain its uncertainty.
     fn may_be_off(&self) -> bool {
         match self {
             Self::Quantity(_) | Self::Readout(_) => true,
@@ -46,15 +46,15 @@ pub(super) struct NamedColumn {
     pub uncertainty: Option<usize>,
 }
 
-/// The columns of a file that are read, and the names of the others.
+/// Columns of a file that are read, and the names of the others.
 #[derive(Debug, Default)]
 pub(super) struct Columns {
     pub read: Vec<NamedColumn>,
     pub left_out: Vec<String>,
 }
 
-/// The columns of `cells`, without those that count. Columns that are not known are left out, and in a file with mapped
-/// columns also those that would be refused.
+/// Returns the columns of `cells`, without counts. Unknown columns are left out. In a file with mapped columns, so are
+/// columns that would cause an error.
 pub(super) fn named(cells: &Csv) -> Result<Columns, Vec<Problem>> {
     let names = &cells.names;
     let is_series = names.iter().any(|name| name == TIME_COLUMN);
@@ -111,14 +111,14 @@ pub(super) fn named(cells: &Csv) -> Result<Columns, Vec<Problem>> {
     }
 }
 
-/// The name of the column whose uncertainty the column `name` holds.
+/// Returns the name of the column whose uncertainty is in the column `name`.
 pub(super) fn uncertainty_of(name: &str) -> Option<String> {
     name.split(['_', '.'])
         .any(|word| word == UNCERTAINTY_WORD)
         .then(|| name.replacen(&format!("_{UNCERTAINTY_WORD}"), "", 1))
 }
 
-/// `name` without the word for an uncertainty, wherever it has it; `None` if it has none.
+/// Returns `name` without the word for an uncertainty, wherever it occurs. `None` if it does not occur.
 pub(super) fn without_uncertainty(name: &str) -> Option<String> {
     let lower = name.to_lowercase();
     let at = lower
@@ -131,14 +131,14 @@ pub(super) fn without_uncertainty(name: &str) -> Option<String> {
     })
 }
 
-/// Whether gyrolab itself calls a column `name`.
+/// Returns true if gyrolab itself uses the column name `name`.
 pub(super) fn is_known(name: &str) -> bool {
     quantity::names().any(|known| known == name)
         || readouts::find(name).is_some()
         || name.contains('.') && keys::find(name).is_ok()
 }
 
-/// Whether `--map` may give a column the name `name`.
+/// Returns true if `--map` may give a column the name `name`.
 pub(super) fn may_be(name: &str) -> bool {
     is_known(name) || uncertainty_of(name).is_some_and(|of| is_known(&of))
 }
@@ -189,12 +189,12 @@ fn of_table(name: &str) -> Result<ColumnRole, String> {
     keys::find(name).map(|(_, kind)| ColumnRole::Key(kind))
 }
 
-/// Whether a table of runs with a column `name` is refused.
+/// Returns true if a column `name` is an error in a table of runs.
 pub(super) fn is_refused_in_table(name: &str) -> bool {
     of_table(name).is_err()
 }
 
-/// Why the columns make neither a time series nor a table of runs.
+/// Returns why the columns are neither a time series nor a table of runs.
 fn kind_is_whole(columns: &[NamedColumn], is_series: bool) -> Option<Problem> {
     let has = |is: fn(&ColumnRole) -> bool| columns.iter().any(|column| is(&column.is));
     if is_series {
@@ -203,7 +203,7 @@ fn kind_is_whole(columns: &[NamedColumn], is_series: bool) -> Option<Problem> {
         );
         return (!has(|is| matches!(is, ColumnRole::Quantity(_)))).then(|| Problem::at("", rule));
     }
-    // What a run has at every time tells no run of a table from another.
+    // Quantities that a run has at every time do not distinguish the runs of a table.
     let has_key = has(|is| matches!(is, ColumnRole::Key(_)));
     let rule = match has(|is| matches!(is, ColumnRole::Readout(_))) {
         true if has_key || columns.iter().any(|column: &NamedColumn| {

@@ -1,4 +1,4 @@
-//! The numbers in the cells of a file, and the rules that they obey.
+//! Parses the numbers in the cells of a file, and checks them.
 
 use super::names::{ColumnRole, NamedColumn};
 use super::{MeasuredCurve, MeasuredPoint, MeasuredReadout, RunSetting, RunTable, TimeSeries};
@@ -11,13 +11,13 @@ use crate::text::number::shortest;
 use crate::text::printable::brief;
 use toml::Value;
 
-/// Reads cells, and takes down what is wrong with them.
+/// Parses cells and collects their errors.
 pub(super) struct CellParser<'a> {
     cells: &'a Csv,
     pub found: Problems,
-    /// Columns that hold no numbers, which nobody has mapped in a file with mapped columns.
+    /// Columns without numbers that are not mapped, in a file with mapped columns.
     pub left_out: Vec<String>,
-    /// The decimal signs that the file has used so far.
+    /// Decimal signs that the file has used so far.
     uses_points: bool,
     uses_commas: bool,
 }
@@ -95,7 +95,7 @@ impl<'a> CellParser<'a> {
         times_s
     }
 
-    /// The values of a measured column, with their uncertainties; `None` for a column that is left out.
+    /// Returns the values of a measured column, with their uncertainties. `None` if the column is left out.
     fn points(&mut self, column: &NamedColumn) -> Option<Vec<MeasuredPoint>> {
         let own = &self.cells.own[column.place];
         if own.is_mapped || !self.cells.own.iter().any(|other| other.is_mapped) {
@@ -145,7 +145,7 @@ impl<'a> CellParser<'a> {
         setting
     }
 
-    /// The uncertainty that stands in a row for the value in `column`.
+    /// Returns the uncertainty of the value in `column`, from the same row.
     fn sigma(&mut self, line: u64, column: &NamedColumn, texts: &[String]) -> Option<f64> {
         let place = column.uncertainty?;
         let name = self.cells.names[place].clone();
@@ -158,8 +158,8 @@ impl<'a> CellParser<'a> {
         None
     }
 
-    /// The number that `text` in the column `name` is; `None` where there is none (an empty place, or NaN, as many programs
-    /// write it) or the number is refused.
+    /// Parses `text` in the column `name` as a number. `None` if it is empty, if it is NaN (which many programs write
+    /// for a missing value), or if it is not valid.
     fn number(&mut self, line: u64, name: &str, text: &str) -> Option<f64> {
         if text.is_empty() || text.eq_ignore_ascii_case("nan") {
             return None;
@@ -187,7 +187,7 @@ impl<'a> CellParser<'a> {
         if self.uses_commas && self.uses_points {
             let mixed = "has another decimal sign than the numbers before it: write all of them with a point, or all with a comma";
             self.refuse(line, name, text, mixed);
-            // Told once: each number after it would be refused for one of the two.
+            // Report it once. Otherwise each later number would be an error for one of the two.
             (self.uses_commas, self.uses_points) = (false, false);
         }
         Some(number)

@@ -1,8 +1,9 @@
-//! What a run says of the quantities of a series, at the times at which they were measured.
+//! Reads the quantities of a series from a run, at the times at which they were measured.
 //!
-//! Between two steps the scheme itself takes one shorter step: nothing is interpolated, and the value is as good as those
-//! of the steps. Where nothing but the time places the rows of a run, as under `exact`, it goes from one measured time to
-//! the next, and the time step does not count. Neither does the length of the run: the motion goes on after its last step.
+//! Between two steps, the scheme takes one shorter step. Nothing is interpolated, and the value is as accurate as at
+//! the steps. If the motion does not depend on the steps, as with `exact`, it is computed from one measured time to the
+//! next, and the time step does not matter. The length of the run does not matter either: the motion continues after
+//! its last step.
 
 use super::TimeSeries;
 use crate::run::{NotFinite, Simulation};
@@ -10,14 +11,14 @@ use crate::scenario::{Scenario, Window};
 use std::borrow::Borrow;
 use std::sync::Arc;
 
-/// Steps that are taken without asking whether to go on.
+/// Number of steps between two calls of `go_on`.
 const DATA_BLOCK_STEPS: u64 = 4096;
 
 /// Reads a run at the times of a series, which it borrows or shares, while the run is stepped.
 #[derive(Clone, Debug)]
 pub struct RunReader<S> {
     series: S,
-    /// The index of the next point to be read of each curve.
+    /// Index of the next point to read, for each curve.
     next: Vec<usize>,
     values: Vec<Vec<f64>>,
 }
@@ -32,7 +33,7 @@ impl<S: Borrow<TimeSeries>> RunReader<S> {
         }
     }
 
-    /// Forgets what it has read later than `time_s`: the run has been changed from there on.
+    /// Drops the values read after `time_s`, because the run has changed from there on.
     pub fn forget_after(&mut self, time_s: f64) {
         let series = self.series.borrow();
         let curves = series.curves.iter().zip(&mut self.next);
@@ -43,7 +44,7 @@ impl<S: Borrow<TimeSeries>> RunReader<S> {
         }
     }
 
-    /// The earliest time that has not been read, s.
+    /// Returns the earliest time that has not been read, s.
     pub fn next_time_s(&self) -> Option<f64> {
         let series = self.series.borrow();
         let curves = series.curves.iter().zip(&self.next);
@@ -51,7 +52,7 @@ impl<S: Borrow<TimeSeries>> RunReader<S> {
         rows.min().map(|row| series.times_s[row])
     }
 
-    /// Reads `simulation` at every measured time from now up to, and without, its next step.
+    /// Reads `simulation` at every measured time from now up to its next step, without that step.
     pub fn read_to_next_step(&mut self, simulation: &Simulation) -> Result<(), NotFinite> {
         let end_s = simulation.next_time_s();
         while let Some(time_s) = self.next_time_s().filter(|time_s| *time_s < end_s) {
@@ -66,7 +67,7 @@ impl<S: Borrow<TimeSeries>> RunReader<S> {
         Ok(())
     }
 
-    /// Reads the measured quantities off `simulation`, which is at `time_s`.
+    /// Reads the measured quantities from `simulation`, which is at `time_s`.
     fn read(&mut self, simulation: &Simulation, time_s: f64) {
         let series = self.series.borrow();
         let curves = series.curves.iter().zip(&mut self.next);
@@ -82,14 +83,14 @@ impl<S: Borrow<TimeSeries>> RunReader<S> {
         }
     }
 
-    /// The values read so far: of each curve those of its first points.
+    /// Returns the values read so far: for each curve, those of its first points.
     pub fn values(&self) -> &[Vec<f64>] {
         &self.values
     }
 }
 
-/// What the run of `scenario` says at the times of `series`: of each curve a value for every point, in the point's unit.
-/// `None` where `go_on` said no on the way.
+/// Returns the values of the run of `scenario` at the times of `series`: for each curve, a value for every point, in
+/// the point's unit. `None` if `go_on` returned false on the way.
 pub fn at_times(
     series: &TimeSeries,
     scenario: &Arc<Scenario>,
@@ -100,7 +101,7 @@ pub fn at_times(
     let jumps = needs_no_steps(series, scenario);
     while let Some(time_s) = reader.next_time_s() {
         if jumps {
-            // An integration that takes long is done in parts, so that it can be ended.
+            // A long integration is split into parts, so that it can be canceled.
             let stride_s = DATA_BLOCK_STEPS as f64 * scenario.motion.time_step_s;
             let next_s = time_s.min(simulation.now().time_s() + stride_s);
             simulation.step_to_time(next_s)?;
@@ -118,7 +119,8 @@ pub fn at_times(
     Ok(Some(reader.values))
 }
 
-/// Whether the run of `scenario` comes to the last time of `series` in ten million steps, or parts of an integration.
+/// Returns true if the run of `scenario` reaches the last time of `series` in ten million steps, or parts of an
+/// integration.
 pub fn is_within_reach(series: &TimeSeries, scenario: &Scenario) -> bool {
     const MOST_RUN_STEPS: f64 = 1e7;
     let last_s = series.times_s.last().copied().unwrap_or(0.0);
@@ -131,7 +133,7 @@ pub fn is_within_reach(series: &TimeSeries, scenario: &Scenario) -> bool {
     parts <= MOST_RUN_STEPS
 }
 
-/// Whether the motion at a time does not depend on the steps that lead there.
+/// Returns true if the motion at a time does not depend on the steps before it.
 fn needs_no_steps(series: &TimeSeries, scenario: &Scenario) -> bool {
     let is_exact = scenario.motion.scheme.order.is_none();
     // Full turns are counted step by step.

@@ -1,23 +1,23 @@
-//! Where the traced point was measured to be, from above.
+//! Measured positions of the traced point, seen from above.
 
 use super::TimeSeries;
 use nalgebra::{Vector2, Vector3};
 
-/// A traced point that is nearer to the axle than this part of its distance from the pivot is on it.
+/// Fraction of its distance from the pivot. A traced point nearer to the axle than this is on the axle.
 const PLACE_ON_AXLE: f64 = 1e-9;
 
-/// Where the traced point was measured to be, from above.
+/// A measured position of the traced point, seen from above.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeasuredPlace {
     pub time_s: f64,
     /// x and y, world frame, m.
     pub at: Vector2<f64>,
-    /// One standard uncertainty of each, m, where it is stated.
+    /// Standard uncertainty of each, m, if given.
     pub sigmas: [Option<f64>; 2],
 }
 
-/// Where the point `traced` (body frame, m) was measured to be: by x and y, or else by tilt and azimuth, where it is on the
-/// axle. Empty where the columns of `series` do not tell.
+/// Returns the measured positions of the point `traced` (body frame, m). They come from x and y or, if the point is on
+/// the axle, from tilt and azimuth. Empty if the columns of `series` do not determine them.
 pub fn places(series: &TimeSeries, traced: &Vector3<f64>) -> Vec<MeasuredPlace> {
     let [x, y, tilt, azimuth] = ["x_m", "y_m", "tilt_deg", "azimuth_deg"].map(|name| {
         let mut curves = series.curves.iter();
@@ -52,8 +52,8 @@ pub fn places(series: &TimeSeries, traced: &Vector3<f64>) -> Vec<MeasuredPlace> 
     places
 }
 
-/// x and y, and their uncertainties, of a point on the axle `length_m` from the pivot, from tilt and azimuth, degrees, which
-/// are uncertain independently of each other.
+/// Returns x and y, and their uncertainties, of a point on the axle `length_m` from the pivot. Tilt and azimuth are in
+/// degrees, with independent uncertainties.
 fn on_axle(
     length_m: f64,
     [tilt, azimuth]: [f64; 2],

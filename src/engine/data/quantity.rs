@@ -1,4 +1,5 @@
-//! What can be measured on one run over its time: quantities that it has at every step.
+//! Quantities that can be measured on one run over time, because it has them at every step. A new quantity is a column
+//! of the CSV.
 
 use crate::analysis::readouts::{self, Readout};
 use crate::export::CsvColumn;
@@ -14,14 +15,14 @@ pub const COUNTS: [&str; 2] = ["step", "segment"];
 /// A quantity that a run has at every step.
 #[derive(Debug)]
 pub struct RunQuantity {
-    /// Its name with the unit, as in the run's CSV and in the table of readouts.
+    /// Name with the unit, as in the run's CSV and in the table of readouts.
     pub name: &'static str,
-    /// Whether it is an angle that can be measured only up to whole turns.
+    /// True if it is an angle that can be measured only up to whole turns.
     pub is_direction: bool,
     column: &'static CsvColumn,
 }
 
-/// Every quantity that can be measured over time.
+/// All quantities that can be measured over time.
 pub static QUANTITIES: LazyLock<Vec<RunQuantity>> = LazyLock::new(|| {
     CsvColumn::all()
         .filter(|column| column.name != TIME_COLUMN && !COUNTS.contains(&column.name))
@@ -38,7 +39,7 @@ impl RunQuantity {
         QUANTITIES.iter().find(|quantity| quantity.name == name)
     }
 
-    /// Its row in the table of readouts, with unit, meaning and symbol.
+    /// Returns its row in the table of readouts, with unit, meaning and symbol.
     pub fn readout(&self) -> Option<&'static Readout> {
         readouts::find(self.name)
     }
@@ -48,18 +49,18 @@ impl RunQuantity {
         self.name[..self.name.len() - end.len()].replace('_', " ")
     }
 
-    /// Its unit, as it is written after numbers.
+    /// Returns its unit, as written after numbers.
     pub fn unit(&self) -> &'static str {
         self.readout().map_or("", |readout| readout.unit)
     }
 
-    /// Its value after `step`, in the unit of its name.
+    /// Returns its value after `step`, in the unit of its name.
     pub fn value_at(&self, step: &Step) -> f64 {
         self.column.value(step.scenario(), &step.sample())
     }
 }
 
-/// The names of all quantities, of the time, and of the columns that count.
+/// Returns the names of all quantities, of the time, and of the columns that count.
 pub fn names() -> impl Iterator<Item = &'static str> + Clone {
     let quantities = QUANTITIES.iter().map(|quantity| quantity.name);
     std::iter::once(TIME_COLUMN).chain(quantities).chain(COUNTS)

@@ -1,4 +1,4 @@
-//! A file of measured data, from its text to checked numbers.
+//! Reads a file of measured data, from its text to checked numbers.
 
 use super::hint::hint;
 use super::names::{Columns, may_be, named};
@@ -15,10 +15,10 @@ use std::borrow::Cow;
 use std::path::Path;
 use toml::Value;
 
-/// The most values of one file, rows times columns.
+/// Maximum number of values in a file, rows times columns.
 const MOST_DATA_VALUES: usize = 1_000_000;
 
-/// The measured data that come with the program, compiled in.
+/// Measured data that are compiled into the program.
 pub const SHIPPED: &[Shipped] = shipped!["../../../presets/measured", "csv":
     "heidelberg-body-cone"
     "heidelberg-nutation"
@@ -30,12 +30,12 @@ pub fn find_shipped(name: &str) -> Option<&'static Shipped> {
     Shipped::find(SHIPPED, name)
 }
 
-/// Opens what `name` names: data that come with the program, or else a file. A file's name holds a `/` or ends in `.csv`.
+/// Opens data that come with the program, or a file. A file's name contains a `/` or ends in `.csv`.
 pub fn open(name: &str) -> Result<MeasuredData, Problems> {
     open_with(name, &ColumnOptions::default())
 }
 
-/// The same, with what the user says of its columns.
+/// Does the same as [`open`], with the user's options for its columns.
 pub fn open_with(name: &str, options: &ColumnOptions) -> Result<MeasuredData, Problems> {
     read_with(name, &text(name)?, options)
 }
@@ -56,7 +56,7 @@ pub fn text(name: &str) -> Result<Cow<'static, str>, Problems> {
     Ok(text.into())
 }
 
-/// What is said where `text`, which is refused as measured data, is a scenario.
+/// Returns the error message if `text`, which is not valid as measured data, is a scenario.
 fn scenario_instead(origin: &str, text: &str) -> Option<Problems> {
     const OF_SCENARIOS: [&str; 3] = ["body", "start", "motion"];
     let document = Document::parse_header(origin, text).ok()?;
@@ -67,12 +67,12 @@ fn scenario_instead(origin: &str, text: &str) -> Option<Problems> {
     is_scenario.then(|| Problems::one(origin, Problem::at("", rule)))
 }
 
-/// Reads the measured data that `text` holds, which is the file `origin`.
+/// Reads the measured data in `text`, the content of the file `origin`.
 pub fn read(origin: &str, text: &str) -> Result<MeasuredData, Problems> {
     read_with(origin, text, &ColumnOptions::default())
 }
 
-/// The same, with what the user says of its columns.
+/// Does the same as [`read`], with the user's options for its columns.
 pub fn read_with(
     origin: &str,
     text: &str,
@@ -115,7 +115,7 @@ pub fn read_with(
         found.add(|| Problem::at("", rule));
     }
     if found.list.is_empty() {
-        // What the text does not say by itself is written into it.
+        // Information that is not in the text itself is written into it.
         if let DataKind::Series(series) = &measured.data
             && (options.is_some() || depends_on_name(&cells))
         {
@@ -123,7 +123,7 @@ pub fn read_with(
         }
         return Ok(measured);
     }
-    // Columns are read one after the other, and a file is corrected from its top to its end.
+    // Columns are read one after the other, but people correct a file from top to bottom.
     found.list.sort_by_key(|problem| {
         let place = problem.place.as_deref()?.strip_prefix("line ")?;
         place.parse::<u64>().ok()
@@ -131,7 +131,7 @@ pub fn read_with(
     Err(found.in_file(origin))
 }
 
-/// The cells of `text`, the file `origin`, and what its columns are.
+/// Returns the cells of `text`, the file `origin`, and the roles of its columns.
 fn taken_apart(
     origin: &str,
     text: &str,

@@ -1,4 +1,4 @@
-//! What the user says of a file's columns: their names, and uncertainties for columns that have none.
+//! The user's options for the columns of a file: names, and uncertainties for columns without any.
 
 use super::{DataKind, MeasuredPoint};
 use crate::scenario::csv::{Csv, Renaming};
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 
-/// What the user says of a file's columns.
+/// The user's options for the columns of a file.
 #[derive(Clone, Debug, Default)]
 pub struct ColumnOptions {
     pub map: Vec<Renaming>,
@@ -24,12 +24,12 @@ impl ColumnOptions {
     }
 }
 
-/// The uncertainty of every value of a column that has none in the file.
+/// Uncertainty of every value in a column that has none in the file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ColumnSigma {
     /// gyrolab's name of the column, in any unit, or the file's own name.
     pub column: String,
-    /// One standard uncertainty, in the unit of that name.
+    /// Standard uncertainty, in the unit of that name.
     pub value: f64,
 }
 
@@ -55,10 +55,10 @@ impl fmt::Display for ColumnSigma {
     }
 }
 
-/// Gives the values of columns without uncertainties those of `sigmas`.
+/// Sets the uncertainties `sigmas` for values of columns that have none.
 ///
 /// # Errors
-/// If a column is not among the measured ones of `cells`.
+/// Returns an error if a column is not among the measured ones of `cells`.
 pub(super) fn set_sigmas(
     data: &mut DataKind,
     cells: &Csv,
@@ -95,7 +95,7 @@ pub(super) fn set_sigmas(
     found.or(())
 }
 
-/// The measured columns, each with its gyrolab's name and its values.
+/// Returns the measured columns, each with its name in gyrolab and its values.
 fn measured(
     data: &mut DataKind,
 ) -> Box<dyn Iterator<Item = (&'static str, &mut Vec<MeasuredPoint>)> + '_> {

@@ -1,8 +1,11 @@
-//! The names that other programs give to the columns that gyrolab reads, in one table, with the units in them.
+//! Table of the column names that other programs use, with the units in them.
 //!
-//! Read without `--map`: phyphox (`Gyroscope x (rad/s)`, `Rotation x`, `Angular velocity x`, `X (rad/s)`), Tracker (`t`, `x`,
-//! `y`, with or without units and titles), Sensor Logger (`seconds_elapsed`; its `x`, `y`, `z` in a file called
-//! Gyroscope.csv), Physics Toolbox (`time`, `wx`, `wy`, `wz`), and loggers that state units (`timestamp_ms`, `gx_dps`).
+//! Read without `--map`:
+//! - phyphox: `Gyroscope x (rad/s)`, `Rotation x`, `Angular velocity x`, `X (rad/s)`
+//! - Tracker: `t`, `x`, `y`, with or without units and titles
+//! - Sensor Logger: `seconds_elapsed`, and `x`, `y`, `z` in a file called Gyroscope.csv
+//! - Physics Toolbox: `time`, `wx`, `wy`, `wz`
+//! - loggers with units: `timestamp_ms`, `gx_dps`
 
 use super::names::{UNCERTAINTY_WORD, is_known, uncertainty_of, without_uncertainty};
 use super::quantity::{QUANTITIES, TIME_COLUMN};
@@ -25,10 +28,10 @@ const TIMES: [&str; 9] = [
     "secondselapsed",
     "systemtime",
 ];
-/// Those of them that are seconds where no unit is stated.
+/// Names of a time in seconds, if no unit is given.
 const IN_SECONDS: [&str; 4] = ["t", "time", "zeit", "secondselapsed"];
 
-/// What stands before an axis in the name of an angular velocity about the body's own axis.
+/// Words before an axis in the name of an angular velocity about the body's own axis.
 const RATES: [&str; 17] = [
     "",
     "g",
@@ -48,55 +51,57 @@ const RATES: [&str; 17] = [
     "winkelgeschwindigkeit",
     "drehrate",
 ];
-/// What stands before an axis in the name of a coordinate.
+/// Words before an axis in the name of a coordinate.
 const PLACES: [&str; 3] = ["", "pos", "position"];
 
-/// The most columns that are named with what they are read as.
+/// Maximum number of columns in the list of how columns are read.
 const MOST_TOLD: usize = 12;
 
-/// The time of Sensor Logger, which names its files after the sensors.
+/// Name of the time in Sensor Logger, which names its files after the sensors.
 const SENSOR_LOGGER: &str = "seconds_elapsed";
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 const BODY_RATES: [&str; 3] = ["w1_rad_per_s", "w2_rad_per_s", "w3_rad_per_s"];
 const COORDINATES: [&str; 3] = ["x_m", "y_m", "z_m"];
 
-/// How surely a column is what it is read as. Of several columns for one quantity the surest is read.
+/// Certainty of the meaning of a column. Of several columns for one quantity, the one with the highest certainty is
+/// read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Surety {
-    /// By a name without a unit.
+    /// A name without a unit.
     Bare,
-    /// By a name with a unit.
+    /// A name with a unit.
     WithUnit,
-    /// By gyrolab's own name.
+    /// gyrolab's own name.
     Named,
 }
 
-/// What a column is read as.
+/// Meaning of a column.
 #[derive(Clone, Debug)]
 struct Meaning {
     /// gyrolab's name.
     name: String,
-    /// The factor to the unit of that name.
+    /// Factor to the unit of that name.
     factor: f64,
     surety: Surety,
 }
 
-/// What other columns of the file say about names without a unit.
+/// Evidence from the other columns for the meaning of names without a unit.
 struct Company {
-    /// A time `t` stands with coordinates in m, as Tracker writes them.
+    /// True if the file has a time `t`. Its coordinates are then in m, as Tracker writes them.
     has_t: bool,
-    /// A time `time` stands with rates `wx`, `wy`, `wz` in rad/s, as Physics Toolbox writes them.
+    /// True if the file has a time `time`. Its rates `wx`, `wy`, `wz` are then in rad/s, as Physics Toolbox writes
+    /// them.
     has_time: bool,
-    /// The file is the gyroscope's of Sensor Logger, with rates `x`, `y`, `z` in rad/s.
+    /// True for the gyroscope's file of Sensor Logger, with rates `x`, `y`, `z` in rad/s.
     is_gyroscope: bool,
 }
 
-/// Gives the columns that `--map` does not name the names that gyrolab has for them, of those that are wanted, and converts
-/// their numbers. `origin` is the file.
+/// Gives gyrolab's names to the columns that `--map` does not name, if `is_wanted` is true for the name. Converts their
+/// numbers. `origin` is the file.
 ///
 /// # Errors
-/// If several columns have the same meaning and no `--map` chooses one.
+/// Returns an error if several columns have the same meaning and no `--map` chooses one.
 pub fn name_columns(
     cells: &mut Csv,
     origin: &str,
@@ -143,7 +148,7 @@ pub fn name_columns(
     }
 }
 
-/// Stands before the name of a column that is not read because another one is.
+/// Prefix of the name of a column that is not read because another one is.
 const OTHER: &str = "(another) ";
 
 fn several(cells: &Csv, name: &str, places: &[usize]) -> Problem {
@@ -168,7 +173,7 @@ fn several(cells: &Csv, name: &str, places: &[usize]) -> Problem {
     Problem::at(cells.own[places[0]].shown(), rule)
 }
 
-/// The title above the column, which is the name of its track.
+/// Returns the title above the column, which is the name of its track.
 pub(super) fn track(cells: &Csv, place: usize) -> Option<&str> {
     let mut titles = cells
         .titles
@@ -199,12 +204,12 @@ impl Company {
     }
 }
 
-/// Whether the name of the file `cells` says what its columns are.
+/// Returns true if the meaning of the columns in `cells` depends on the name of the file.
 pub(super) fn depends_on_name(cells: &Csv) -> bool {
     cells.own.iter().any(|own| own.name == SENSOR_LOGGER)
 }
 
-/// What the column `name` is read as.
+/// Returns the meaning of the column `name`.
 fn meaning(name: &str, company: &Company) -> Option<Meaning> {
     if let Some(of) = without_uncertainty(name) {
         let of = meaning(&of, company).filter(|of| of.name != TIME_COLUMN)?;
@@ -247,7 +252,7 @@ fn meaning(name: &str, company: &Company) -> Option<Meaning> {
     })
 }
 
-/// gyrolab's name for a column whose name is `stem` and which states `unit`.
+/// Returns gyrolab's name for a column with the name `stem` and the given `unit`.
 fn with_unit(stem: &str, unit: &Unit) -> Option<&'static str> {
     let own = letters(stem);
     match unit.kind {
@@ -258,7 +263,7 @@ fn with_unit(stem: &str, unit: &Unit) -> Option<&'static str> {
         UnitKind::Length if axis_after(&own, &PLACES).is_some() => {
             axis_after(&own, &PLACES).map(|axis| COORDINATES[axis])
         }
-        // Which axes wx (rad/s) is about cannot be known.
+        // The axes of wx (rad/s) are ambiguous.
         UnitKind::Rate if axis_after(&own, &["w"]).is_some() => None,
         kind => QUANTITIES
             .iter()
@@ -271,7 +276,7 @@ fn with_unit(stem: &str, unit: &Unit) -> Option<&'static str> {
     }
 }
 
-/// The same for a column that states no unit.
+/// Returns gyrolab's name for a column without a unit.
 fn without_unit(name: &str, company: &Company) -> Option<&'static str> {
     if IN_SECONDS.contains(&&*letters(name)) {
         return Some(TIME_COLUMN);
@@ -286,7 +291,7 @@ fn without_unit(name: &str, company: &Company) -> Option<&'static str> {
     company.has_t.then_some(COORDINATES[axis])
 }
 
-/// The axis at the end of a name that has one of `fronts` before it.
+/// Returns the axis at the end of a name, if one of `fronts` is before it.
 fn axis_after(letters: &str, fronts: &[&str]) -> Option<usize> {
     AXES.iter().position(|axis| {
         let front = letters.strip_suffix(axis);
@@ -294,13 +299,13 @@ fn axis_after(letters: &str, fronts: &[&str]) -> Option<usize> {
     })
 }
 
-/// Whether `name` is one that programs give to the time, in whatever unit.
+/// Returns true if programs use `name` for the time, in any unit.
 pub fn time_like(name: &str) -> bool {
     let stem = Unit::split(name).map_or(name, |(stem, _)| stem);
     TIMES.contains(&&*letters(stem))
 }
 
-/// The letters and digits of `name` in lower case, without the word "axis".
+/// Returns the letters and digits of `name` in lower case, without the word "axis".
 fn letters(name: &str) -> String {
     let all: String = name
         .chars()
@@ -310,7 +315,7 @@ fn letters(name: &str) -> String {
     all.replace("axis", "")
 }
 
-/// Says what the columns with other names are read as; `None` if there are none.
+/// Describes how the columns with other names are read. `None` if there are none.
 pub(super) fn read_as(cells: &Csv) -> Option<String> {
     let columns = cells.own.iter().zip(&cells.names);
     let renamed = columns.filter(|(own, name)| {

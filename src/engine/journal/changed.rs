@@ -1,5 +1,5 @@
-//! How a run differs from the motion that the texts of its file (`about`, `source`, `look_at`, `next`, `[[expected]]`) were
-//! written for, and what is done with these texts then.
+//! Describes how a run differs from the motion that the texts of its file (`about`, `source`, `look_at`, `next`,
+//! `[[expected]]`) were written for, and adapts these texts.
 
 use super::restart::in_force;
 use crate::scenario::presets::{PRESETS, Preset};
@@ -12,32 +12,32 @@ use std::path::Path;
 use std::sync::Arc;
 use toml::{Table, Value};
 
-/// Joins the name of the original and its `about`, in the file of a run that was changed since.
+/// Text between the name of the original and its `about`, in the file of a run that has changed since.
 const AS_IT_WAS: &str = " as it was: ";
-/// Ends its `source` there.
+/// End of its `source` in such a file.
 const CHANGED: &str = "; changed since";
 
 const MOST_LISTED_CHANGES: usize = 2;
 
-/// The longest name of a file, in characters; a file of a longer name is called "what was opened".
+/// Maximum length of a file's name, characters. A file with a longer name is called "what was opened".
 const LONGEST_FILE_NAME: usize = 30;
 
-/// Returns the `look_at` line of the file of `scenario`: what the viewer should watch for.
+/// Returns the `look_at` line of the file of `scenario`, which tells the viewer what to watch.
 pub fn look_at(scenario: &Scenario) -> Option<&str> {
     scenario.file.viewed_text("look_at")
 }
 
-/// The scenario that the words of a file were written for.
+/// Scenario that the texts of a file were written for.
 #[derive(Clone, Debug)]
 pub struct Original {
     scenario: Arc<Scenario>,
-    /// What it is called: "the preset cusps", "heron.toml".
+    /// Its name: "the preset cusps", "heron.toml".
     name: String,
 }
 
 impl Original {
-    /// Finds the original of `opened`, which was opened as `name`: the preset whose words it has, as an exported run has
-    /// them, or else itself.
+    /// Finds the original of `opened`, which was opened as `name`. It is the preset with the same texts, as in an
+    /// exported run, or else `opened` itself.
     pub fn find(name: &str, opened: &Arc<Scenario>) -> Self {
         if let Some((preset, scenario)) = preset_with_words_of(opened) {
             return Self {
@@ -58,8 +58,8 @@ impl Original {
         }
     }
 
-    /// Lists the differences that make `now` move differently. `None` where there are none, or where the `look_at` line
-    /// itself is a new one.
+    /// Lists the differences that make `now` move differently. `None` if there are none, or if the `look_at` line is
+    /// new too.
     pub fn difference(&self, now: &Scenario) -> Option<String> {
         self.change(now).filter(|_| self.has_look_at_of(now))
     }
@@ -68,21 +68,21 @@ impl Original {
         look_at(&self.scenario) == look_at(now)
     }
 
-    /// Lists the differences that make `now` move differently; `None` where there are none.
+    /// Lists the differences that make `now` move differently. `None` if there are none.
     fn change(&self, now: &Scenario) -> Option<String> {
         let list = changes(&self.scenario, now).join(", ");
         (!list.is_empty()).then(|| format!("differs from {}: {list}", self.name))
     }
 
-    /// Returns `now` as it is to be written to a file. Where it moves differently, the words say of which motion they were
-    /// written, `look_at` says what was changed, and the numbers expected of the original are removed.
+    /// Returns `now` for writing to a file. If it moves differently, its texts name the motion that they were written
+    /// for, and `look_at` lists the changes. The expected numbers of the original are removed.
     pub fn flag_stale_text(&self, now: &Arc<Scenario>) -> Arc<Scenario> {
         let Some(difference) = self.change(now) else {
             return Arc::clone(now);
         };
         let mut marked = Scenario::clone(now);
         let file = &mut marked.file;
-        // What the user wrote anew is of this run.
+        // A text that the user has rewritten belongs to this run.
         let original = &self.scenario.file;
         if file.about == original.about
             && let Some(about) = file.about.as_mut().filter(|it| !it.contains(AS_IT_WAS))
@@ -105,7 +105,7 @@ impl Original {
     }
 }
 
-/// Finds the preset with the same `look_at` or `about` as `scenario`, as it is shipped.
+/// Finds the preset, as shipped, with the same `look_at` or `about` as `scenario`.
 fn preset_with_words_of(scenario: &Scenario) -> Option<(&'static Preset, Scenario)> {
     let words = words_of(scenario);
     PRESETS.iter().find_map(|preset| {
@@ -123,7 +123,7 @@ fn preset_with_words_of(scenario: &Scenario) -> Option<(&'static Preset, Scenari
     })
 }
 
-/// Returns the words by which a preset is recognized: `about` and `look_at`.
+/// Returns the texts by which a preset is recognized: `about` and `look_at`.
 fn words_of(scenario: &Scenario) -> [Option<&str>; 2] {
     [scenario.file.about.as_deref(), look_at(scenario)]
 }
@@ -167,7 +167,7 @@ fn changes(before: &Scenario, now: &Scenario) -> Vec<String> {
     changes
 }
 
-/// Returns the step of the last edit of `now` that changes what `value` reads, 0 if none does.
+/// Returns the step of the last edit of `now` that changes the result of `value`, or 0 if none does.
 fn last_change<T: PartialEq>(now: &Scenario, value: impl Fn(&Motion) -> T) -> u64 {
     let (mut last, mut before) = (0, value(&now.motion));
     for edit in &now.edits {
@@ -183,13 +183,13 @@ fn number_change(name: &str, unit: &str, [new, old]: [f64; 2]) -> Option<String>
     (new != old).then(|| format!("{name} {} {unit}, not {}", shortest(new), shortest(old)))
 }
 
-/// Returns how the table `name` has changed: the new values, or, where they are many, that it is another. `None` if it
-/// has not.
+/// Describes how the table `name` has changed: lists the new values, or, if there are many, says that it is another
+/// one. `None` if it has not changed.
 fn values<T: Serialize + PartialEq>(name: &str, before: &T, now: &T) -> Option<String> {
     if before == now {
         return None;
     }
-    // A table that is absent, as friction may be, is an empty one.
+    // A missing table, such as friction, counts as empty.
     let [old_table, new_table] =
         [before, now].map(|table| Table::try_from(table).unwrap_or_default());
     let mut new = Vec::new();
@@ -216,7 +216,7 @@ fn is_plain(value: &Value) -> bool {
     float(value).is_some() || value.is_array()
 }
 
-/// Returns `value` as a reader writes it: as short as it can be.
+/// Formats `value` as a person would write it, as short as possible.
 fn written(value: &Value) -> String {
     match value {
         Value::Array(list) => {
@@ -229,7 +229,7 @@ fn written(value: &Value) -> String {
     }
 }
 
-/// Returns how the pushes have changed, in words, by more than the rescaling that a new time step causes.
+/// Describes how the pushes have changed, apart from the rescaling that a new time step causes.
 fn push_change(before: &Scenario, now: &Scenario) -> Option<&'static str> {
     let (old, new) = (&before.file, &now.file);
     if new.push == old.push

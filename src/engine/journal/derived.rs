@@ -1,5 +1,5 @@
-//! Values that follow from several keys of a scenario, and can be set by way of them: the size of L with its direction kept,
-//! its tilt, the total mass.
+//! Values that follow from several keys of a scenario, and can be set through them: for example the size of L with its
+//! direction kept, its tilt, and the total mass.
 
 use super::parameters::MOST_LISTED;
 use crate::scenario::file::{ScenarioFile, VectorFrame};
@@ -9,10 +9,10 @@ use crate::text::number::{rounded, shortest};
 use nalgebra::Vector3;
 use toml::{Table, Value};
 
-/// Further digits of an angle are rounding errors.
+/// Number of digits of an angle. Further digits are rounding errors.
 const ANGLE_DIGITS: usize = 13;
 
-/// A value that no single key holds.
+/// A value that does not have a key of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DerivedValue {
     /// |L| at the start; L keeps its direction.
@@ -39,7 +39,7 @@ impl DerivedValue {
         Self::Arm,
     ];
 
-    /// Returns a name of its own that begins with the key that it sets.
+    /// Returns a name for it that begins with the key that it sets.
     pub fn key(self) -> &'static str {
         match self {
             Self::MomentumSize => "start.momentum_Js.size",
@@ -84,7 +84,7 @@ impl DerivedValue {
         }
     }
 
-    /// Returns the value in `scenario`, whose file is `file` with its edits; `None` if it has none.
+    /// Returns the value in `scenario`, with `file` as its file including edits. `None` if it has no such value.
     pub fn number(self, file: &ScenarioFile, scenario: &Scenario) -> Option<f64> {
         let momentum = &scenario.start.momentum;
         match self {
@@ -104,10 +104,10 @@ impl DerivedValue {
         }
     }
 
-    /// Returns the keys to set so that it becomes `number`.
+    /// Returns the keys to set so that the value becomes `number`.
     ///
     /// # Errors
-    /// Why it cannot be set to that.
+    /// Returns why it cannot be set to that number.
     pub fn set(
         self,
         number: f64,
@@ -136,13 +136,13 @@ impl DerivedValue {
         Ok(table)
     }
 
-    /// Returns whether it can be set in this scenario.
+    /// Returns true if the value can be set in this scenario.
     pub fn is_settable(self, file: &ScenarioFile, scenario: &Scenario) -> bool {
         let number = self.number(file, scenario);
         number.is_some_and(|number| self.set(number, file, scenario).is_ok())
     }
 
-    /// Returns `number` nudged up `times` times, or down if `times` is negative.
+    /// Nudges `number` up by `times` nudges, or down if `times` is negative.
     pub fn nudged(self, number: f64, times: i32) -> f64 {
         let rule = match self {
             Self::MomentumTilt => Nudge::By(1.0),
@@ -153,7 +153,7 @@ impl DerivedValue {
         nudge::number(number, number.abs(), rule, times).unwrap_or(number)
     }
 
-    /// Returns `number` as text with all its digits, or why there is none.
+    /// Formats `number` with all its digits, or says that there is none.
     pub fn shown(self, number: Option<f64>) -> String {
         match (self, number) {
             (_, Some(number)) => shortest(number),
@@ -181,7 +181,8 @@ fn positive(number: f64) -> Result<(), String> {
     }
 }
 
-/// Returns the keys for L of the size `size`, J s, along the L that the start has; along the axle if it has none.
+/// Returns the keys for L with the size `size`, J s, in the direction of L at the start. If L is 0, it is along the
+/// axle.
 fn sized_momentum_table(size: f64, scenario: &Scenario) -> Table {
     let given = scenario.file.start.momentum_Js.map(Vector3::from);
     if let Some(given) = given.filter(|given| given.norm() > 0.0) {
@@ -194,7 +195,7 @@ fn sized_momentum_table(size: f64, scenario: &Scenario) -> Table {
     )
 }
 
-/// Returns the keys for `momentum` (world frame, J s), given in the frame of the scenario's file.
+/// Returns the keys for `momentum` (world frame, J s), converted to the frame of the scenario's file.
 fn momentum_table(momentum: Vector3<f64>, scenario: &Scenario) -> Table {
     let start = &scenario.file.start;
     let is_in_body = start.momentum_Js.is_some()
@@ -211,15 +212,15 @@ fn momentum_key(given: Vector3<f64>) -> Table {
     Table::from_iter([("start.momentum_Js".to_owned(), vector(&given))])
 }
 
-/// Returns `vector` with 0 in the place of components that are rounding errors.
+/// Returns `vector` with rounding errors in its components replaced by 0.
 fn without_rounding(vector: Vector3<f64>) -> Vector3<f64> {
-    /// Part of the vector's size below which a component is a rounding error.
+    /// Fraction of the vector's size below which a component is a rounding error.
     const COMPONENT_ROUNDING: f64 = 1e-15;
     let least = COMPONENT_ROUNDING * vector.norm();
     vector.map(|part| if part.abs() <= least { 0.0 } else { part })
 }
 
-/// Returns L of the start (world frame, J s), turned about a horizontal axis so that its angle from +z is `tilt_deg`. A
+/// Returns L at the start (world frame, J s), turned about a horizontal axis so that its angle from +z is `tilt_deg`. A
 /// vertical L turns to the side to which `start.tilt_deg` turns the axle.
 fn tilted_momentum(tilt_deg: f64, scenario: &Scenario) -> Vector3<f64> {
     let momentum = &scenario.start.momentum;
@@ -231,7 +232,7 @@ fn tilted_momentum(tilt_deg: f64, scenario: &Scenario) -> Vector3<f64> {
     momentum.norm() * (sin * horizontal + cos * Vector3::z())
 }
 
-/// Returns when the only push begins and ends, s; `None` if there is none, or several.
+/// Returns the times at which the only push begins and ends, s. `None` if there is no push, or more than one.
 fn push_times_s(file: &ScenarioFile) -> Option<[f64; 2]> {
     let [push] = &file.push[..] else { return None };
     if let Some(for_s) = push.for_s {

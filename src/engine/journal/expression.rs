@@ -1,8 +1,8 @@
 //! Expressions over a run's numbers: `t_s >= 60 and abs(tilt_deg - 45) < 0.5`.
 //!
-//! Numbers, names, `+ - * /`, parentheses, `abs(...)`, the comparisons `< <= > >= == !=`, `and`, `or`. A name stands
-//! for a readout or for a key of the scenario; the caller looks its value up. A name may have no value at a step: what
-//! is computed from it has none either, and a comparison with it neither holds nor fails.
+//! An expression consists of numbers, names, `+ - * /`, parentheses, `abs(...)`, the comparisons `< <= > >= == !=`,
+//! `and` and `or`. A name is a readout or a key of the scenario, and the caller looks up its value. If a name has no
+//! value at a step, neither has a result computed from it, and a comparison with it is neither true nor false.
 
 mod node;
 mod parser;
@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 pub struct Expression {
     text: String,
     root: ExpressionNode,
-    /// Every name in it once, and the column (from 1) where it stands first.
+    /// Every name once, with the column (from 1) of its first occurrence.
     names: Vec<(String, usize)>,
 }
 
@@ -30,7 +30,7 @@ impl Expression {
         })
     }
 
-    /// Reads `text`, which must say whether something holds.
+    /// Parses `text`, which must be a condition.
     pub fn condition(text: &str) -> Result<Self, Fault> {
         let expression = Self::parse(text)?;
         if expression.is_condition() {
@@ -52,7 +52,7 @@ impl Expression {
         self.names.iter().map(|(name, _)| name.as_str())
     }
 
-    /// Looks each name up once, with `find`, which returns in words why a name stands for no number.
+    /// Looks up each name once with `find`, which returns an error message if a name is not a number.
     pub fn bind<'a, T>(
         &'a self,
         find: impl Fn(&'a str) -> Result<T, String>,
@@ -68,30 +68,31 @@ impl Expression {
             .collect()
     }
 
-    /// Its value, with the values of the names from `value_of`; `None` where a number that it needs has no value. A
-    /// condition is 1 where it holds and 0 where it does not.
+    /// Returns the value of the expression, with the values of names from `value_of`. `None` if a number that it needs
+    /// has no value. A condition is 1 if true and 0 if false.
     pub fn value(&self, mut value_of: impl FnMut(&str) -> Option<f64>) -> Option<f64> {
         self.value_at(|index| value_of(&self.names[index].0))
     }
 
-    /// Returns the same, with the value of the name of each index, as [`bind`](Self::bind) lists them. A name that
-    /// cannot change the result any more is not looked up.
+    /// Returns the same value. `value_of` takes the index of a name in the list of [`bind`](Self::bind). Names that can
+    /// no longer change the result are not looked up.
     pub fn value_at(&self, mut value_of: impl FnMut(usize) -> Option<f64>) -> Option<f64> {
         self.root.value(&mut value_of)
     }
 }
 
-/// A part of a condition that `and` joins to the others.
+/// A part of a condition, joined to the others by `and`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conjunct {
     pub holds: bool,
-    /// The left side of the comparison, where it is one that has a value; of `abs(EXPRESSION - NUMBER)` the expression.
+    /// Left side of the part, if it is a comparison that has a value. For `abs(EXPRESSION - NUMBER)`, the value of
+    /// EXPRESSION.
     pub left: Option<f64>,
 }
 
 impl Expression {
-    /// Returns the parts that `and` joins, in their order, with the values of the names from `value_of`. A part in
-    /// parentheses counts as one.
+    /// Returns the parts joined by `and`, in order, with the values of names from `value_of`. A part in parentheses
+    /// counts as one.
     pub fn conjuncts(&self, mut value_of: impl FnMut(&str) -> Option<f64>) -> Vec<Conjunct> {
         let mut name = |index: usize| value_of(&self.names[index].0);
         let mut parts = Vec::new();

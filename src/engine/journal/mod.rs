@@ -1,15 +1,16 @@
-//! What a user does to the runs of a session. Everything else, any earlier state and any export, is computed from it.
+//! The user's acts on the runs of a session. Everything else, including any earlier state and any export, is computed
+//! from it.
 //!
-//! A [`Journal`] is one list of [acts](Act) with a cursor. An act begins a run, or changes the present run at a step, with
-//! effect from the next step on. Undo moves the cursor back, redo moves it forward, and a new act drops the acts behind it.
-//! An act at an earlier step makes the acts at later steps ineffective. They stay in the list and become effective again
-//! once that act is undone.
+//! A [`Journal`] is one list of [acts](Act) with a cursor. An act begins a run, or changes the present run at a step,
+//! with effect from the next step on. Undo moves the cursor back, and redo moves it forward. A new act drops the acts
+//! after the cursor. An act at an earlier step disables the acts at later steps. They stay in the list, and take effect
+//! again once that act is undone.
 //!
-//! - `run_file` computes the run file of the present run from the acts in force.
-//! - [`parameters`] lists and changes the values of a scenario, [`next_push`] those of the push that the user prepares.
-//! - [`expression`] reads and evaluates conditions over a run's numbers.
-//! - [`restart`] makes the scenario that starts from a state of a run, and the one that follows an advice; [`changed`] says
-//!   how a scenario differs from its file.
+//! - `run_file`: computes the run file of the present run from the acts in force.
+//! - [`parameters`]: lists and changes the values of a scenario. [`next_push`]: the push that the user prepares.
+//! - [`expression`]: parses and evaluates conditions over a run's numbers.
+//! - [`restart`]: makes the scenario that starts from a state of a run, and the one that follows an advice.
+//! - [`changed`]: describes how a scenario differs from its file.
 
 pub mod changed;
 pub mod derived;
@@ -32,15 +33,15 @@ use std::sync::Arc;
 use toml::Table;
 
 const MOST_RUNS: usize = 200;
-/// The most points and parts that the bodies of the earlier runs have together; it limits the memory.
+/// Maximum number of points and parts in the bodies of all earlier runs, to limit memory.
 const MOST_HISTORY_POINTS: usize = 200_000;
-/// The most characters of a value that a message shows.
+/// Maximum number of characters of a value in a message.
 const LONGEST_VALUE: usize = 30;
 
 /// The acts of a session, in the order in which the user did them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Journal {
-    /// The number of acts at the end of the list that are undone.
+    /// Number of acts at the end of the list that are undone.
     undone: usize,
     /// The run before all acts.
     first: RunRecord,
@@ -48,51 +49,52 @@ pub struct Journal {
     entries: Vec<Arc<JournalEntry>>,
 }
 
-/// An act, and the step of its run at which it was done.
+/// An act, and the step of its run at which the user did it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct JournalEntry {
     pub step: u64,
-    /// Whether the entry is an edit that the opened file contained.
+    /// True if the entry is an edit from the opened file.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     is_from_file: bool,
-    /// Whether undo takes it back together with the entry before it.
+    /// True if undo reverts it together with the entry before it.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     is_joined: bool,
-    /// It must stay the last field: TOML writes it as a table, and the serializer of `toml` moves the whole text that
-    /// follows for each value that it meets after a table.
+    /// The act. It must be the last field, because TOML writes it as a table: for each value after a table, the
+    /// serializer of `toml` moves all the text that follows.
     pub act: Act,
 }
 
-/// What the user did.
+/// An act of the user.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Act {
     /// Sets keys of `motion` or `push`, with effect from the next step on.
     Edit(Table),
     Push(PushFile),
-    /// Sets keys on which no number of the run depends: title, number of steps, `[view]`.
+    /// Sets keys that do not affect any number of the run: title, number of steps, `[view]`.
     Metadata(Table),
     /// Leaves the present run and begins this one.
     Begin(RunRecord),
 }
 
-/// A run as it was begun, and how it was left.
+/// A run: its beginning, and its state when the user left it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RunRecord {
-    /// The name under which the user opened the scenario: a preset or a file.
+    /// Name under which the user opened the scenario: a preset or a file.
     pub name: String,
-    /// The step at which the user left it.
+    /// Step at which the user left it.
     pub left_at: u64,
     /// Time at which the run ends, s. An edit of the time step changes the number of steps, not this time.
     pub end_s: f64,
-    /// The push that the user had prepared when they left the run.
+    /// The push that the user had prepared when leaving the run.
     pub next_push: Option<NextPush>,
-    /// The opened file without its edits, each of which is an entry.
+    /// The opened file without its edits, which are separate entries.
     base: Arc<ScenarioFile>,
 }
 
 impl Act {
-    /// Returns the acts that set the keys of `table`, none of which begins a new run: an edit, metadata, or both.
+    /// Returns the acts that set the keys of `table`: an edit, metadata, or both. The keys must not be ones that begin
+    /// a new run.
     pub fn set(table: Table) -> Vec<Self> {
         let (metadata, edit): (Table, Table) = table
             .into_iter()
@@ -122,7 +124,7 @@ impl Act {
 }
 
 impl JournalEntry {
-    /// Returns whether it takes effect after `step`. Metadata belongs to no step.
+    /// Returns true if the entry takes effect after `step`. Metadata edits never do.
     fn is_later_than(&self, step: u64) -> bool {
         self.step > step && !self.act.is_metadata()
     }
@@ -135,7 +137,8 @@ impl JournalEntry {
     }
 }
 
-/// Returns the run of `scenario`, opened as `name`, and the edits of its file as entries, joined to its beginning or not.
+/// Returns the run of `scenario`, opened as `name`, and the edits of its file as entries. `is_joined` joins them to the
+/// run's beginning.
 fn opened(name: &str, scenario: &Scenario, is_joined: bool) -> (RunRecord, Vec<Arc<JournalEntry>>) {
     let mut base = scenario.file.clone();
     let edits = std::mem::take(&mut base.edit).into_iter().map(|edit| {
@@ -156,9 +159,9 @@ fn opened(name: &str, scenario: &Scenario, is_joined: bool) -> (RunRecord, Vec<A
     (run, edits.collect())
 }
 
-/// The list and its cursor.
+/// List and cursor.
 impl Journal {
-    /// Creates a journal whose only run is that of `scenario`, opened as `name`.
+    /// Creates a journal with a single run, that of `scenario`, opened as `name`.
     pub fn new(name: &str, scenario: &Scenario) -> Self {
         let (first, entries) = opened(name, scenario, false);
         Self {
@@ -168,7 +171,7 @@ impl Journal {
         }
     }
 
-    /// Returns the number of entries before the cursor. Undo lessens it.
+    /// Returns the number of entries before the cursor. Undo decreases it.
     pub fn done(&self) -> usize {
         self.entries.len().saturating_sub(self.undone)
     }
@@ -197,8 +200,8 @@ impl Journal {
         &mut self.first
     }
 
-    /// Records the step at which the present run is left and the push that the user has prepared. Call it before any method
-    /// that may leave the present run.
+    /// Records the step at which the user leaves the present run, and the push that is prepared. Call it before any
+    /// method that may leave the run.
     pub fn set_left_at(&mut self, step: u64, next_push: &NextPush) {
         let run = self.present_mut();
         run.left_at = step;
@@ -210,25 +213,25 @@ impl Journal {
         self.present_mut().end_s = end_s;
     }
 
-    /// Drops what was undone: it can no longer be redone.
+    /// Drops the undone acts, which can then no longer be redone.
     fn drop_undone(&mut self) {
         self.entries.truncate(self.done());
         self.undone = 0;
     }
 
-    /// Leaves the present run and begins that of `scenario`, opened as `name`.
+    /// Leaves the present run, and begins the run of `scenario`, opened as `name`.
     pub fn begin(&mut self, name: &str, scenario: &Scenario) {
         self.begin_run(name, scenario, false);
     }
 
-    /// Leaves the present run and begins it again, opened under the same name, as `scenario` has it. One undo returns to
-    /// the present run, whatever edits the new one has from it.
+    /// Leaves the present run, and begins it again as `scenario`, opened under the same name. One undo returns to the
+    /// present run, including any edits that the new run takes from it.
     pub fn begin_again(&mut self, scenario: &Scenario) {
         let (name, end_s) = (self.present().name.clone(), self.present().end_s);
         let is_as_long = self.steps() == scenario.steps.try_into().ok();
         self.begin_run(&name, scenario, true);
         if is_as_long {
-            self.set_end(end_s); // a kept edit of the time step does not move it
+            self.set_end(end_s); // an edit of the time step that is kept does not move the end
         }
     }
 
@@ -245,7 +248,7 @@ impl Journal {
         self.drop_oldest();
     }
 
-    /// Drops the oldest runs beyond [`MOST_RUNS`] and [`MOST_HISTORY_POINTS`]; the newest earlier run always stays.
+    /// Drops the oldest runs beyond [`MOST_RUNS`] and [`MOST_HISTORY_POINTS`]. The newest earlier run always stays.
     fn drop_oldest(&mut self) {
         let earlier = self.entries[..self.begun().saturating_sub(1)]
             .iter()
@@ -268,11 +271,11 @@ impl Journal {
         }
     }
 
-    /// Does `acts` at `step` of the present run as one act, and returns the run's new scenario. With `coalesces` they are
-    /// one more nudge of the same value: one undo takes them back together with the act before.
+    /// Does `acts` at `step` of the present run as one act, and returns the run's new scenario. With `coalesces`, they
+    /// are another nudge of the same value, and one undo reverts them together with the previous act.
     ///
     /// # Errors
-    /// Why an act is refused; nothing has changed then.
+    /// Returns an error if an act is invalid. Nothing has changed then.
     pub fn perform(
         &mut self,
         step: u64,
@@ -302,12 +305,14 @@ impl Journal {
         Ok(scenario)
     }
 
-    /// Begins a new run, opened under the same name, and does `acts` at its step 0. It is the present run as it moves where
-    /// it was left, with the values of `set`; see [`begun_with`](Self::begun_with). With `coalesces`, one more nudge of the
-    /// value that began the present run, it replaces the present run: one undo then returns to the run before both.
+    /// Begins a new run, opened under the same name, and does `acts` at its step 0.
+    ///
+    /// The new run has the settings that the present run had when it was left, and the values of `set`; see
+    /// [`begun_with`](Self::begun_with). With `coalesces`, this is another nudge of the value that began the present
+    /// run, and the new run replaces it. One undo then returns to the run before both.
     ///
     /// # Errors
-    /// Why a value or an act is refused; nothing has changed then.
+    /// Returns an error if a value or an act is invalid. Nothing has changed then.
     pub fn begin_with(
         &mut self,
         set: &Table,
@@ -329,12 +334,14 @@ impl Journal {
         Ok(scenario)
     }
 
-    /// Begins a new run, opened under the same name: the present run from its start, with the values of `set` throughout;
-    /// see [`rerun_with`](restart::rerun_with). With `coalesces`, one more nudge of the value that began the present run, it
-    /// replaces the present run.
+    /// Begins a new run, opened under the same name: the present run from its start, with the values of `set`
+    /// throughout.
+    ///
+    /// See [`rerun_with`](restart::rerun_with). With `coalesces`, this is another nudge of the value that began the
+    /// present run, and the new run replaces it.
     ///
     /// # Errors
-    /// Why a value is refused; nothing has changed then.
+    /// Returns an error if a value is invalid. Nothing has changed then.
     pub fn rerun_with(&mut self, set: &Table, coalesces: bool) -> Result<Arc<Scenario>, Problems> {
         let mut changed = self.clone();
         if coalesces {
@@ -347,7 +354,7 @@ impl Journal {
         Ok(scenario)
     }
 
-    /// Drops the present run and its beginning, unless it is the first.
+    /// Drops the present run and the act that began it, unless it is the first.
     fn forget_present_run(&mut self) {
         if let Some(beginning) = self.begun().checked_sub(1) {
             self.entries.truncate(beginning);
@@ -355,14 +362,16 @@ impl Journal {
         }
     }
 
-    /// Undoes the last act with those joined to it. Returns them; none where nothing was done.
+    /// Undoes the last act with those joined to it, and returns them. Returns an empty slice if there is nothing to
+    /// undo.
     pub fn undo(&mut self) -> &[Arc<JournalEntry>] {
         let done = &self.entries[..self.done()];
         let last = done.iter().rposition(|entry| !entry.is_joined);
         self.move_cursor(last.unwrap_or(0))
     }
 
-    /// Does again what was undone last, an act with those joined to it. Returns them; none where nothing is undone.
+    /// Redoes the act that was undone last, with those joined to it, and returns them. Returns an empty slice if there
+    /// is nothing to redo.
     pub fn redo(&mut self) -> &[Arc<JournalEntry>] {
         let second = self.done() + 1;
         let mut after = self.entries.iter().skip(second);
@@ -370,7 +379,7 @@ impl Journal {
         self.move_cursor(next.map_or(self.entries.len(), |next| second + next))
     }
 
-    /// Moves the cursor behind the first `done` entries and returns those that it has passed.
+    /// Moves the cursor after the first `done` entries, and returns the entries that it has passed.
     fn move_cursor(&mut self, done: usize) -> &[Arc<JournalEntry>] {
         let passed = done.min(self.done())..done.max(self.done());
         let steps = self.steps();
@@ -378,8 +387,8 @@ impl Journal {
         let is_same_run = self.entries[passed.clone()]
             .iter()
             .all(|entry| entry.run().is_none());
-        // Edits of the time step made after the number of steps was set have not moved the end: the end follows from the
-        // scenario in which that number was set.
+        // Edits of the time step after the number of steps was set have not moved the end. So the end is computed from
+        // the scenario in which that number was set.
         if is_same_run
             && self.steps() != steps
             && let Ok(scenario) = self.when_steps_were_set()

@@ -1,4 +1,4 @@
-//! The push that the user prepares before giving it: point, force, direction and duration.
+//! The push that the user prepares: point, force, direction and duration.
 
 use crate::physics::{State, observables};
 use crate::scenario::file::PushFile;
@@ -9,16 +9,16 @@ use crate::text::number::shortest;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// Duration of the default push, as a share of the run; for a scenario without pushes of its own.
+/// Duration of the default push as a fraction of the run, for scenarios without pushes.
 const PUSH_DURATION_SHARE: f64 = 0.1;
 /// Force of the default push, in weights of the body.
 const WEIGHTS: f64 = 2.0;
 
-/// A point is on the vertical, where "out" has no direction, if its distance from it is at most this share of its
-/// distance from the pivot.
+/// Maximum distance of a point from the vertical, as a fraction of its distance from the pivot, at which "out" has no
+/// direction.
 const ON_VERTICAL: f64 = 1e-9;
 
-/// When a push begins that begins when it is given.
+/// Begin of a push that starts as soon as it is given.
 const NOW_TEXT: &str = "now";
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -27,7 +27,7 @@ pub struct NextPush {
     pub point: String,
     pub size_N: f64,
     pub toward: Toward,
-    /// When it begins, s; 0 for the time at which it is given.
+    /// Time at which it begins, s; 0 for the time at which it is given.
     #[serde(default)]
     pub from_s: f64,
     pub for_s: f64,
@@ -59,7 +59,7 @@ impl PushField {
         }
     }
 
-    /// Label and unit of the field; the unit may be empty.
+    /// Returns label and unit of the field. The unit may be empty.
     pub fn label(self) -> (&'static str, &'static str) {
         match self {
             Self::Point => ("point", ""),
@@ -71,7 +71,7 @@ impl PushField {
 }
 
 impl NextPush {
-    /// Returns the first push of `scenario`; where it has none, a default push that visibly moves its body.
+    /// Returns the first push of `scenario`. If it has none, returns a default push that visibly moves its body.
     pub fn suggested_for(scenario: &Scenario) -> Self {
         let own = scenario.file.push.first().zip(scenario.pushes.first());
         let Some((file, push)) = own.filter(|(_, push)| push.force.norm() > 0.0) else {
@@ -93,7 +93,7 @@ impl NextPush {
         }
     }
 
-    /// Returns a push of two weights downwards on the traced point, for a tenth of the run.
+    /// Returns a downward push of two weights on the traced point, for a tenth of the run.
     fn default_for(scenario: &Scenario) -> Self {
         let body = &scenario.body.mechanics;
         let weight = body.mass() * scenario.motion.gravity.abs().max(1.0);
@@ -111,7 +111,7 @@ impl NextPush {
         }
     }
 
-    /// Returns the same push, on the default point where the body of `scenario` has no point of its name.
+    /// Returns the same push. If the body of `scenario` has no point of this name, the push acts on the default point.
     pub fn suited_to(self, scenario: &Scenario) -> Self {
         if scenario.body.point(&self.point).is_some() {
             return self;
@@ -120,7 +120,7 @@ impl NextPush {
         Self { point, ..self }
     }
 
-    /// Returns the value of `field` as text that [`typed`](Self::typed) reads back.
+    /// Formats the value of `field` as text that [`typed`](Self::typed) can parse.
     pub fn shown(&self, field: PushField) -> String {
         match field {
             PushField::Point => self.point.clone(),
@@ -133,7 +133,7 @@ impl NextPush {
         }
     }
 
-    /// Returns the push with `field` nudged `times` times, downwards where negative.
+    /// Returns the push with `field` nudged up by `times` nudges, or down if `times` is negative.
     pub fn nudged(
         &self,
         field: PushField,
@@ -158,7 +158,8 @@ impl NextPush {
         next.checked()
     }
 
-    /// Returns the push with the value of `field` that the user typed. A duration in steps is converted with `time_step_s` (s).
+    /// Parses the text that the user typed for `field`, and returns the push with this value. A duration in steps is
+    /// converted with `time_step_s` (s).
     pub fn typed(
         &self,
         field: PushField,
@@ -211,8 +212,8 @@ impl NextPush {
         Ok(self)
     }
 
-    /// Returns the push as a table of a run file, beginning at the time of `state`. Its times are in seconds, so that an edit of
-    /// the time step does not change its duration.
+    /// Returns the push as a table of a run file, which begins no earlier than the time of `state`. Its times are in
+    /// seconds, so that an edit of the time step does not change its duration.
     pub fn given(&self, scenario: &Scenario, state: &State) -> Result<PushFile, String> {
         let body = &scenario.body;
         let point = body
@@ -288,7 +289,7 @@ impl Toward {
         ("-y", Self::Along([0.0, -1.0, 0.0])),
     ];
 
-    /// Returns the direction as text that [`typed`](Self::typed) reads back.
+    /// Formats the direction as text that [`typed`](Self::typed) can parse.
     pub fn shown(self) -> String {
         let named = Self::NAMED.iter().find(|(_, toward)| *toward == self);
         match (named, self) {
@@ -298,7 +299,7 @@ impl Toward {
         }
     }
 
-    /// Reads a direction: a name, or three numbers.
+    /// Parses a direction: a name, or three numbers.
     pub fn typed(text: &str) -> Result<Self, String> {
         let written = text.trim().trim_matches(['[', ']']);
         if let Some((_, toward)) = Self::NAMED.iter().find(|(name, _)| *name == written) {
@@ -318,7 +319,7 @@ impl Toward {
         }
     }
 
-    /// Returns the unit vector of the direction, world frame, for a point at `at` (world frame, m).
+    /// Returns the direction as a unit vector, world frame, for a point at `at` (world frame, m).
     fn direction(self, at: &Vector3<f64>) -> Result<Vector3<f64>, String> {
         let out = Vector3::new(at.x, at.y, 0.0);
         let around = Vector3::new(-at.y, at.x, 0.0);

@@ -1,5 +1,5 @@
-//! The values of a scenario, each as a parameter that the lab lists, nudges and lets the user type. The table of
-//! [`keys`](crate::scenario::keys) holds their labels, units, nudges and defaults.
+//! The values of a scenario as parameters that the lab lists, nudges and lets the user type. Their labels, units,
+//! nudges and defaults are in the table of [`keys`](crate::scenario::keys).
 
 use crate::physics::scheme;
 use crate::scenario::dotted::{find, join, set_key};
@@ -20,31 +20,31 @@ const START_MOMENTUM_KEY: &str = "start.momentum_Js";
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameter {
-    /// Dotted key, as `--set` takes it: `start.momentum_Js.2`, `push.0.force_N.0`.
+    /// Dotted key, in the form for `--set`: `start.momentum_Js.2`, `push.0.force_N.0`.
     pub key: String,
-    /// Its row in the table of keys; a component of a vector has the vector's row.
+    /// Row in the table of keys. A component of a vector has the vector's row.
     pub spec: &'static SchemaRow,
-    /// Heading under which it is listed: `scenario`, `body`, `point top`, `part wheel`, `start`, `motion`, `push 0`,
-    /// `view`. Pushes and points without a name are numbered from 0, as in their keys.
+    /// Heading in the list: `scenario`, `body`, `point top`, `part wheel`, `start`, `motion`, `push 0`, `view`. Pushes
+    /// and points without a name are numbered from 0, as in their keys.
     pub group: String,
     /// Short name of at most 12 characters.
     pub label: String,
-    /// The frame in which it is given, `world` or `body`; `None` but for the components of the start's momentum.
+    /// Frame of the value, `world` or `body`, for a component of the start's momentum. `None` for other values.
     pub frame: Option<&'static str>,
-    /// The value in the file, or the default where the file has none. Numbers are floats, whole numbers integers.
+    /// Value in the file, or the default if the file has none. Numbers are floats, whole numbers are integers.
     pub value: Value,
     pub is_default: bool,
-    /// The words or point names to choose from; empty where the value is none of these.
+    /// Words or point names to choose from. Empty if there is no choice.
     pub choices: Vec<String>,
     kind: ValueKind,
     lab: LabValue,
-    /// Scale of relative nudges: the absolute value, or the norm of the vector that it is a component of.
+    /// Scale of relative nudges: the absolute value or, for a component, the norm of its vector.
     size: f64,
 }
 
-/// Returns all values of the scenario file `table`, in the order of the table of keys. A vector gives three parameters;
-/// each of the first 50 elements of an array of tables gives a group. `scenario` is the scenario of that file: it
-/// provides the spin or momentum that the file does not contain.
+/// Returns all values of the scenario file `table`, in the order of the table of keys. A vector gives three parameters.
+/// Each of the first 50 elements of an array of tables gives a group. `scenario` is the scenario of that file, and
+/// provides the spin or momentum if the file does not contain it.
 pub fn parameters(table: &Table, scenario: &Scenario) -> Vec<Parameter> {
     let mut list = Vec::with_capacity(64);
     for keys in KEYS.chunk_by(|one, next| array_of(one) == array_of(next)) {
@@ -59,8 +59,8 @@ pub fn parameters(table: &Table, scenario: &Scenario) -> Vec<Parameter> {
     list
 }
 
-/// Returns the part of `file` that [`parameters`] lists, as a TOML table. It is quick for bodies of many points too, as
-/// it copies only the first 50 points and parts.
+/// Returns the part of `file` that [`parameters`] lists, as a TOML table. It copies only the first 50 points and parts,
+/// so it is fast for large bodies too.
 pub fn table_of(file: &ScenarioFile) -> Table {
     let point = file.body.point.iter().take(MOST_LISTED).cloned().collect();
     let part = file.body.part.iter().take(MOST_LISTED).cloned().collect();
@@ -81,10 +81,10 @@ pub fn table_of(file: &ScenarioFile) -> Table {
         view: file.view.clone(),
         ..ScenarioFile::default()
     };
-    Table::try_from(&listed).unwrap_or_default() // a checked file holds nothing that TOML cannot write
+    Table::try_from(&listed).unwrap_or_default() // TOML can write every checked file
 }
 
-/// As [`table_of`], with the edits of the scenario up to `step`.
+/// Does the same as [`table_of`], and applies the edits of the scenario up to `step`.
 pub fn table_at(scenario: &Scenario, step: u64) -> Table {
     let mut table = table_of(&scenario.file);
     let made = scenario.file.edit.iter().filter(|edit| edit.step <= step);
@@ -94,15 +94,17 @@ pub fn table_at(scenario: &Scenario, step: u64) -> Table {
     table
 }
 
-/// As [`table_at`], as a file.
+/// Does the same as [`table_at`], and returns a file.
 pub fn file_at(scenario: &Scenario, step: u64) -> ScenarioFile {
     let file = table_at(scenario, step).try_into();
     file.unwrap_or_else(|_: toml::de::Error| scenario.file.clone())
 }
 
-/// Returns the checked scenario of `file` with the values of `set`, as `--set key=value` gives them. Where the file
-/// gives a spin and a key is a component of the momentum, the spin is first replaced by the momentum (world frame) that
-/// it amounts to; where it gives a momentum and a key is `steady`, the momentum is replaced by its spin.
+/// Returns the checked scenario of `file` with the values of `set`, which have the form of `--set key=value`.
+///
+/// If the file gives a spin and a key is a component of the momentum, the momentum (world frame) that follows from the
+/// spin first replaces it. If the file gives a momentum and a key is `steady`, the spin that follows from it replaces
+/// it.
 pub fn changed(file: &ScenarioFile, set: &Table) -> Result<Scenario, Problems> {
     let mut document = Document::from_file("scenario", file)?;
     for (key, value) in set {
@@ -167,8 +169,8 @@ fn parameters_of(
     }
 }
 
-/// Returns the value that the file implies by leaving out the key at `place`, where it follows from other values: the
-/// spin or momentum of a start that is given in another way, the axis and the length of a part.
+/// Returns the value that follows from other values if the key at `place` is missing. This is the spin or momentum of a
+/// start that is given in another form, or the axis or length of a part.
 fn present(key: &SchemaRow, place: &str, table: &Table, scenario: &Scenario) -> Option<Value> {
     let start = &scenario.start;
     match key.path {
@@ -187,9 +189,9 @@ fn present(key: &SchemaRow, place: &str, table: &Table, scenario: &Scenario) -> 
     }
 }
 
-/// Returns whether the key at `place` fits the other keys of its table: a push has its times either in steps or in
-/// seconds, an angular velocity and Euler rates are listed only where the file gives them, and only given moments are
-/// about a point.
+/// Returns true if the key at `place` fits the other keys of its table. A push has its times either in steps or in
+/// seconds. An angular velocity and Euler rates are listed only if the file gives them. Only moments that are given
+/// have a reference point.
 fn is_offered(place: &str, table: &Table) -> bool {
     let Some((inside, name)) = place.rsplit_once('.') else {
         return true;
@@ -245,7 +247,7 @@ fn size(value: &Value) -> f64 {
     }
 }
 
-/// `value` as a float where `kind` is a number; whole numbers stay integers.
+/// Returns `value` as a float if `kind` is a number. Whole numbers stay integers.
 fn as_kind(value: Value, kind: ValueKind) -> Value {
     match (kind, float(&value)) {
         (ValueKind::Number(_), Some(number)) => Value::Float(number),
@@ -258,7 +260,7 @@ impl Parameter {
         self.spec.unit
     }
 
-    /// Returns the value as text: a number with all its digits, text without quotes and with its line ends as `\n`.
+    /// Formats the value: a number with all its digits, text without quotes and with line ends as `\n`.
     pub fn shown(&self) -> String {
         match &self.value {
             Value::Float(number) => shortest(*number),
@@ -270,7 +272,7 @@ impl Parameter {
         }
     }
 
-    /// Returns the value nudged up `times` times, or down where that is negative.
+    /// Nudges the value up by `times` nudges, or down if `times` is negative.
     pub fn nudged(&self, times: i32) -> Result<Value, String> {
         let value = match (&self.value, self.lab.nudge) {
             (_, Nudge::Typed) => return Err("is text: type it".to_owned()),
@@ -287,7 +289,7 @@ impl Parameter {
         self.checked(value)
     }
 
-    /// Returns the choice `times` places after the present one; after the last comes the first.
+    /// Returns the choice `times` positions after the present one. The list is cyclic.
     fn cycled(&self, times: i32) -> Result<String, String> {
         let is_now = |choice: &String| Some(choice.as_str()) == self.value.as_str();
         match nudge::cycled(&self.choices, is_now, times) {
@@ -296,7 +298,7 @@ impl Parameter {
         }
     }
 
-    /// Returns the value that the user typed: a number with or without its unit, a word, true or false, or text.
+    /// Parses the text that the user typed: a number with or without its unit, a word, true or false, or text.
     pub fn typed(&self, text: &str) -> Result<Value, String> {
         let value = match self.kind {
             ValueKind::Number(_) => Value::Float(nudge::typed(text, self.unit())?),
@@ -335,7 +337,7 @@ impl Parameter {
 }
 
 fn typed_whole(text: &str) -> Result<i64, String> {
-    /// Every whole number up to here is exact as a float.
+    /// Largest whole number up to which every whole number is exact as a float.
     const LARGEST_WHOLE_EDIT: f64 = 9e15;
     if let Ok(whole) = text.trim().parse() {
         return Ok(whole);
@@ -356,9 +358,9 @@ fn typed_flag(text: &str) -> Result<bool, String> {
     }
 }
 
-/// `text` with each written `\n` replaced by a line end, and each `\\` by a backslash.
+/// Replaces each written `\n` in `text` by a line end, and each `\\` by a backslash.
 fn unescaped(text: &str) -> String {
-    const BACKSLASH: &str = "\0"; // for a while: no text may hold it
+    const BACKSLASH: &str = "\0"; // a temporary mark: no text may contain it
     let with_line_ends = text.replace(r"\\", BACKSLASH).replace(r"\n", "\n");
     with_line_ends.replace(BACKSLASH, r"\")
 }

@@ -1,5 +1,5 @@
-//! New runs from a run: one that starts from its present state, with the settings and pushes in force there, and one from
-//! its start, with other values throughout.
+//! Makes new runs from a run: one that starts from its present state, with the settings and pushes in force there, and
+//! one from its start, with other values throughout.
 
 use crate::physics::{State, rotation};
 use crate::run::Clock;
@@ -15,14 +15,15 @@ use toml::{Table, Value};
 const RERUN: &str = "the run from its start";
 pub const TIME_STEP: &str = "motion.time_step_s";
 pub const SCHEME: &str = "motion.scheme";
-/// The keys of a push that count in steps.
+/// Keys that make a push count in steps.
 const COUNTED: [&str; 3] = ["first_step", "steps", "accumulates"];
-/// A push is over if less than this share of a time step remains of it; the rest is rounding.
+/// Fraction of a time step. A push with less than this remaining is over, because the rest is rounding.
 const PUSH_END_ROUNDING: f64 = 1e-9;
 
-/// Returns the scenario that starts with `state`, the state of the run of `scenario` at `step`. It has the settings and
-/// pushes in force there; edits made at `step` itself are included, later ones are not. Times are counted from the new
-/// start: a push that is over is left out, one in progress is shortened, and a later one is moved. Moved pushes have
+/// Returns the scenario that starts with `state`, the state of the run of `scenario` at `step`.
+///
+/// It has the settings and pushes in force at `step`, including edits made at `step` itself. Times are counted from the
+/// new start. A push that is over is omitted, one in progress is shortened, and a later one is moved. Moved pushes have
 /// their times in seconds.
 pub fn scenario_from(scenario: &Scenario, state: &State, step: u64) -> Result<Scenario, Problems> {
     let origin = "the scenario from here";
@@ -62,7 +63,7 @@ pub fn scenario_from(scenario: &Scenario, state: &State, step: u64) -> Result<Sc
     Document::from_file(origin, &file)?.scenario()
 }
 
-/// Returns the number of steps that make the new run as long, in seconds, as the run of `scenario`.
+/// Returns the number of steps for which the new run is as long, in seconds, as the run of `scenario`.
 fn steps_of_same_length(scenario: &Scenario, motion: &Motion) -> u64 {
     if motion.time_step_s == scenario.motion.time_step_s {
         return scenario.steps;
@@ -72,7 +73,7 @@ fn steps_of_same_length(scenario: &Scenario, motion: &Motion) -> u64 {
     steps.clamp(1.0, MOST_RUN_STEPS_BY_TIME) as u64
 }
 
-/// Gravity, scheme, time step and pushes in force for the step that follows `step`.
+/// Returns gravity, scheme, time step and pushes in force for the step after `step`.
 pub fn in_force(scenario: &Scenario, step: u64) -> (Motion, &Pushes) {
     let made = scenario.edits.partition_point(|edit| edit.step <= step);
     let last = scenario.edits[..made].last();
@@ -92,9 +93,10 @@ fn start(state: &State) -> StartFile {
     }
 }
 
-/// Tilt, turn and roll, degrees, of `orientation` = Rz(turn) Rx(tilt) Rz(roll). Near the vertical only the sum (or
-/// difference) of turn and roll is well determined; roll is therefore computed from what tilt and turn leave over, so that
-/// all three together give the orientation back.
+/// Returns tilt, turn and roll, degrees, of `orientation` = Rz(turn) Rx(tilt) Rz(roll).
+///
+/// Near the vertical, only the sum (or difference) of turn and roll is well determined. Roll is therefore computed from
+/// the rotation that remains after tilt and turn, so that the three angles restore the orientation.
 fn angles_deg(orientation: &Matrix3<f64>) -> [f64; 3] {
     let axle = orientation.column(2);
     let tilt = libm::atan2(libm::hypot(axle.x, axle.y), axle.z);
@@ -109,7 +111,7 @@ fn angles_deg(orientation: &Matrix3<f64>) -> [f64; 3] {
     [tilt, turn, roll].map(f64::to_degrees)
 }
 
-/// The moment at which the new scenario starts.
+/// Moment at which the new scenario starts.
 struct RestartPoint<'a> {
     scenario: &'a Scenario,
     state: &'a State,
@@ -118,7 +120,7 @@ struct RestartPoint<'a> {
 }
 
 impl RestartPoint<'_> {
-    /// Returns the rest of `push`, number `index` of the run, from now on; `None` where it is over.
+    /// Returns the remainder of `push`, number `index` of the run, from now on. `None` if it is over.
     fn push(&self, index: usize, push: &Push) -> Result<Option<PushFile>, Problem> {
         let file = PushFile {
             point: self.scenario.point_name(push.point).unwrap_or_default(),
@@ -148,7 +150,7 @@ impl RestartPoint<'_> {
         }
     }
 
-    /// Returns whether the time step is still the one for which the scenario's pushes give their step numbers.
+    /// Returns true if the time step is still the one that the pushes' step numbers were written for.
     fn counts_steps(&self) -> bool {
         let mut edits = self.scenario.edits.iter();
         let is_edited = edits.any(|edit| edit.step <= self.step && edit.sets_time_step);
@@ -168,7 +170,8 @@ impl RestartPoint<'_> {
         }
     }
 
-    /// Beginning of the rest of `window`, counted from now, and its duration, both in s; `None` where it is over.
+    /// Returns the begin of the remainder of `window`, counted from now, and its duration, both in s. `None` if it is
+    /// over.
     fn seconds(&self, window: Window) -> Option<(f64, f64)> {
         let dt = self.scenario.written_for_s;
         let now_s = self.state.time_s;
@@ -178,7 +181,7 @@ impl RestartPoint<'_> {
                 let begin = first as f64 - 1.0;
                 [begin, begin + count as f64].map(|steps| {
                     if self.counts_steps() {
-                        // The difference of whole numbers is exact, and is multiplied afterwards.
+                        // The difference of whole numbers is exact, so it is multiplied afterwards.
                         (steps - self.step as f64) * dt
                     } else {
                         steps * dt - now_s
@@ -191,8 +194,8 @@ impl RestartPoint<'_> {
     }
 }
 
-/// Returns the run of `scenario` from its start with the values of `set`, dotted keys, throughout: its edits of these keys
-/// are left out. Its other edits and its pushes stay, at the same times; so does its end, `end_s` (s).
+/// Returns the run of `scenario` from its start with the values of `set` (dotted keys) throughout. Its edits of these
+/// keys are omitted. Its other edits, its pushes and its end `end_s` (s) stay at the same times.
 pub fn rerun_with(scenario: &Scenario, set: &Table, end_s: f64) -> Result<Scenario, Problems> {
     let refused = |problem| Problems::one(RERUN, problem);
     let mut file = scenario.file.clone();
@@ -231,13 +234,13 @@ pub fn rerun_with(scenario: &Scenario, set: &Table, end_s: f64) -> Result<Scenar
     document.scenario()
 }
 
-/// Returns whether the dotted `key` is `whole` or a part of it.
+/// Returns true if the dotted `key` is `whole` or a part of it.
 fn is_inside(key: &str, whole: &str) -> bool {
     let rest = key.strip_prefix(whole);
     rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
 }
 
-/// Returns the edits of `scenario` of time step and scheme, in words: of one, or of both. `None` where it has none.
+/// Describes which of time step and scheme the edits of `scenario` change. `None` if there are no such edits.
 pub fn edited_motion(scenario: &Scenario) -> Option<&'static str> {
     let edits = &scenario.file.edit;
     match [TIME_STEP, SCHEME].map(|key| edits.iter().any(|edit| edit.set.contains_key(key))) {
@@ -248,7 +251,7 @@ pub fn edited_motion(scenario: &Scenario) -> Option<&'static str> {
     }
 }
 
-/// Returns whether `value`, set at `key`, makes a push count in steps.
+/// Returns true if `value`, set at `key`, makes a push count in steps.
 fn counts(key: &str, value: &Value) -> bool {
     let last = key.rsplit('.').next().unwrap_or_default();
     let mut inside = value.as_table().into_iter().flat_map(Table::keys);

@@ -1,4 +1,4 @@
-//! The run file of the present run: the opened file with the acts in force.
+//! Computes the run file of the present run: the opened file with the acts in force.
 
 use super::{Act, Journal, JournalEntry, number_of_push, parameters};
 use crate::scenario::file::{EditFile, PushFile, ScenarioFile};
@@ -9,8 +9,8 @@ use toml::{Table, Value};
 const ORIGIN: &str = "the run";
 
 impl Journal {
-    /// Returns the entries of the present run in force, in the order in which they were done: those that no newer entry at
-    /// an earlier step has dropped. Metadata is never dropped and drops nothing.
+    /// Returns the entries of the present run in force, in the order in which they were done. A newer entry at an
+    /// earlier step disables the entries at later steps. Metadata is always in force and disables nothing.
     fn in_force(&self) -> Vec<&JournalEntry> {
         let mut earliest = u64::MAX; // smallest step of the newer entries
         let of_run = self.entries[self.begun()..self.done()].iter();
@@ -26,18 +26,18 @@ impl Journal {
         entries
     }
 
-    /// Returns the entries in force that have an effect by `step`; metadata always does.
+    /// Returns the entries in force that take effect at or before `step`. Metadata always does.
     fn in_force_by(&self, step: u64) -> Vec<&JournalEntry> {
         let mut entries = self.in_force();
         entries.retain(|entry| !entry.is_later_than(step));
         entries
     }
 
-    /// Returns the base with what `entries` do.
+    /// Returns the base with `entries` applied.
     fn document(&self, entries: &[&JournalEntry]) -> Result<Document, Problems> {
         let mut file = ScenarioFile::clone(&self.present().base);
         let mut metadata = Table::new();
-        // The step of the last edit, where another one may extend it.
+        // Step of the last edit, if another one may extend it.
         let mut open = None;
         for entry in entries {
             match &entry.act {
@@ -70,12 +70,12 @@ impl Journal {
         file.unwrap_or_else(|_| (*self.present().base).clone()) // each entry was checked when it was made
     }
 
-    /// Returns the checked scenario of the run file. Acts that were not refused lead to no errors.
+    /// Returns the checked scenario of the run file. It causes no errors if all acts were accepted.
     pub fn scenario(&self) -> Result<Arc<Scenario>, Problems> {
         self.document(&self.in_force())?.scenario().map(Arc::new)
     }
 
-    /// Returns the scenario as it was when its number of steps was set last: by the opened file, or by a later
+    /// Returns the scenario at the time when its number of steps was last set: by the opened file, or by a later
     /// `motion.steps`.
     pub(super) fn when_steps_were_set(&self) -> Result<Scenario, Problems> {
         let entries = self.in_force();
@@ -98,7 +98,7 @@ impl Journal {
             .or_else(|| self.present().base.motion.steps.try_into().ok())
     }
 
-    /// Returns the run up to `step`: it has that many steps (at least one), and no later entry.
+    /// Returns the run up to `step`. It has that number of steps, but at least one, and no later entry.
     pub fn scenario_until(&self, step: u64) -> Result<Arc<Scenario>, Problems> {
         let mut document = self.document(&self.in_force_by(step))?;
         let steps = i64::try_from(step.max(1)).unwrap_or(i64::MAX);
@@ -106,32 +106,32 @@ impl Journal {
         document.scenario().map(Arc::new)
     }
 
-    /// Returns whether the last act was a push at `step`.
+    /// Returns true if the last act was a push at `step`.
     pub fn ends_with_push_at(&self, step: u64) -> bool {
         let last = self.entries[..self.done()].last();
         last.is_some_and(|entry| entry.step == step && matches!(entry.act, Act::Push(_)))
     }
 
-    /// Returns how many entries in force are at steps later than `step`.
+    /// Returns the number of entries in force at steps after `step`.
     pub fn later_than(&self, step: u64) -> usize {
         self.in_force().len() - self.count_by(step)
     }
 
-    /// Returns how many entries in force were done at `step` or earlier, metadata of any step included.
+    /// Returns the number of entries in force at `step` or earlier, including all metadata.
     pub fn count_by(&self, step: u64) -> usize {
         self.in_force_by(step).len()
     }
 
-    /// Returns how many pushes the run has at `step`, past and future ones: those of the scenario, and those that the user
-    /// has added at `step` or earlier.
+    /// Returns the number of pushes that the run has at `step`, past and future. They are those of the scenario, and
+    /// those that the user added at `step` or earlier.
     pub fn pushes_by(&self, step: u64) -> usize {
         let by_step = self.in_force_by(step).into_iter();
         let added = by_step.filter(|entry| matches!(entry.act, Act::Push(_)));
         self.present().base.push.len() + added.count()
     }
 
-    /// Returns the act that adds `push` to the run: a `[[push]]` table. Where edits have added pushes, one more table would
-    /// change their numbers, so the push is then added by one more edit.
+    /// Returns the act that adds `push` to the run as a `[[push]]` table. If edits have added pushes, another table
+    /// would change their numbers, so the act is an edit that adds the push.
     pub(super) fn added(&self, push: PushFile) -> Act {
         let file = self.file();
         let set = file.edit.iter().flat_map(|edit| edit.set.keys());
@@ -145,14 +145,14 @@ impl Journal {
         }
     }
 
-    /// Returns a new run with the values of `set`. From its start on it has the gravity, scheme, time step and pushes that
-    /// the present run has at `step`.
+    /// Returns a new run with the values of `set`. From the start, it has the gravity, scheme, time step and pushes
+    /// that the present run has at `step`.
     pub fn begun_with(&self, step: u64, set: &Table) -> Result<Scenario, Problems> {
         parameters::changed(&self.settings_at(step)?, set)
     }
 
-    /// Returns the base with gravity, scheme, time step and its own pushes as they are at `step`, without added pushes. The
-    /// base keeps its time step where its pushes cannot be rescaled to the new one.
+    /// Returns the base with gravity, scheme, time step and its own pushes as they are at `step`, without added pushes.
+    /// If its pushes cannot be rescaled to the new time step, the base keeps its own.
     fn settings_at(&self, step: u64) -> Result<ScenarioFile, Problems> {
         let base = &self.present().base;
         let mut document = Document::from_file(ORIGIN, base)?;
@@ -179,8 +179,10 @@ impl Journal {
     }
 }
 
-/// Returns whether the edit `entry`, which sets `set`, may extend another one at the same step. An edit that adds a push may
-/// not: a TOML table sorts its keys as text, `push.10` before `push.9`, and pushes must be added in the order of their numbers.
+/// Returns true if the edit `entry`, which sets `set`, may extend another edit at the same step.
+///
+/// An edit that adds a push may not. A TOML table sorts its keys as text, `push.10` before `push.9`, but pushes must be
+/// added in the order of their numbers.
 fn may_extend(entry: &JournalEntry, set: &Table) -> bool {
     !entry.is_from_file && !set.values().any(Value::is_table)
 }

@@ -1,4 +1,4 @@
-//! Journals by themselves.
+//! Tests of journals alone.
 
 use super::*;
 use crate::scenario::file::EditFile;
@@ -226,12 +226,12 @@ fn time_step(journal: &Journal) -> f64 {
     edit.map_or(scenario.motion, |edit| edit.motion).time_step_s
 }
 
-/// Returns the step at which the present run was left, and its start tilt.
+/// Returns the step at which the user left the present run, and its start tilt.
 fn place(journal: &Journal) -> (u64, Option<f64>) {
     (journal.present().left_at, journal.file().start.tilt_deg)
 }
 
-/// Takes an edit of the same run back, and gives its step; `None` for a whole run taken back.
+/// Undoes an edit of the same run and returns its step. Returns `None` if a whole run was undone.
 fn undone(journal: &mut Journal) -> Option<u64> {
     let first = &journal.undo()[0];
     first.run().is_none().then_some(first.step)
@@ -248,7 +248,7 @@ fn undo_and_redo_go_through_all_acts_and_runs_in_order() {
     assert_eq!(undone(&mut journal), None);
     assert_eq!(place(&journal), (9, Some(30.0)));
     assert_eq!(undone(&mut journal), Some(7));
-    // The new run moves as the old one did when it was left.
+    // The new run has the settings that the old one had when it was left.
     assert_eq!(time_step(&journal), 0.05);
     assert_eq!(undone(&mut journal), None);
     assert_eq!(place(&journal), (90, Some(45.0)));

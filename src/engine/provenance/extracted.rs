@@ -1,8 +1,8 @@
-//! What the forms of file share: a file without the text that it carries, how that is packed, and why it is not found.
+//! Shared code of the file formats: the result of an extraction, compression, and error messages.
 
 use std::ops::Range;
 
-/// The longest text that a figure carries, bytes.
+/// Maximum length of an embedded text, bytes.
 pub const LONGEST_TEXT: usize = 64 << 20;
 
 pub const NO_RUN_TEXT: &str =
@@ -10,7 +10,7 @@ pub const NO_RUN_TEXT: &str =
 pub const TWO: &str = "holds the metadata of two figures: nothing says which one is its own";
 pub const BROKEN: &str = "its metadata is damaged";
 
-/// The text that a file carries, and which of its bytes carry it. The other bytes are the picture.
+/// An embedded text, and the bytes of the file in which it is embedded. The other bytes are the picture.
 pub struct Extracted {
     pub carrier: Range<usize>,
     pub text: Vec<u8>,
@@ -26,7 +26,7 @@ pub fn unpacked(bytes: &[u8]) -> Result<Vec<u8>, &'static str> {
     unpacked.map_err(|_| BROKEN)
 }
 
-/// Where `mark` stands in `file`, once.
+/// Returns the position of `mark` in `file`, in which it must occur exactly once.
 pub fn place(file: &[u8], mark: &[u8]) -> Result<usize, &'static str> {
     let places = file.windows(mark.len()).enumerate();
     let mut places = places.filter(|(_, window)| *window == mark);

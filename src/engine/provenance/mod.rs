@@ -1,9 +1,9 @@
-//! Where a figure comes from: the runs or the table that it shows and what it was asked to show of them, carried by the file
-//! of the figure itself.
+//! Provenance of a figure: the runs or the table that it shows, and the request that it answers, embedded in the file
+//! of the figure.
 //!
-//! They are one text: a line with the SHA-256 of the rest, a head in TOML, then the files that the head lists, as they are.
-//! `svg`, `pdf` and `png` put this text into the file of a picture and find it there; taken out, it leaves that file
-//! as it was.
+//! They form one text: a line with the SHA-256 of the rest, a head in TOML, and then the unchanged files that the head
+//! lists. `svg`, `pdf` and `png` embed this text in the file of a picture and extract it. Extraction restores the
+//! original picture.
 
 mod extracted;
 mod pdf;
@@ -20,26 +20,26 @@ use std::path::Path;
 
 use extracted::{BROKEN, Extracted, LONGEST_TEXT, NO_RUN_TEXT, packed};
 
-/// The longest file of a figure that is read, bytes.
+/// Maximum size of a figure's file, bytes.
 const LONGEST_FIGURE: u64 = 128 << 20;
-/// The longest head of it, bytes: the names of some thousand runs.
+/// Maximum size of the head, bytes: enough for the names of some thousand runs.
 const LONGEST_HEAD: usize = 256 << 10;
-/// Data and tables that are longer when compressed do not travel, bytes.
+/// Maximum compressed size of embedded data and tables, bytes. Larger ones are not embedded.
 const MOST_DATA: usize = 1 << 20;
 
 const FIGURE_MARK: &str = "# gyrolab figure, sha256 ";
-/// The key of what was asked of a picture that is the lab's screen, and no figure.
+/// Key in the request for a picture of the lab's screen, which is not a figure.
 pub const SCREEN: &str = "screen";
 
-/// What a figure was drawn from.
+/// Sources of a figure.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Origin {
-    /// The version that drew it.
+    /// Version of the program that drew it.
     pub gyrolab: String,
-    /// Of the picture that carries this, without it.
+    /// SHA-256 of the picture without this text.
     picture_sha256: String,
-    /// What it was asked to show: keys and values of the room that draws.
+    /// Request for the figure, with keys and values of the module that draws it.
     pub figure: toml::Table,
     #[serde(rename = "file")]
     pub files: Vec<File>,
@@ -59,7 +59,7 @@ pub struct File {
     pub holds: Payload,
     pub name: String,
     bytes: usize,
-    /// Of a file that is too large to travel.
+    /// SHA-256 of a file that is too large to be embedded.
     pub sha256: Option<String>,
     #[serde(skip)]
     pub text: String,
@@ -86,17 +86,17 @@ impl Origin {
         Self {
             gyrolab: env!("CARGO_PKG_VERSION").to_owned(),
             picture_sha256: String::new(),
-            figure: toml::Table::try_from(asked).unwrap_or_default(), // a struct that is read back
+            figure: toml::Table::try_from(asked).unwrap_or_default(), // a struct that can be parsed again
             files,
         }
     }
 
-    /// The files that hold this.
+    /// Returns the files with this kind of payload.
     pub fn all(&self, holds: Payload) -> impl Iterator<Item = &File> {
         self.files.iter().filter(move |file| file.holds == holds)
     }
 
-    /// The text that is carried by the `picture`, a file without it.
+    /// Returns the text to embed in `picture`, the bytes of its file without it.
     fn text(&self, picture: &[u8]) -> Option<String> {
         let head = toml::to_string(&Self {
             picture_sha256: sha256(picture),
@@ -109,7 +109,7 @@ impl Origin {
         (text.len() <= LONGEST_TEXT).then_some(text)
     }
 
-    /// What the carried `text` holds.
+    /// Parses the embedded `text`.
     fn read(text: &str) -> Result<Self, String> {
         let rest = text.strip_prefix(FIGURE_MARK).ok_or(BROKEN)?;
         let (sum, rest) = rest.split_at_checked(64).ok_or(BROKEN)?;
@@ -140,7 +140,7 @@ impl Origin {
     }
 }
 
-/// The forms of file that carry a text.
+/// File formats in which a text can be embedded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileFormat {
     Svg,
@@ -149,7 +149,7 @@ pub enum FileFormat {
 }
 
 impl FileFormat {
-    /// Returns the format of a file by its first bytes, or `None` if it is no figure.
+    /// Returns the format of a file by its first bytes. `None` if it is not a figure.
     pub fn detect(bytes: &[u8]) -> Option<Self> {
         let text = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes);
         match text.trim_ascii_start() {
@@ -160,7 +160,7 @@ impl FileFormat {
         }
     }
 
-    /// Returns what stands behind the bytes that carry a text.
+    /// Returns the bytes that follow the embedded text.
     fn end(self) -> &'static [u8] {
         match self {
             Self::Svg => svg::END_OF_FILE,
@@ -169,7 +169,7 @@ impl FileFormat {
         }
     }
 
-    /// Returns the bytes that carry `text` behind `before`.
+    /// Returns the bytes in which `text` is embedded after `before`.
     fn carrier(self, before: &[u8], text: &str) -> Option<Vec<u8>> {
         match self {
             Self::Svg => Some(svg::carrier(text)),
@@ -192,26 +192,29 @@ impl FileFormat {
     }
 }
 
-/// The `picture`, a file that this program wrote, with its origin in it; `None` where that is too long.
+/// Embeds the origin in `picture`, a file that this program wrote. `None` if it is too long.
 pub fn embed(picture: &[u8], origin: &Origin) -> Option<Vec<u8>> {
     FileFormat::detect(picture)?.embed(picture, &origin.text(picture)?)
 }
 
-/// A figure that was read.
+/// A figure read from a file.
 #[derive(Clone, Debug)]
 pub struct FigureFile {
     pub form: FileFormat,
     pub origin: Origin,
-    /// Its file without what it carries.
+    /// The file without the embedded text.
     pub picture: Vec<u8>,
-    /// What was changed in the file after it was drawn, where something was.
+    /// Describes a change of the file after it was drawn, if there is one.
     pub changed: Option<&'static str>,
 }
 
 impl FigureFile {
-    /// Parses the bytes of a figure's file. The error says why no run can be extracted from it.
+    /// Parses the bytes of a figure's file.
     ///
-    /// A file may be large: it is not copied, and two copies of its text exist only as long as needed.
+    /// A file may be large. It is not copied, and two copies of its text exist only as long as needed.
+    ///
+    /// # Errors
+    /// Returns why no run can be extracted from it.
     pub fn parse(mut file: Vec<u8>) -> Result<Self, String> {
         let form = FileFormat::detect(&file).ok_or(NO_RUN_TEXT)?;
         let Extracted { carrier, text } = form.extract(&file)?;
@@ -222,7 +225,7 @@ impl FigureFile {
         let origin = Origin::read(&text)?;
         drop(text);
         file.drain(carrier);
-        // Another version may have compressed the text otherwise.
+        // Another version may have compressed the text differently.
         let is_own = origin.gyrolab == env!("CARGO_PKG_VERSION");
         let changed = if origin.picture_sha256 != sha256(&file) {
             Some("its picture was changed after it was drawn: the SHA-256 is another")
@@ -239,7 +242,7 @@ impl FigureFile {
         })
     }
 
-    /// Reads the figure in the file `path`; `None` where that is no figure, or not there.
+    /// Reads the figure in the file `path`. `None` if it is not a figure, or does not exist.
     pub fn open(path: &Path) -> Result<Option<Self>, String> {
         if !path.is_file() {
             return Ok(None);
@@ -248,7 +251,7 @@ impl FigureFile {
         Self::read(&mut BufReader::new(file))
     }
 
-    /// The same for what `reader` gives, of which only the first bytes are looked at where it is no figure.
+    /// Reads a figure from `reader`. If it is not a figure, only its first bytes are read.
     pub fn read(reader: &mut impl BufRead) -> Result<Option<Self>, String> {
         let first = reader.fill_buf().map_err(|error| unread(&error))?;
         if FileFormat::detect(first).is_none() {
@@ -264,7 +267,7 @@ impl FigureFile {
     }
 }
 
-/// What a file is called where it travels: no folder of this machine is told.
+/// Returns the name of an embedded file, without any folder of this machine.
 pub fn name_of(name: &str) -> String {
     let path = Path::new(name);
     let file = path.file_name().filter(|_| path.is_absolute());
@@ -272,7 +275,7 @@ pub fn name_of(name: &str) -> String {
         .into_owned()
 }
 
-/// The SHA-256 of `bytes` in hexadecimal digits.
+/// Returns the SHA-256 of `bytes` in hexadecimal digits.
 pub fn sha256(bytes: &[u8]) -> String {
     let sum = Sha256::digest(bytes);
     sum.iter().map(|byte| format!("{byte:02x}")).collect()

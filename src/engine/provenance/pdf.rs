@@ -1,16 +1,16 @@
-//! PDF: the text is an attached file, which is appended to the picture's file as PDF's own incremental updates are: the
-//! attachment, the catalog that names it, and where they stand.
+//! PDF: the text is an attached file. It is appended to the picture's file as an incremental update: the attachment,
+//! the catalog that names it, and the table of their positions.
 
 use super::extracted::{BROKEN, Extracted, packed, place, unpacked};
 
 const PDF_MARK: &str = "\n% gyrolab figure\n";
 const STREAM: &[u8] = b"\nstream\n";
-/// What readers call the attachment.
+/// Name of the attachment in PDF readers.
 const ATTACHMENT_NAME: &str = "gyrolab-figure.txt";
-/// The tail of a file in which its trailer stands, bytes.
+/// Size of the end of a file in which its trailer is searched, bytes.
 const TAIL: usize = 256;
 
-/// Returns the update that carries `text` behind `picture`.
+/// Returns the update that embeds `text` after `picture`.
 pub fn carrier(picture: &[u8], text: &str) -> Option<Vec<u8>> {
     let tail = String::from_utf8_lossy(&picture[picture.len().saturating_sub(TAIL)..]);
     let number = |key: &str| -> Option<usize> {

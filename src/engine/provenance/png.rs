@@ -5,12 +5,12 @@ use crate::text::checksum::crc32;
 
 pub const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
 const KEYWORD: &[u8] = b"iTXtgyrolab\0";
-/// Compressed, by zlib; of no language, and its keyword not translated.
+/// Compressed by zlib, with no language and no translated keyword.
 const COMPRESSED: &[u8] = b"\x01\0\0\0";
-/// The chunk IEND.
+/// The IEND chunk.
 pub const IEND_CHUNK: &[u8] = b"\0\0\0\0IEND\xae\x42\x60\x82";
 
-/// Returns the chunk that carries `text`.
+/// Returns the chunk with `text`.
 pub fn carrier(text: &str) -> Option<Vec<u8>> {
     let chunk = [KEYWORD, COMPRESSED, &packed(text.as_bytes())].concat();
     let length = u32::try_from(chunk.len() - 4).ok()?.to_be_bytes();
@@ -35,7 +35,7 @@ pub fn extract(file: &[u8]) -> Result<Extracted, &'static str> {
     })
 }
 
-/// The kind and the content of the chunk at this place, and where the next one begins.
+/// Returns kind and content of the chunk at the position `at`, and the position of the next one.
 fn chunk(file: &[u8], at: usize) -> Option<(&[u8], usize)> {
     let length = file.get(at..)?.first_chunk().copied();
     let end = at

@@ -1,5 +1,5 @@
-//! SVG: the text is the last element, `<metadata>`. What XML does not take as it is, and `%`, is written as `%` and two
-//! hexadecimal digits for each byte, so that no other program has a reason to write it otherwise.
+//! SVG: the text is the last element, `<metadata>`. Characters that XML does not allow, and `%`, are written as `%` and
+//! two hexadecimal digits for each byte. Other programs then have no reason to rewrite them.
 
 use super::extracted::{BROKEN, Extracted, place};
 
@@ -9,7 +9,7 @@ const BEGIN_OF_TEXT: &[u8] = b"<metadata>\n# gyrolab figure, ";
 const METADATA_END: &str = "\n</metadata>\n";
 pub const END_OF_FILE: &[u8] = b"</svg>\n";
 
-/// Returns the element that carries `text`.
+/// Returns the element with `text`.
 pub fn carrier(text: &str) -> Vec<u8> {
     let mut carrier = BEGIN.to_owned();
     escape(text, &mut carrier);

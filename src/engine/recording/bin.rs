@@ -1,4 +1,4 @@
-//! What a recording stores: the curves, their values at one sample, and their extremes over many.
+//! Data types of a recording: the curves, their values at one sample, and their extremes over many.
 
 use crate::physics::State;
 use crate::run::Sample;
@@ -23,7 +23,7 @@ impl RecordedCurve {
 
     pub const OF_POINT: [Self; 3] = [Self::X, Self::Y, Self::Z];
 
-    /// Returns the name of its numbers in a CSV and among the readouts.
+    /// Returns the name of the curve's column in a CSV and among the readouts.
     pub fn column(self) -> &'static str {
         self.named().2
     }
@@ -32,7 +32,7 @@ impl RecordedCurve {
         self.named().0
     }
 
-    /// Returns the unit of its extents, as it is written after numbers.
+    /// Returns the unit of its extents, as written after numbers.
     pub fn unit(self) -> &'static str {
         self.named().1
     }
@@ -73,9 +73,9 @@ impl RecordedCurve {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RecordedSample {
     pub time_s: f64,
-    /// The traced point, world frame, m.
+    /// Traced point, world frame, m.
     pub position: Vector3<f64>,
-    /// Height of the axle's direction, a unit vector: the cosine of the tilt.
+    /// Height of the axle's direction, a unit vector, which is the cosine of the tilt.
     pub axle_height: f64,
 }
 
@@ -96,15 +96,15 @@ impl RecordedSample {
         curve.of_stored(self.values()[curve as usize])
     }
 
-    /// Returns the stored value of each curve. For the tilt it is the negative cosine: it grows with the tilt, and
-    /// saves computing an arc cosine at every step.
+    /// Returns the stored value of each curve. For the tilt, it is the negative cosine, which grows with the tilt and
+    /// saves an arc cosine at every step.
     pub(super) fn values(&self) -> [f64; 4] {
         let at = &self.position;
         [at.x, at.y, at.z, -self.axle_height]
     }
 }
 
-/// The least and the largest value of a stretch.
+/// Minimum and maximum over an interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extent {
     pub min: f64,
@@ -119,7 +119,7 @@ impl Extent {
         }
     }
 
-    /// Returns the extent of both. Not by [`f64::min`], which takes several instructions because of NaN.
+    /// Returns the extent of both. It avoids [`f64::min`], which takes several instructions because of NaN.
     #[inline]
     pub fn and(self, other: Self) -> Self {
         let Self { min, max } = self;
@@ -132,13 +132,13 @@ impl Extent {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RecordingBin {
-    /// Time of its first sample, s.
+    /// Time of the first sample, s.
     pub begin_s: f64,
-    /// Time of its last sample, s.
+    /// Time of the last sample, s.
     pub end_s: f64,
     samples: u64,
     pub extents: [Extent; 4],
-    /// How often each curve has turned: gone up after it had gone down, or down after it had gone up.
+    /// Number of turns of each curve, from up to down or from down to up.
     pub turned: [u32; 4],
     pub last: [f64; 4],
 }
@@ -148,8 +148,8 @@ impl RecordingBin {
         curve.in_its_unit(self.stored(curve))
     }
 
-    /// Returns the extremes of the stored value of `curve`: of many bins only what is drawn in the end is worth an arc
-    /// cosine.
+    /// Returns the extremes of the stored value of `curve`. Convert them only when they are drawn: an arc cosine for
+    /// every bin would be too slow.
     pub fn stored(&self, curve: RecordedCurve) -> Extent {
         self.extents[curve as usize]
     }
@@ -158,12 +158,12 @@ impl RecordingBin {
         self.samples
     }
 
-    /// Returns how often `curve` turns in it, up or down: twice in a swing.
+    /// Returns the number of turns of `curve` in the bin, up or down: two in each swing.
     pub fn turns(&self, curve: RecordedCurve) -> u32 {
         self.turned[curve as usize]
     }
 
-    /// Returns the traced point at its last sample, world frame, m.
+    /// Returns the traced point at the last sample, world frame, m.
     pub fn end(&self) -> Vector3<f64> {
         let [x, y, z, _] = self.last;
         Vector3::new(x, y, z)

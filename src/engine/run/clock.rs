@@ -1,10 +1,10 @@
-//! What time it is at a step, and the same run at another time step.
+//! The time of each step, and the same run at another time step.
 
 use crate::physics::SchemeInfo;
 use crate::scenario::{Edit, Scenario};
 
-/// Time as a function of the step, t = t_a + (step − a) dt, with a the step of the last edit of dt: never a running
-/// sum, whose rounding would grow with the run.
+/// Time as a function of the step: t = t_a + (step − a) dt, where a is the step of the last edit of dt. A running sum
+/// would accumulate rounding errors over the run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clock {
     anchor_step: u64,
@@ -13,7 +13,7 @@ pub struct Clock {
 }
 
 impl Clock {
-    /// Returns a clock that shows 0 at step 0.
+    /// Returns a clock that is at 0 s at step 0.
     pub fn new(time_step_s: f64) -> Self {
         Self {
             anchor_step: 0,
@@ -22,7 +22,7 @@ impl Clock {
         }
     }
 
-    /// Returns the clock in force at `step` of `scenario`, edits made at that step not yet counted.
+    /// Returns the clock in force at `step` of `scenario`, before the edits made at that step.
     pub fn at(scenario: &Scenario, step: u64) -> Self {
         let mut clock = Self::new(scenario.motion.time_step_s);
         let edits = scenario.edits.iter().take_while(|edit| edit.step < step);
@@ -43,14 +43,14 @@ impl Clock {
         })
     }
 
-    /// Returns when the run of `scenario` is over, s.
+    /// Returns the time at which the run of `scenario` ends, s.
     pub fn end_s(scenario: &Scenario) -> f64 {
         Self::at(scenario, scenario.steps).time_s(scenario.steps)
     }
 
-    /// Time at `step`, s; the step must not lie before the last edit of dt.
+    /// Returns the time at `step`, s. The step must not be before the last edit of dt.
     pub fn time_s(&self, step: u64) -> f64 {
-        // As i64: for u64 there is no instruction.
+        // Converted as i64, because processors have no instruction for u64.
         self.anchor_s + (step - self.anchor_step) as i64 as f64 * self.time_step_s
     }
 
@@ -62,16 +62,15 @@ impl Clock {
         };
     }
 
-    /// Returns the first step at or after `time_s`, within a billionth of a time step.
+    /// Returns the first step at or after `time_s`, to within a billionth of a time step.
     pub fn step_at(&self, time_s: f64) -> u64 {
         let steps = ((time_s - self.anchor_s) / self.time_step_s - 1e-9).ceil();
         self.anchor_step.saturating_add(steps.max(0.0) as u64)
     }
 }
 
-/// Returns the same run at another time step: `scenario` at `time_step_s` (s) and by `scheme` throughout: as long in
-/// seconds, its pushes and its edits of gravity at the same times. Edits of the time step and of the scheme are left
-/// out, since both are given here.
+/// Returns the same run with the time step `time_step_s` (s) and `scheme` throughout. The run is as long in seconds,
+/// with its pushes and its edits of gravity at the same times. It has no edits of time step and scheme.
 pub fn resampled(scenario: &Scenario, time_step_s: f64, scheme: &'static SchemeInfo) -> Scenario {
     let mut other = scenario.clone();
     for (edit, (time_s, _)) in other.edits.iter_mut().zip(Clock::edits(scenario)) {

@@ -1,4 +1,4 @@
-//! The times at which pushes act on a run, and at which it was edited.
+//! Times at which pushes act on a run, and at which it was edited.
 
 use super::Clock;
 use super::pushes::acts_s;
@@ -6,7 +6,7 @@ use crate::scenario::{Push, Scenario};
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Marks {
-    /// Beginning and end of each interval in which at least one push acts, s. Intervals do not touch; the last end may be
+    /// Begin and end of each interval in which at least one push acts, s. Intervals do not touch. The last end may be
     /// infinite.
     pub pushes: Vec<(f64, f64)>,
     pub edits: Vec<f64>,
@@ -36,7 +36,7 @@ impl Marks {
     }
 }
 
-/// Returns when `push` acts between two times, s.
+/// Returns the time for which `push` acts between two times, s.
 fn acts(push: &Push, scenario: &Scenario, from_s: f64, to_s: f64) -> Option<(f64, f64)> {
     let (begin, end) = acts_s(push, scenario);
     let (begin, end) = (begin.max(from_s), end.min(to_s));
@@ -60,7 +60,7 @@ mod tests {
     use super::*;
     use crate::scenario::{Document, presets};
 
-    /// Pushes and edits of a preset with these edits: the step of each, and what it sets.
+    /// Returns the pushes and edits of a preset with these edits. Each edit has a step and the values it sets.
     fn marks(preset: &str, edits: &[(u64, &str)]) -> Marks {
         let mut text = presets::find(preset).unwrap().text.to_owned();
         for (step, set) in edits {

@@ -1,10 +1,12 @@
-//! A run: a scenario and its journal of edits, played forward from step 0.
+//! A run: a scenario and its edits, played forward from step 0.
 //!
-//! [`Simulation`] alone takes a run forward in time; the command line, exports, tests and the screen all use it.
-//! [`step`] is what it publishes of each time step, and what its energy drift is measured in. [`clock`] says what time a
-//! step has, [`pushes`] which forces act on it, [`marks`] when they do, [`Sample`] what of it leaves the program, [`moment`] what is
-//! compared with the exact motion. [`truth`] is the exact motion
-//! beside it, and [`resampled`] the same run at another time step.
+//! - [`Simulation`]: takes a run forward in time. No other type does: the command line, exports, tests and the screen
+//!   all use it.
+//! - [`step`]: the record of one time step, and the unit of its energy error.
+//! - [`clock`]: the time of a step; [`resampled`] is the same run at another time step.
+//! - [`pushes`]: the forces on a step; [`marks`]: the times at which they act.
+//! - [`Sample`]: the numbers of a step for output. [`moment`]: the numbers that are compared with the exact motion.
+//! - [`truth`]: the exact motion of the same scenario.
 
 pub mod clock;
 pub mod marks;

@@ -1,21 +1,21 @@
-//! What is compared between a run and the exact motion at one time.
+//! The numbers in which a run is compared with the exact motion at one time.
 
 use super::step::Step;
 use crate::physics::{State, observables};
 use crate::scenario::Scenario;
 use nalgebra::Vector3;
 
-/// The numbers of one moment of a run or of the exact motion.
+/// Numbers of a run or of the exact motion at one moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
     pub time_s: f64,
-    /// The traced point, world frame, m.
+    /// Traced point, world frame, m.
     pub position: Vector3<f64>,
     /// Angular momentum about the pivot, world frame, J s.
     pub momentum: Vector3<f64>,
     /// Angle of the axle from +z, degrees.
     pub tilt_deg: f64,
-    /// [The energy error](Step::energy_drift); of the exact motion 0.
+    /// [Energy error](Step::energy_drift). It is 0 for the exact motion.
     pub energy_error: Option<f64>,
 }
 

@@ -1,24 +1,24 @@
-//! Which pushes act on a step, and how hard.
+//! Computes the forces of the pushes on a step.
 //!
-//! A push that counts steps acts on whole steps, as the report's does. One that is given in seconds, or that has
-//! outlived an edit of the time step (which holds its seconds), may begin or end in mid-step: a scheme that follows
-//! time between steps then meets the force where it begins, and one that does not feels the force's mean over the
-//! step, so that the impulse is right at every time step.
+//! A push in steps acts on whole steps, like the report's. A push in seconds may begin or end within a step. So may a
+//! push in steps after an edit of the time step, because it keeps its times in seconds. A scheme that follows time
+//! between steps then gets the force when it begins. Any other scheme gets the mean force over the step, so that the
+//! impulse is right at every time step.
 
 use super::Clock;
 use crate::physics::PointForce;
 use crate::scenario::{Push, Scenario, Window};
 
-/// Parts of a step smaller than this are rounding, not time.
+/// Fractions of a step below this are rounding errors.
 const STEP_PART_ROUNDING: f64 = 1e-9;
 
-/// How the windows of pushes that are given in steps are read.
+/// Unit of the windows of pushes that are given in steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Counting {
     Steps,
-    /// As seconds, because the time step has been edited: each step stands for the time step of the scenario as written.
+    /// Seconds, because the time step has been edited. Each step counts as one time step of the scenario as written.
     Seconds {
-        /// That time step, s.
+        /// Time step of the scenario as written, s.
         written_for_s: f64,
     },
 }
@@ -26,11 +26,11 @@ pub enum Counting {
 /// A time step of the run, or a part of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stretch {
-    /// The step it belongs to: step 1 leads from the start to t = dt.
+    /// Number of the step. Step 1 leads from the start to t = dt.
     pub step: u64,
-    /// Its beginning, s.
+    /// Begin, s.
     pub begin: f64,
-    /// Its end, s.
+    /// End, s.
     pub end: f64,
 }
 
@@ -44,7 +44,7 @@ impl Stretch {
     }
 }
 
-/// Writes into `forces` what acts during `stretch`: each push's mean force over it.
+/// Writes the forces during `stretch` into `forces`: the mean force of each push over it.
 pub fn acting(
     pushes: &[Push],
     counting: Counting,
@@ -63,7 +63,7 @@ pub fn acting(
     }
 }
 
-/// Returns the mean force of a push during `stretch`, as a multiple of its stated force.
+/// Returns the mean force of a push during `stretch`, as a multiple of its given force.
 fn factor(push: &Push, counting: Counting, stretch: &Stretch) -> f64 {
     match (push.window, counting) {
         (Window::Steps { first, count }, Counting::Steps) => {
@@ -88,15 +88,15 @@ fn factor(push: &Push, counting: Counting, stretch: &Stretch) -> f64 {
     }
 }
 
-/// Returns the mean factor of an accumulating push between two times, given as numbers of its own steps since its
-/// beginning.
+/// Returns the mean factor of an accumulating push between two times. The times are numbers of its own steps since it
+/// began.
 fn mean_growth(begin: f64, end: f64, count: f64) -> f64 {
     let nth = (end - STEP_PART_ROUNDING).ceil();
     let is_full = begin + STEP_PART_ROUNDING >= count;
     if is_full || nth <= (begin + STEP_PART_ROUNDING).floor() + 1.0 {
         return nth.clamp(0.0, count);
     }
-    // The factors summed up to a time: whole steps 1 + 2 + ..., and the begun one.
+    // Sum of the factors up to a time: the whole steps 1 + 2 + ..., and the fraction of the current one.
     let [sum_to_begin, sum_to_end] = [begin, end].map(|time: f64| {
         let growing = time.clamp(0.0, count);
         let whole = growing.floor();
@@ -108,7 +108,7 @@ fn mean_growth(begin: f64, end: f64, count: f64) -> f64 {
 }
 
 impl Counting {
-    /// Step counts as the seconds they stood for when `scenario` was written.
+    /// Counts steps as the seconds that they meant when `scenario` was written.
     pub fn in_seconds(scenario: &Scenario) -> Self {
         Self::Seconds {
             written_for_s: scenario.written_for_s,
@@ -116,31 +116,30 @@ impl Counting {
     }
 }
 
-/// Returns the times at which `push` of `scenario` begins and ends to act, s; infinity for the end of an accumulating
-/// one.
+/// Returns the times at which `push` of `scenario` begins and ends, s. An accumulating push ends at infinity.
 pub fn acts_s(push: &Push, scenario: &Scenario) -> (f64, f64) {
     let (begin, end) = seconds(push.window, Counting::in_seconds(scenario));
     let grows = push.accumulates && matches!(push.window, Window::Steps { .. });
     (begin, if grows { f64::INFINITY } else { end })
 }
 
-/// Returns a window in seconds, from and to; infinite where it has none.
+/// Returns a window in seconds, from and to. Both are infinite if the window has no times in seconds.
 fn seconds(window: Window, counting: Counting) -> (f64, f64) {
     match (window, counting) {
         (Window::Time { from_s, for_s }, _) => (from_s, from_s + for_s),
         (Window::Steps { first, count }, Counting::Seconds { written_for_s: dt }) => {
             ((first - 1) as f64 * dt, (first - 1 + count) as f64 * dt)
         }
-        // Whole steps have no seconds of their own: they never begin in mid-step.
+        // Whole steps have no times in seconds, and never begin within a step.
         (Window::Steps { .. }, Counting::Steps) => (f64::INFINITY, f64::INFINITY),
     }
 }
 
-/// Returns the share of `stretch` that lies between `from` and `to`, 0 to 1, free of rounding at both ends.
+/// Returns the fraction of `stretch` between `from` and `to`, from 0 to 1, without rounding errors at either end.
 fn share(from: f64, to: f64, stretch: &Stretch) -> f64 {
     let length = stretch.end - stretch.begin;
     if length <= 0.0 {
-        // A time step so small that it does not move t.
+        // The time step is so small that it does not change t.
         return f64::from(from <= stretch.begin && stretch.begin < to);
     }
     match (to.min(stretch.end) - from.max(stretch.begin)) / length {
@@ -150,7 +149,7 @@ fn share(from: f64, to: f64, stretch: &Stretch) -> f64 {
     }
 }
 
-/// Returns the first moment strictly inside `stretch` at which a push counted in seconds begins, ends or (accumulating)
+/// Returns the first time strictly inside `stretch` at which a push in seconds begins, ends or (if it accumulates)
 /// grows.
 pub fn next_change(pushes: &[Push], counting: Counting, stretch: &Stretch) -> Option<f64> {
     let margin = STEP_PART_ROUNDING * (stretch.end - stretch.begin);
@@ -158,8 +157,8 @@ pub fn next_change(pushes: &[Push], counting: Counting, stretch: &Stretch) -> Op
     (moment < stretch.end - margin).then_some(moment)
 }
 
-/// Returns the first moment after `time_s` (s) at which a push counted in seconds begins, ends or grows; infinite where
-/// none does.
+/// Returns the first time after `time_s` (s) at which a push in seconds begins, ends or grows. Infinity if there is
+/// none.
 pub fn next_after(pushes: &[Push], counting: Counting, time_s: f64) -> f64 {
     let changes = pushes.iter().flat_map(|push| {
         let (begin, end) = seconds(push.window, counting);
@@ -176,7 +175,7 @@ fn next_growth(push: &Push, counting: Counting, time_s: f64) -> Option<f64> {
         (Window::Steps { first, count }, Counting::Seconds { written_for_s: dt })
             if push.accumulates =>
         {
-            // The boundary after `time_s`, safely past rounding: `time_s` itself may be one of them.
+            // The next boundary, safely beyond rounding, because `time_s` itself may be a boundary.
             let next = (time_s / dt + STEP_PART_ROUNDING).floor() + 1.0;
             let inside = next >= (first - 1) as f64 && next <= (first - 1 + count) as f64;
             inside.then_some(next * dt)
@@ -214,7 +213,7 @@ mod tests {
             .collect()
     }
 
-    /// Returns the times from `begin` on at which the forces of `push` change.
+    /// Returns the times after `begin` at which the force of `push` changes.
     fn changes(push: Push, counting: Counting, begin: f64, end: f64) -> Vec<f64> {
         let change = |&from: &f64| {
             let stretch = Stretch {

@@ -9,31 +9,31 @@ use crate::physics::{Loads, PointForce, Scheme, State, Workings};
 use crate::scenario::{Edit, Motion, Pushes, Scenario};
 use std::sync::Arc;
 
-/// A run that stands at one of its steps; [`step`](Self::step) takes it to the next. A clone is independent of it and
-/// computes the same bits.
+/// A run at one of its steps. [`step`](Self::step) takes it to the next. A clone is independent, and computes the same
+/// bits.
 #[derive(Clone)]
 pub struct Simulation {
     now: Step,
     scheme: Box<dyn Scheme>,
     pushes: Pushes,
-    /// The forces of the pushes on the step to come, until they are compared with those of the step before.
+    /// Forces of the pushes on the next step, to be compared with those on the present one.
     acting: Vec<PointForce>,
     clock: Clock,
     counting: Counting,
     edits_made: usize,
-    /// The step of the next edit; [`u64::MAX`] if there is none.
+    /// Step of the next edit, or [`u64::MAX`] if there is none.
     next_edit: u64,
     ended: Option<NotFinite>,
-    /// The run before the loads of the coming step were changed: if the step fails, the run is put back to it.
+    /// The run before the loads were changed for the next step. If that step fails, the run is restored from it.
     unchanged: Option<Box<Step>>,
-    /// While |L|² is below this, every number read off a finite state is finite too.
+    /// While |L|² is below this, every number computed from a finite state is finite too.
     safe_below: f64,
-    /// Whether the workings of every step are kept.
+    /// True if the workings of every step are kept.
     keeps_workings: bool,
     rubs: bool,
 }
 
-/// The numbers of a run are no longer finite.
+/// Error: the numbers of a run are no longer finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "{} at step {step}: the run ends at step {}; a shorter time step or another scheme may mend it",
@@ -41,14 +41,14 @@ pub struct Simulation {
     step - 1
 )]
 pub struct NotFinite {
-    /// The step that would have led to them.
+    /// The step that failed.
     pub step: u64,
-    /// Whether that is because the exact motion turns too far in this step to be integrated.
+    /// True if the body turns too far in this step for the exact motion to be integrated.
     pub is_too_far: bool,
 }
 
 impl NotFinite {
-    /// Returns what has happened, without the step.
+    /// Describes the failure, without the step.
     pub fn fact(&self) -> &'static str {
         if self.is_too_far {
             "the body turns too far for the exact motion to be integrated"
@@ -100,11 +100,11 @@ impl Simulation {
         }
     }
 
-    /// Takes the run one time step further and publishes that step.
+    /// Takes the run one time step further, and returns that step.
     ///
     /// # Errors
-    /// When the numbers stop being finite. The run then stays at the step before, which it publishes as it did, and so
-    /// it does at every further call.
+    /// Returns an error if the numbers stop being finite. The run then stays at its present step, and every further
+    /// call fails too.
     #[inline]
     pub fn step(&mut self) -> Result<&Step, NotFinite> {
         self.take_step()?;
@@ -124,7 +124,7 @@ impl Simulation {
         let work = self.integrate_step(workings.as_mut());
         let now = &mut self.now;
         now.after.time_s = self.clock.time_s(now.number + 1);
-        // Only near the largest numbers can one of them overflow: there each is checked.
+        // Numbers can overflow only near the largest floats, so each is checked only there.
         let is_safe = now.after.momentum.norm_squared() < self.safe_below;
         if !now.after.is_finite() || !(is_safe || now.can_be_read()) {
             return Err(self.fail(before, friction));
@@ -135,12 +135,12 @@ impl Simulation {
         now.workings = workings.map(Arc::new);
         now.azimuth.turn_to(&now.after.axle());
         now.turn_rotor();
-        self.unchanged = None; // it may hold workings, which take much memory
+        self.unchanged = None; // it may contain workings, which take much memory
         Ok(())
     }
 
-    /// Ends the run at the step at which it stands, because the next one failed: what was changed for that is put back, so
-    /// that the run is read as it stood before. `before` was the state then, `friction` the work of friction up to it, J.
+    /// Ends the run at its present step, because the next one failed. Everything that was changed for the failed step
+    /// is restored. `before` is the state at the present step, and `friction` the work of friction up to it, J.
     #[cold]
     fn fail(&mut self, before: State, friction: f64) -> NotFinite {
         if let Some(unchanged) = self.unchanged.take() {
@@ -163,14 +163,14 @@ impl Simulation {
         &self.now
     }
 
-    /// Sets whether the [workings](Step::workings) of the steps to come are kept; if not, those of the present one
-    /// go too. They change no bit of the run, but it takes a multiple of the time.
+    /// Sets whether the [workings](Step::workings) of future steps are kept. If not, those of the present step are
+    /// dropped too. Keeping them does not change the run, but takes several times as long.
     pub fn keep_workings(&mut self, kept: bool) {
         self.keeps_workings = kept;
         self.now.workings.take_if(|_| !kept);
     }
 
-    /// Steps until the run stands at `step`.
+    /// Steps until the run is at `step`.
     pub fn step_to(&mut self, step: u64) -> Result<(), NotFinite> {
         while self.now.number < step {
             self.step()?;
@@ -178,8 +178,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// Continues in `scenario` from here. It must have the same past: what differs in it acts on the steps to come, and the
-    /// steps taken so far are those it would have led to. A run that has [ended](Self::has_ended) cannot continue.
+    /// Continues in `scenario`, which must have the same past: its differences apply to the steps to come. A run that
+    /// has [ended](Self::has_ended) cannot continue.
     pub fn branch(&mut self, scenario: Arc<Scenario>) {
         self.edits_made = scenario
             .edits
@@ -194,12 +194,12 @@ impl Simulation {
         self.now.scenario = scenario;
     }
 
-    /// Returns whether the numbers of the next step are not finite.
+    /// Returns true if the next step failed because its numbers are not finite.
     pub fn has_ended(&self) -> bool {
         self.ended.is_some()
     }
 
-    /// Takes the state through the coming step and returns the work the pushes did on the way, J.
+    /// Integrates the state over the next step. Returns the work of the pushes during it, J.
     fn integrate_step(&mut self, mut workings: Option<&mut Workings>) -> f64 {
         let time_step_s = self.now.motion.time_step_s;
         if self.pushes.is_empty() {
@@ -252,7 +252,7 @@ impl Simulation {
             .sum()
     }
 
-    /// Lets the scheme take the state `length_s` further under the present loads.
+    /// Integrates the state over `length_s` (s) under the present loads.
     #[inline]
     fn integrate_part(&mut self, length_s: f64, workings: Option<&mut Workings>) {
         let state = &mut self.now.after;
@@ -273,7 +273,7 @@ impl Simulation {
         }
     }
 
-    /// Counts a change of the loads. The first one at a step keeps the run as it stood, in case the coming step fails.
+    /// Counts a change of the loads. The first change for a step saves the run, in case the step fails.
     fn change_loads(&mut self) {
         if self.unchanged.is_none() {
             self.unchanged = Some(Box::new(self.now.clone()));
@@ -281,7 +281,7 @@ impl Simulation {
         self.now.changes += 1;
     }
 
-    /// Carries out the edits made at this step.
+    /// Applies the edits made at this step.
     fn make_due_edits(&mut self) {
         let scenario = Arc::clone(&self.now.scenario);
         let first = self.edits_made;
@@ -333,27 +333,27 @@ impl Simulation {
         &self.now.after
     }
 
-    /// Returns the forces of the step taken last (at step 0: gravity alone).
+    /// Returns the forces of the last step (at step 0: gravity alone).
     pub fn loads(&self) -> &Loads {
         &self.now.loads
     }
 
-    /// Gravity, scheme and time step of the step taken last (at step 0: of the first).
+    /// Returns gravity, scheme and time step of the last step (at step 0: of the first).
     pub fn motion(&self) -> &Motion {
         &self.now.motion
     }
 
-    /// Returns what the scheme has to say of how the run was computed, beyond its name.
+    /// Returns the scheme's remark on how the run was computed, if it has more than one variant.
     pub fn remark(&self) -> Option<String> {
         self.scheme.remark()
     }
 
-    /// Returns the numbers of this step, as they leave the program.
+    /// Returns the numbers of this step for output.
     pub fn sample(&self) -> Sample {
         self.now.sample()
     }
 
-    /// Returns the first step at or after `time_s` (s), edits of the time step counted in.
+    /// Returns the first step at or after `time_s` (s), edits of the time step included.
     pub fn step_at(scenario: &Scenario, time_s: f64) -> u64 {
         let mut clock = Clock::new(scenario.motion.time_step_s);
         for edit in scenario.edits.iter().filter(|edit| edit.sets_time_step) {
@@ -365,7 +365,7 @@ impl Simulation {
         clock.step_at(time_s)
     }
 
-    /// Returns when the next step ends, s.
+    /// Returns the time at which the next step ends, s.
     pub fn next_time_s(&self) -> f64 {
         let number = self.now.number;
         let mut clock = self.clock;
@@ -378,12 +378,12 @@ impl Simulation {
         clock.time_s(number + 1)
     }
 
-    /// Takes one step of the scheme that ends at `time_s`, s, instead of the run's own. Up to the time at which that would
-    /// have ended, this is the run between its steps: it begins where the step begins and leads to where it leads, and is as
-    /// accurate. A time that is not after the present one changes nothing.
+    /// Takes one step of the scheme that ends at `time_s`, s, in place of the run's next step.
     ///
-    /// From there on its steps end at other times than those of the run: where the run is still needed, call this on a
-    /// clone.
+    /// Up to the time of the next step, this gives the run between its steps, with the same accuracy. It does nothing
+    /// if `time_s` is not later than now.
+    ///
+    /// The steps that follow have other times than those of the run. If the run is still needed, call this on a clone.
     pub fn step_to_time(&mut self, time_s: f64) -> Result<(), NotFinite> {
         if self.next_edit == self.now.number {
             self.make_due_edits();
@@ -395,7 +395,7 @@ impl Simulation {
         self.clock.change(self.now.number, length_s);
         self.now.motion.time_step_s = length_s;
         self.take_step()?;
-        self.now.after.time_s = time_s; // and not the sum, whose last digit may differ
+        self.now.after.time_s = time_s; // not the sum, whose last digit may differ
         Ok(())
     }
 }
@@ -404,7 +404,7 @@ fn step_of_edit(scenario: &Scenario, index: usize) -> u64 {
     scenario.edits.get(index).map_or(u64::MAX, |edit| edit.step)
 }
 
-/// Returns how the step counts of pushes are read: as steps, unless they were written for another time step.
+/// Returns the unit of the step counts of pushes: steps, unless they were written for another time step.
 fn counting(scenario: &Scenario) -> Counting {
     if scenario.written_for_s == scenario.motion.time_step_s {
         Counting::Steps
@@ -413,7 +413,8 @@ fn counting(scenario: &Scenario) -> Counting {
     }
 }
 
-/// |L|² (J² s²) below which energy and traced point cannot leave the range of numbers; 0 where they could at any L.
+/// Returns the |L|² (J² s²) below which energy and traced point are always in the range of numbers; 0 if there is no
+/// such limit.
 fn safe_below(scenario: &Scenario, gravity: f64) -> f64 {
     const LARGEST_STATE: f64 = 1e300;
     let body = &scenario.body.mechanics;

@@ -1,4 +1,4 @@
-//! One time step of a run, whole: everything that shows, measures, explains or exports a step reads this.
+//! The record of one time step of a run. All code that shows, measures, explains or exports a step reads it.
 
 use crate::physics::observables::{self, Azimuth};
 use crate::physics::{Body, Loads, State, Workings};
@@ -8,8 +8,8 @@ use std::cell::OnceCell;
 use std::fmt;
 use std::sync::Arc;
 
-/// The step at which a run stands, as the [simulation](super::Simulation) publishes it. What is read off it is computed
-/// when it is first asked for, and once, however many ask.
+/// A step of a run, as the [simulation](super::Simulation) publishes it. Derived numbers are computed once, when they
+/// are first read.
 #[derive(Clone, Debug)]
 pub struct Step {
     pub(super) scenario: Arc<Scenario>,
@@ -27,16 +27,16 @@ pub struct Step {
     pub(super) derived: Derived,
 }
 
-/// What the energy would be if the scheme made no error.
+/// Terms of the energy balance, which the energy would satisfy if the scheme made no error.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct EnergyAccount {
     /// Energy at the start, J.
     pub start: f64,
     /// Work of pushes and of edits of gravity since then, J.
     pub work: f64,
-    /// Work of friction since then, J: 0, or less.
+    /// Work of friction since then, J. It is never positive.
     pub friction: f64,
-    /// What its error is measured in; `None` where there is nothing to measure it by.
+    /// Unit of the energy error. `None` if there is nothing to measure it by.
     pub scale: Option<EnergyScale>,
 }
 
@@ -66,28 +66,28 @@ impl Step {
         &self.scenario
     }
 
-    /// Its number: step 1 leads from the start to t = dt. 0 at the start, where no step has been taken.
+    /// Returns the number of the step. Step 1 leads from the start to t = dt. It is 0 at the start.
     pub fn number(&self) -> u64 {
         self.number
     }
 
-    /// Gravity, scheme and time step with which it was taken (at the start: those of the first).
+    /// Returns gravity, scheme and time step of this step (at the start: of the first step).
     pub fn motion(&self) -> &Motion {
         &self.motion
     }
 
-    /// Returns the forces that acted on it, those at its end if they changed (at the start: gravity alone).
+    /// Returns the forces during the step, or those at its end if they changed (at the start: gravity alone).
     pub fn loads(&self) -> &Loads {
         &self.loads
     }
 
-    /// Returns how often the forces have changed so far, edits of the time step and the scheme counted in: a period or
-    /// rate that is measured across such a change belongs to no motion.
+    /// Returns how often the forces have changed so far. Edits of the time step and the scheme count too. A period or
+    /// rate that is measured across such a change belongs to no single motion.
     pub fn changes(&self) -> u64 {
         self.changes
     }
 
-    /// Returns the state before it; `None` at the start.
+    /// Returns the state before the step. `None` at the start.
     pub fn before(&self) -> Option<&State> {
         (self.number > 0).then_some(&self.before)
     }
@@ -100,18 +100,18 @@ impl Step {
         self.after.time_s
     }
 
-    /// Returns what the scheme computed on the way; `None` at the start, and where nobody has [asked for
-    /// it](super::Simulation::keep_workings).
+    /// Returns the intermediate results of the scheme. `None` at the start, or if they [are not
+    /// kept](super::Simulation::keep_workings).
     pub fn workings(&self) -> Option<&Arc<Workings>> {
         self.workings.as_ref()
     }
 
-    /// Returns the axle's azimuth after it, counted on through full turns.
+    /// Returns the axle's azimuth after the step, with all full turns.
     pub fn azimuth(&self) -> &Azimuth {
         &self.azimuth
     }
 
-    /// Returns the traced point, world frame, m.
+    /// Returns the position of the traced point, world frame, m.
     #[inline]
     pub fn position(&self) -> &Vector3<f64> {
         self.derived.position.get_or_init(|| {
@@ -120,7 +120,7 @@ impl Step {
         })
     }
 
-    /// ω = I⁻¹L after it, world frame, rad/s.
+    /// Returns ω = I⁻¹L after the step, world frame, rad/s.
     #[inline]
     pub fn angular_velocity(&self) -> &Vector3<f64> {
         self.derived.angular_velocity.get_or_init(|| {
@@ -128,14 +128,14 @@ impl Step {
         })
     }
 
-    /// Angle of the axle from +z, degrees.
+    /// Returns the angle of the axle from +z, degrees.
     #[inline]
     pub fn tilt_deg(&self) -> f64 {
         let tilt = &self.derived.tilt_deg;
         *tilt.get_or_init(|| observables::tilt_deg(&self.after))
     }
 
-    /// Kinetic and potential energy, from the pivot, J.
+    /// Returns the kinetic and potential energy, J. The potential energy is 0 at the height of the pivot.
     #[inline]
     pub fn energy(&self) -> f64 {
         *self.derived.energy.get_or_init(|| {
@@ -145,26 +145,28 @@ impl Step {
         })
     }
 
-    /// Work of friction since the start, J, as [the scheme](crate::physics::Scheme::friction_work) has it: 0, or less.
+    /// Returns the work of friction since the start, J, according to [the
+    /// scheme](crate::physics::Scheme::friction_work). It is never positive.
     pub fn friction_work(&self) -> f64 {
         self.energy.friction
     }
 
-    /// (E − E₀ − W)/S: the energy that only the scheme's error can have made, W the work of pushes, of edits of gravity and
-    /// of friction, S as [`EnergyScale`] has it; `None` where there is no S, or the drift is beyond the range of numbers.
+    /// Returns the energy error (E − E₀ − W)/S, which only the scheme can have caused. W is the work of pushes, of
+    /// edits of gravity and of friction, and S is the [`EnergyScale`]. `None` if there is no S, or the error is beyond
+    /// the range of numbers.
     pub fn energy_drift(&self) -> Option<f64> {
         let gained = self.energy() - self.energy.start - self.energy.work - self.energy.friction;
         let drift = gained / self.energy.scale?.size;
         drift.is_finite().then_some(drift)
     }
 
-    /// Returns what the energy drift is measured in; `None` where there is nothing to measure it by.
+    /// Returns the unit of the energy error. `None` if there is nothing to measure it by.
     pub fn energy_unit(&self) -> Option<EnergyUnit> {
         self.energy.scale.map(|scale| scale.unit)
     }
 
-    /// Lets a rotor turn in its frame as it spun from the state before it to the one after it: by the mean of both rates, an
-    /// error of the second order in the time step where friction slows it, else none.
+    /// Turns a rotor in its frame by its mean spin from the state before the step to the state after it. With friction,
+    /// the error is of second order in the time step. Otherwise there is none.
     #[inline]
     pub(super) fn turn_rotor(&mut self) {
         if self.scenario.body.mechanics.frame_moment() != 0.0 {
@@ -175,7 +177,7 @@ impl Step {
         }
     }
 
-    /// Its numbers as they leave the program.
+    /// Returns the numbers of the step for output.
     pub fn sample(&self) -> Sample {
         Sample {
             step: self.number,
@@ -197,22 +199,22 @@ impl Step {
         }
     }
 
-    /// Returns whether every number read off the state is finite: squares leave the range of numbers before L itself
-    /// does. A finite energy means a finite Omega too.
+    /// Returns true if every number computed from the state is finite. Squares leave the range of numbers before L
+    /// itself does. If the energy is finite, Omega is finite too.
     pub(super) fn can_be_read(&self) -> bool {
         self.energy().is_finite() && self.position().iter().all(|c| c.is_finite())
     }
 }
 
-/// The state at one step as it leaves the program.
+/// State at one step, for output.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// Number of the step, 0 at the start.
+    /// Number of the step; 0 at the start.
     pub step: u64,
     pub time_s: f64,
-    /// Orientation: turns body-frame vectors into world-frame ones.
+    /// Orientation, which turns body-frame vectors into world-frame ones.
     pub orientation: Matrix3<f64>,
-    /// The traced point, world frame, m.
+    /// Traced point, world frame, m.
     pub position: Vector3<f64>,
     /// Angular momentum about the pivot, world frame, J s.
     pub momentum: Vector3<f64>,
@@ -220,33 +222,34 @@ pub struct Sample {
     pub angular_velocity: Vector3<f64>,
     /// Angle of the axle from +z, degrees.
     pub tilt_deg: f64,
-    /// Azimuth of the axle, counted on through full turns, degrees.
+    /// Azimuth of the axle with all full turns, degrees.
     pub azimuth_deg: f64,
-    /// Kinetic and potential energy, from the pivot, J.
+    /// Kinetic and potential energy, J; the potential energy is 0 at the height of the pivot.
     pub energy: f64,
     /// Vertical force of the floor on the foot, N.
     pub foot_force: f64,
-    /// The angle about the axle by which a rotor has turned in its frame since the start, rad; 0 where the whole body spins.
+    /// Angle by which a rotor has turned in its frame about the axle since the start, rad; 0 if the whole body spins.
     pub rotor_turn: f64,
-    /// The number of edits of time step, scheme or gravity before this step.
+    /// Number of edits of time step, scheme or gravity before this step.
     pub segment: u64,
 }
 
 impl Sample {
-    /// ω along the body's own x, y and axle, rad/s: what an instrument on the body measures.
+    /// Returns ω along the body's own x, y and axle, rad/s, as an instrument on the body measures it.
     pub fn omega(&self) -> Vector3<f64> {
         self.orientation.tr_mul(&self.angular_velocity)
     }
 }
 
-/// M g |c| below this part of the kinetic energy at the start is no scale: the body is balanced, or nearly.
+/// Minimum ratio of M g |c| to the kinetic energy at the start. Below it, the body is nearly balanced, and M g |c| is
+/// not used as the scale.
 const LEAST_ENERGY_PART: f64 = 1e-9;
-/// A centre of mass nearer to the pivot than this part of the body's size is at the pivot but for rounding.
+/// Distance of the center of mass from the pivot that is a rounding error, as a fraction of the body's size.
 const CENTER_ROUNDING: f64 = 1e-12;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EnergyUnit {
-    /// M g |c|, c the centre of mass seen from the pivot.
+    /// M g |c|, where c is the center of mass seen from the pivot.
     Weight,
     KineticAtStart,
 }
@@ -260,17 +263,17 @@ impl fmt::Display for EnergyUnit {
     }
 }
 
-/// S, by which an energy drift is divided.
+/// S, the scale by which an energy error is divided.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EnergyScale {
-    /// Its size, J; above 0 and finite.
+    /// Size of the scale, J; positive and finite.
     pub size: f64,
     pub unit: EnergyUnit,
 }
 
 impl EnergyScale {
-    /// Returns M g |c|, or the kinetic energy at the start where M g |c| is below 1e-9 of it; `None` where both are 0 (M g
-    /// |c| up to rounding), or beyond the range of numbers.
+    /// Returns M g |c|, or the kinetic energy at the start if M g |c| is below 1e-9 of it. `None` if both are 0 (M g
+    /// |c| to within rounding), or beyond the range of numbers.
     pub fn find(scenario: &Scenario) -> Option<Self> {
         let body = &scenario.body.mechanics;
         let kinetic = observables::kinetic_energy(body, &scenario.start);
@@ -284,7 +287,7 @@ impl EnergyScale {
     }
 }
 
-/// Returns M |c|, kg m; 0 where rounding leaves it of a sum that should be 0.
+/// Returns M |c|, kg m. A sum that is 0 except for rounding gives 0.
 fn first_moment(body: &Body) -> f64 {
     let first_moment = body.first_moment().norm();
     let points = body.points().iter();

@@ -1,7 +1,7 @@
-//! The exact motion of a scenario, beside which a run is shown.
+//! The exact motion of a scenario, with which a run is compared.
 //!
-//! It has the scenario's start, and its pushes and edits of gravity at the same times in seconds. It never takes over the
-//! state that the scheme has computed, and edits of the time step or the scheme do not change it.
+//! It has the scenario's start, and its pushes and edits of gravity at the same times in seconds. It never uses a state
+//! that the scheme has computed, and does not depend on edits of the time step or the scheme.
 
 use super::Clock;
 use super::pushes::{self, Counting, Stretch};
@@ -11,15 +11,15 @@ use crate::scenario::{Pushes, Scenario};
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 
-/// The exact motion of one scenario, at any time.
+/// Exact motion of one scenario, at any time.
 #[derive(Clone, Debug)]
 pub struct Truth {
     scenario: Arc<Scenario>,
-    /// The state at t = 0.
+    /// State at t = 0.
     start: State,
-    /// The stretches of time between edits of gravity and pushes, in order; the first begins at 0.
+    /// Time intervals between edits of gravity and pushes, in order. The first begins at 0.
     eras: Vec<Era>,
-    /// The motion since the forces last changed, and when they change next.
+    /// Motion since the forces last changed.
     piece: ExactMotion,
     end_s: f64,
     loads: Loads,
@@ -39,7 +39,7 @@ impl Truth {
         Self::from_start(scenario, start)
     }
 
-    /// Returns the exact motion under the forces of `scenario` that is in the state `start` at t = 0.
+    /// Returns the exact motion under the forces of `scenario`, with the state `start` at t = 0.
     pub fn from_start(scenario: Arc<Scenario>, start: State) -> Self {
         let mut truth = Self {
             eras: eras(&scenario),
@@ -54,23 +54,23 @@ impl Truth {
         truth
     }
 
-    /// Returns the state at `time_s`, s, not negative. Later times cost little; one before the forces last changed goes
-    /// through the changes from the start again.
+    /// Returns the state at `time_s`, s, which must not be negative. Later times cost little. For a time before the
+    /// last change of forces, the motion is computed again from the start.
     pub fn state_at(&mut self, time_s: f64) -> State {
         self.go_to(time_s);
         self.piece.at(time_s)
     }
 
-    /// Returns the orientation of [`state_at`](Self::state_at) alone, which takes half of the time.
+    /// Returns only the orientation of [`state_at`](Self::state_at), in half the time.
     #[inline]
     pub fn orientation_at(&mut self, time_s: f64) -> Matrix3<f64> {
         self.go_to(time_s);
         self.piece.orientation_at(time_s)
     }
 
-    /// Returns where the point `at` of the body (body frame, m) is at `times` (s, in order), within a few units of
-    /// rounding of its distance from the pivot: x, y and z, m, world frame. `None` where there is no such short way, or
-    /// the forces change before the last of them.
+    /// Returns the positions of the body's point `at` (body frame, m) at `times` (s, in order): x, y and z, m, world
+    /// frame. They are accurate to a few units of rounding of its distance from the pivot. `None` if there is no such
+    /// fast computation, or the forces change before the last time.
     pub fn positions_near(
         &self,
         at: &Vector3<f64>,
@@ -82,7 +82,7 @@ impl Truth {
             .flatten()
     }
 
-    /// Goes to the piece that `time_s` lies in.
+    /// Goes to the piece of the motion that contains `time_s`.
     #[inline]
     fn go_to(&mut self, time_s: f64) {
         if time_s < self.piece.begin_s() {
@@ -95,13 +95,13 @@ impl Truth {
         }
     }
 
-    /// Continues as the exact motion of `scenario`, whose past is the same up to the time asked for last.
+    /// Continues as the exact motion of `scenario`, which has the same past up to the last requested time.
     pub fn branch(&mut self, scenario: &Arc<Scenario>) {
         self.eras = eras(scenario);
         self.scenario = Arc::clone(scenario);
         let begin_s = self.piece.begin_s();
         self.end_s = self.end_of_piece(begin_s);
-        // What is done where the piece begins, as at the start, is in force on all of it.
+        // An edit at the beginning of the piece, as at the start, applies to the whole piece.
         if self.loads_from(begin_s) != self.loads {
             let state = if begin_s == 0.0 {
                 self.start
@@ -116,28 +116,28 @@ impl Truth {
         &self.scenario
     }
 
-    /// Returns the exact motion under the forces of the time asked for last.
+    /// Returns the exact motion under the forces at the last requested time.
     pub fn motion(&self) -> &ExactMotion {
         &self.piece
     }
 
-    /// Returns the forces of the time asked for last.
+    /// Returns the forces at the last requested time.
     pub fn loads(&self) -> &Loads {
         &self.loads
     }
 
-    /// Returns when the forces change next after the time asked for last, s; infinity if they never do.
+    /// Returns the time of the next change of forces after the last requested time, s. Infinity if they never change.
     pub fn end_s(&self) -> f64 {
         self.end_s
     }
 
-    /// Returns how it is found at the time asked for last.
+    /// Returns the method that gives the motion at the last requested time.
     pub fn kind(&self) -> ExactMethod {
         self.piece.kind()
     }
 
-    /// Returns the number of times the forces have changed so far. What a caller keeps of [`motion`](Self::motion) is
-    /// valid as long as this number stays the same.
+    /// Returns the number of changes of the forces so far. A copy of [`motion`](Self::motion) is valid while this
+    /// number stays the same.
     pub fn changes(&self) -> u64 {
         self.pieces
     }
@@ -147,7 +147,7 @@ impl Truth {
         begun.saturating_sub(1)
     }
 
-    /// Returns when the forces change next after `begin` (s).
+    /// Returns the time of the next change of forces after `begin` (s).
     fn end_of_piece(&self, begin: f64) -> f64 {
         let index = self.era_at(begin);
         let counting = Counting::in_seconds(&self.scenario);
@@ -197,7 +197,7 @@ fn eras(scenario: &Scenario) -> Vec<Era> {
         pushes: scenario.pushes.clone(),
     }];
     for (begin_s, edit) in Clock::edits(scenario) {
-        // An edit of the time step or the scheme touches no force, and so not a bit of the exact motion.
+        // An edit of the time step or the scheme changes no force, and therefore not the exact motion.
         match eras.last() {
             Some(last) if last.gravity == edit.motion.gravity && last.pushes == edit.pushes => {}
             _ => eras.push(Era {

@@ -12,7 +12,7 @@ pub enum ExpressionNode {
 #[derive(Debug)]
 pub struct Operator {
     pub name: &'static str,
-    /// How tightly it binds: the larger, the tighter.
+    /// Precedence. A larger number binds more tightly.
     pub power: u8,
     apply: fn(f64, f64) -> f64,
 }
@@ -23,7 +23,7 @@ pub const COMPARES: u8 = 3;
 const ADDS: u8 = 4;
 pub const MULTIPLIES: u8 = 5;
 
-/// Of two that begin alike the longer stands first. A condition is 1 where it holds and 0 where it does not.
+/// All operators. If two begin alike, the longer one comes first. A condition is 1 if true and 0 if false.
 pub static OPERATORS: [Operator; 12] = [
     operator("<=", COMPARES, |a, b| truth(a <= b)),
     operator(">=", COMPARES, |a, b| truth(a >= b)),
@@ -35,7 +35,7 @@ pub static OPERATORS: [Operator; 12] = [
     operator("-", ADDS, |a, b| a - b),
     operator("*", MULTIPLIES, |a, b| a * b),
     operator("/", MULTIPLIES, |a, b| a / b),
-    // Where neither side decides.
+    // Result if neither side decides it.
     operator("and", AND, |_, _| 1.0),
     operator("or", OR, |_, _| 0.0),
 ];
@@ -49,7 +49,7 @@ fn truth(holds: bool) -> f64 {
 }
 
 impl Operator {
-    /// Returns the result where one side alone decides it, whatever the other is.
+    /// Returns the result if this side alone decides it.
     fn decided_by(&self, side: Option<f64>) -> Option<f64> {
         match (self.power, side?) {
             (OR, value) if value != 0.0 => Some(1.0),
@@ -58,7 +58,7 @@ impl Operator {
         }
     }
 
-    /// Returns the result with the value `left`; `right` computes the other one where it is needed.
+    /// Returns the result for the value `left`. `right` is called only if the other value is needed.
     fn value(&self, left: Option<f64>, right: impl FnOnce() -> Option<f64>) -> Option<f64> {
         self.decided_by(left).or_else(|| {
             let other = right();

@@ -1,20 +1,20 @@
-//! Reads an expression, and says where and why it cannot.
+//! Parses expressions. Errors have a position and a reason.
 
 use super::node::{COMPARES, ExpressionNode, MULTIPLIES, OPERATORS, Operator};
 
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("column {column}: {rule}")]
 pub struct Fault {
-    /// The character at which the error shows, counted from 1.
+    /// Position of the error, characters from 1.
     pub column: usize,
     pub rule: String,
 }
 
 const LONGEST_EXPRESSION: usize = 1000;
-/// How deep parentheses and signs may be nested.
+/// Maximum depth of nested parentheses and signs.
 const DEEPEST_NESTING: usize = 64;
 
-/// Parses `text`. Returns the expression, and every name in it once with the column (from 1) where it stands first.
+/// Parses `text`. Returns the expression, and every name once with the column (from 1) of its first occurrence.
 pub fn parse(text: &str) -> Result<(ExpressionNode, Vec<(String, usize)>), Fault> {
     if text.len() > LONGEST_EXPRESSION {
         let rule = format!("an expression has at most {LONGEST_EXPRESSION} characters");
@@ -33,17 +33,17 @@ pub fn parse(text: &str) -> Result<(ExpressionNode, Vec<(String, usize)>), Fault
     Ok((root, parser.names))
 }
 
-/// Reads `text` from its beginning to its end.
+/// Parses `text` from beginning to end.
 struct Parser<'a> {
     text: &'a str,
-    /// Where the next character stands, in bytes.
+    /// Position of the next character, bytes.
     at: usize,
     /// Each name once, with its column.
     names: Vec<(String, usize)>,
     depth: usize,
 }
 
-/// Returns the number, name or operator in letters at the beginning of `rest`; empty where it begins with a sign.
+/// Returns the number, name or word operator at the beginning of `rest`. It is empty if `rest` begins with a sign.
 fn word(rest: &str) -> &str {
     let is_number = rest.starts_with(|c: char| c.is_ascii_digit() || c == '.');
     let mut before = ' ';
@@ -56,7 +56,7 @@ fn word(rest: &str) -> &str {
     &rest[..end.unwrap_or(rest.len())]
 }
 
-/// Returns what is wrong with the sign `c`, which `next` follows.
+/// Describes the error of the sign `c`, which is followed by `next`.
 fn no_meaning(c: char, next: Option<char>) -> String {
     match (c, next) {
         ('=', Some('>')) => "write >= for =>".to_owned(),
@@ -69,14 +69,14 @@ fn no_meaning(c: char, next: Option<char>) -> String {
 }
 
 impl<'a> Parser<'a> {
-    /// Returns what has not been read; it begins with no space.
+    /// Returns the rest of the text, without leading spaces.
     fn rest(&mut self) -> &'a str {
         let rest = self.text[self.at..].trim_start();
         self.at = self.text.len() - rest.len();
         rest
     }
 
-    /// Returns the column of the next character that is no space.
+    /// Returns the column of the next character that is not a space.
     fn column(&mut self) -> usize {
         self.rest();
         self.text[..self.at].chars().count() + 1
@@ -98,7 +98,7 @@ impl<'a> Parser<'a> {
         })
     }
 
-    /// Error for the token at the cursor: `rule` if the token is known, else that it has no meaning.
+    /// Returns an error for the token at the cursor: `rule` if the token is known, otherwise that it has no meaning.
     fn misplaced<T>(&mut self, rule: &str) -> Result<T, Fault> {
         let column = self.column();
         let rest = self.rest();
@@ -111,7 +111,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// Returns the operands joined by operators that bind at least as tightly as `least`.
+    /// Parses operands joined by operators with a precedence of at least `least`.
     fn expression(&mut self, least: u8) -> Result<ExpressionNode, Fault> {
         let begin = self.column();
         self.depth += 1;
