@@ -4,7 +4,7 @@
 //! This crate uses the crate [`physics`]. Code belongs here if it needs neither a screen nor a page. Code that draws,
 //! or that asks the user, belongs to the program.
 //!
-//! The modules, each of which uses only modules listed before it:
+//! The modules follow. Each uses only modules listed before it.
 //!
 //! - [`text`](mod@text): numbers and words as people read them, free of control characters that a terminal would obey.
 //! - [`cores`]: work on all cores.

@@ -106,7 +106,7 @@ impl Recording {
         self.newest(self.levels.len()).reduce(RecordingBin::and)
     }
 
-    /// Returns the bins smaller than those of `size` that are not yet in a larger one, in order of time.
+    /// Returns the bins below the size `size` that are not yet in a larger bin, in order of time.
     fn newest(&self, size: usize) -> impl Iterator<Item = RecordingBin> {
         let smaller = self.levels[..size].iter().rev();
         smaller.flat_map(Level::waiting).copied()

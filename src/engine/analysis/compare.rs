@@ -23,7 +23,7 @@ use std::time::{Duration, Instant};
 pub struct ComparisonRow {
     pub scheme: &'static str,
     pub time_step_s: f64,
-    /// Number of steps taken. It is less than requested if the numbers stopped being finite.
+    /// Number of completed steps. It is less than requested if the numbers stopped being finite.
     pub steps: u64,
     /// Largest distance of the traced point from the exact motion, m, while the motion can be predicted. `None` if the
     /// run or the exact motion stopped being finite.

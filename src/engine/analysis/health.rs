@@ -1,8 +1,8 @@
 //! Judges whether a run's numbers can be trusted and, if not, finds a fix by trial.
 //!
-//! Effect of the report's scheme on a symmetric body, with ψ = |Ω|dt: while L is frozen, each step multiplies the
-//! axle's small offset from L by A = 1 − κ + κ e^{iψ}. The true factor is e^{iκψ}. A torque that turns L by δ =
-//! |τ|dt/|L| per step makes the axle lag by δ/|1 − A|. The true lag is δ/(κψ).
+//! The formulas below describe the report's scheme on a symmetric body, with ψ = |Ω|dt. While L is frozen, each step
+//! multiplies the axle's small offset from L by A = 1 − κ + κ e^{iψ}. The true factor is e^{iκψ}. A torque that turns L
+//! by δ = |τ|dt/|L| per step makes the axle lag by δ/|1 − A|. The true lag is δ/(κψ).
 
 use super::cost::{AFFORDABLE_RAD, integration_rad, is_affordable};
 use super::deviation::{Deviation, ExactReference};

@@ -11,10 +11,10 @@
 //! difference between the two results is the error of the scheme's step. The uncertainty consists of this error, of
 //! rounding, and of the deviation of the turning points from a steady rate. Half a nutation is enough then.
 //!
-//! In other runs, a parabola through three rows gives the highest points. These are runs of lopsided bodies, with a
-//! load off the axle, with too long a time step, or with a nutation no larger than the error of a first-order scheme.
-//! Four nutations are needed to know how much they differ, and sixteen for a lopsided body. If a nutation may be missed
-//! between two rows, no period is reported.
+//! In other runs, a parabola through three rows gives the highest points. This applies to lopsided bodies, to loads off
+//! the axle, and to time steps that are too long. It also applies if the nutation is no larger than the error of a
+//! first-order scheme. Four nutations are needed to know how much they differ, and sixteen for a lopsided body. If a
+//! nutation may be missed between two rows, no period is reported.
 //!
 //! The direction in which a lopsided body points at a turning point changes the length of its nutations, in beats that
 //! may be longer than the run (see `beats`). Its numbers are reported once all directions have been seen, and its

@@ -2,8 +2,10 @@
 //!
 //! The axle's small offset w from L is a complex number in the plane across L: the real axis points down, the imaginary
 //! axis in the direction of the precession. With ψ = |Ω|dt, each step multiplies w by A = 1 − κ + κ e^{iψ}. The torque
-//! turns L by δ = |τ|dt/|L| in the direction of the precession. So w' = A w − iδ: the axle lags L by w* = −iδ/(1 − A),
-//! and swings about that. |w*| = δ/|1 − A| is large if ψ is near 2πk. The true value is |w*| = δ/(κψ).
+//! turns L by δ = |τ|dt/|L| in the direction of the precession.
+//!
+//! So w' = A w − iδ: the axle lags L by w* = −iδ/(1 − A), and swings about that. The lag δ/|1 − A| is large if ψ is
+//! near 2πk. The true lag is δ/(κψ).
 //!
 //! This theory is linear. The swing changes |L| and therefore ψ, which detunes the prediction near ψ = 2πk. The
 //! resulting error is estimated, and there is no prediction if it exceeds about a tenth. The factors of the estimate

@@ -17,8 +17,8 @@ const NO_AZIMUTH_RAD: f64 = 1e-7;
 /// Maximum turn of the body or its axle per time step, up to which schemes of finite order are followed between rows,
 /// rad.
 const FOLLOWED_RAD: f64 = 1.0;
-/// If the axle may turn by more than this in a time step, rad, the step may hide a whole turn of the azimuth between
-/// two rows that are close together. So may half a turn near the vertical.
+/// Rotation of the axle per time step, rad, above which the step may hide a whole turn of the azimuth although its rows
+/// are close together. Near the vertical, the azimuth turns by half a turn in an instant.
 const HIDES_RAD: f64 = 1.5;
 /// Maximum turn of an axle between two rows, rad. A faster one is not followed.
 const MOST_TURN_RAD: f64 = 60.0;

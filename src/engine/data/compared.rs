@@ -4,7 +4,7 @@
 use super::{MeasuredCurve, MeasuredPlace, MeasuredPoint, RunQuantity, TimeSeries, places};
 use nalgebra::Vector3;
 
-/// Measured data, each value with that of the run.
+/// Measured data, each value with the run's value.
 #[derive(Clone, Debug, Default)]
 pub struct Compared {
     /// Values of each column, in order of time.

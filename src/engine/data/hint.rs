@@ -46,7 +46,8 @@ pub(super) fn hint(cells: &Csv, map: &[Renaming], origin: &str) -> String {
     }
 }
 
-/// Returns the option with `map` and the missing columns. If there are several tracks, only those of the track `only`.
+/// Returns the option with `map` and the missing columns. If there are several tracks, only columns of the track `only`
+/// are added.
 fn completed(cells: &Csv, map: &[Renaming], origin: &str, only: Option<&str>) -> Option<String> {
     let mut guess = Guess {
         cells,

@@ -83,7 +83,7 @@ impl<S: Borrow<TimeSeries>> RunReader<S> {
         }
     }
 
-    /// Returns the values read so far: for each curve, those of its first points.
+    /// Returns the values read so far. The values of a curve belong to its first points.
     pub fn values(&self) -> &[Vec<f64>] {
         &self.values
     }

@@ -1,5 +1,5 @@
-//! Values that follow from several keys of a scenario, and can be set through them: for example the size of L with its
-//! direction kept, its tilt, and the total mass.
+//! Values that follow from several keys of a scenario, and can be set through them. Examples are the size and the tilt
+//! of L, and the total mass.
 
 use super::parameters::MOST_LISTED;
 use crate::scenario::file::{ScenarioFile, VectorFrame};

@@ -161,7 +161,7 @@ fn opened(name: &str, scenario: &Scenario, is_joined: bool) -> (RunRecord, Vec<A
 
 /// List and cursor.
 impl Journal {
-    /// Creates a journal with a single run, that of `scenario`, opened as `name`.
+    /// Creates a journal with a single run: `scenario`, opened as `name`.
     pub fn new(name: &str, scenario: &Scenario) -> Self {
         let (first, entries) = opened(name, scenario, false);
         Self {

@@ -97,7 +97,7 @@ impl Edit {
 }
 
 impl NamedBody {
-    /// Returns the number of points before those of the parts.
+    /// Returns the number of points that come before the points of parts.
     pub fn points_before_parts(&self) -> usize {
         self.mechanics.points().len() - part::POINTS_PER_PART * self.parts.len()
     }
