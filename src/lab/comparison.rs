@@ -34,7 +34,7 @@ const CATCHING_UP: Duration = Duration::from_millis(40);
 enum Pinned {
     /// The present run, unchanged since it was pinned.
     Present,
-    /// An earlier run, or the present one before an edit.
+    /// An earlier run, or the present run before an edit.
     Before(Box<Ghost>),
     /// An earlier run from a session. Its pictures are being recomputed.
     Returning(PendingGhost),

@@ -29,7 +29,7 @@ const HAS_EXACT: &str = "the exact motion is drawn in dashes";
 #[derive(Clone, Debug, Default)]
 pub struct Messages {
     said: Option<ShownMessage>,
-    /// Why the session cannot be saved, if it cannot.
+    /// The reason why the session cannot be saved; `None` if it can.
     trouble: Option<String>,
     /// True if the last key was a request to quit that got a warning.
     was_warned: bool,

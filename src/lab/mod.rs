@@ -208,7 +208,7 @@ impl Lab {
         &mut self.messages
     }
 
-    /// Shows why the session cannot be saved, until it can.
+    /// Shows the reason why the session cannot be saved, until it can.
     pub fn set_trouble(&mut self, trouble: Option<String>) {
         self.changed |= self.messages.set_trouble(trouble);
     }

@@ -330,7 +330,7 @@ impl Player {
         self.is_flat_out() || now >= self.read_at + READING_INTERVAL
     }
 
-    /// Reads the numbers.
+    /// Updates the reading and the numbers at the cursor.
     pub(super) fn read(&mut self, now: Duration, view: &View) {
         self.reading = Reading::new(&mut self.run, &self.pace);
         self.read_at = now;

@@ -64,7 +64,7 @@ pub(super) struct KeptPlace {
     /// The new names of its columns.
     #[serde(default)]
     map: Vec<Renaming>,
-    /// The uncertainties of columns without any.
+    /// The uncertainties for columns without any.
     #[serde(default)]
     sigma: Vec<ColumnSigma>,
     pub(super) next_push: NextPush,

@@ -12,7 +12,7 @@ pub struct Snapshot {
     /// contains them.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub name: String,
-    /// The run file.
+    /// The run file, as text.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub run: String,
     /// Time at which the run ends, s. The run file does not contain it, and an edit of the time step does not change

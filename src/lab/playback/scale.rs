@@ -1,4 +1,4 @@
-//! The range of values that an axis shows, and the round values at its ticks.
+//! The range of values on an axis, and the number of decimals for its labels.
 
 use crate::engine::recording::Extent;
 

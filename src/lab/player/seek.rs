@@ -59,7 +59,7 @@ pub enum SeekPurpose {
     Replay { then_plays: bool },
 }
 
-/// Why the run stopped by itself.
+/// The reason why the run stopped by itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::lab) enum Halt {
     ConditionMet,
@@ -115,7 +115,7 @@ impl Player {
         self.fast_forward(steps, if is_short { steps } else { 0 }, purpose);
     }
 
-    /// Takes `steps` time steps and stops: the first `at_once` before returning, the others over the next frames.
+    /// Takes `steps` time steps and stops: the first `at_once` before it returns, the others over the next frames.
     pub(super) fn fast_forward(&mut self, steps: u64, at_once: u64, purpose: SeekPurpose) {
         self.set_running(false);
         let here = self.step_number();
@@ -288,7 +288,7 @@ impl Player {
         self.is_running() || self.seeking().is_some()
     }
 
-    /// Returns true if the picture changes with time: the run moves, or the exact motion is being computed.
+    /// Returns true if the picture changes with time: the run moves, or the exact motion catches up with it.
     pub fn is_busy(&self) -> bool {
         self.is_moving() || self.run.overlay_is_behind()
     }

@@ -3,15 +3,15 @@
 /// The characters with which dots are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Marker {
-    /// Two by four dots in a cell.
+    /// Two by four dots per cell.
     Braille,
-    /// Two by four dots in a cell, without gaps (Unicode 16). Few fonts have these characters.
+    /// Two by four dots per cell, without gaps (Unicode 16). Few fonts have these characters.
     Octant,
-    /// Two halves of a cell, one above the other.
+    /// Two half cells, one above the other.
     HalfBlock,
-    /// One round point in a cell.
+    /// One round dot per cell.
     Dot,
-    /// One ASCII character in a cell. Texts and borders are ASCII too.
+    /// One ASCII character per cell. Texts and borders are ASCII too.
     Ascii,
 }
 
