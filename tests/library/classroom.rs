@@ -33,7 +33,7 @@ Words.
 
 ```predict
 name = "q"
-ask = "How does it go on?"
+ask = "What happens next?"
 choices = ["as before", "the right way", "another way"]
 right = 2
 ```
@@ -335,7 +335,7 @@ fn a_seat_without_a_class_waits_and_shows_nothing_of_a_run() {
         .shows("aside, k: back");
     ben.press("k");
     settle(&mut [&mut teacher, &mut anna, &mut ben]);
-    ben.shows("following · 2 of 4").shows("How does it go on?");
+    ben.shows("following · 2 of 4").shows("What happens next?");
     // Once the class is over, the page stays.
     teacher.role.leave().unwrap();
     settle(&mut [&mut anna, &mut ben]);
@@ -419,7 +419,7 @@ fn the_projector_shows_nothing_that_is_the_teachers() {
     }
     settle_with(&mut teacher, &mut seats, &mut projector);
     projector
-        .shows("How does it go on?")
+        .shows("What happens next?")
         .shows("0 of 5 have answered");
     seats[0].press("1\n");
     settle_with(&mut teacher, &mut seats, &mut projector);
