@@ -18,8 +18,8 @@ fn open(size: Rect) -> Stage {
 fn the_help_does_the_entry_that_is_found() {
     let mut stage = open(SMALL);
     let step = stage.step();
-    stage.press("?/one time step on");
-    stage.shows("help: one time step on_").press("\n").wait(0.1);
+    stage.press("?/one time step forward");
+    stage.shows("help: one time step forward_").press("\n").wait(0.1);
     assert_eq!(
         (stage.lab.popups().mode, stage.step()),
         (Mode::Lab, step + 1)
@@ -39,7 +39,7 @@ fn the_help_finds_how_curves_are_drawn_and_the_colors() {
     for word in ["dashed", "dotted", "light", "dark"] {
         let mut stage = open(SMALL);
         stage.press(&format!("?{word}"));
-        stage.shows_no("nothing has that");
+        stage.shows_no("no entry found");
     }
 }
 
@@ -48,7 +48,7 @@ fn letters_of_the_help_are_typed_and_esc_clears_them_first() {
     let mut stage = open(SMALL);
     stage.press("?").shows("help: type to search").shows("►");
     stage.press("qkj").shows("help: qkj_ (0)");
-    stage.shows("nothing has that").press("\n");
+    stage.shows("no entry found").press("\n");
     stage.shows("nothing is selected");
     stage.press(ESC).shows("help: type to search").press(ESC);
     stage.shows_no("help: ");
@@ -100,8 +100,8 @@ fn the_keys_of_a_pane_stand_under_its_title_and_turn_to_it() {
 #[test]
 fn a_key_of_another_place_is_not_done_but_says_where_it_works() {
     let mut stage = open(SMALL);
-    stage.press("?apply what is typed\n");
-    stage.shows("in a dialog: this key works there");
+    stage.press("?apply; in the settings\n");
+    stage.shows("this key works elsewhere: in a dialog");
     assert_eq!(stage.lab.popups().mode, Mode::Help);
 }
 

@@ -248,7 +248,7 @@ fn words_on_the_screen_are_in_the_glossary() {
         stage.press("?").press(word).shows(meaning);
     }
     Stage::open("method-2", &[], LARGE)
-        .press("?show it larger")
+        .press("?zoom in on")
         .shows("(from above)")
         .shows("(3-D)");
 }

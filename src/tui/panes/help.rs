@@ -37,15 +37,15 @@ pub fn limit(lab: &mut Lab) {
 /// For a key of a pane, it moves the focus to that pane first. If the entry has no effect here, a message says why.
 pub fn do_entry(lab: &mut Lab) -> Option<LabRequest> {
     let Some(entry) = selected(lab) else {
-        lab.refuse("nothing is selected: Esc clears the search");
+        lab.refuse("nothing is selected; press Esc to clear the search");
         return None;
     };
     let Some(binding) = entry.binding else {
-        lab.refuse("a word to read: Enter does nothing with it, Esc closes");
+        lab.refuse("this entry only explains a word; press Esc to close");
         return None;
     };
     if !binding.modes.contains(&lab.popups().under_help) {
-        lab.refuse(format!("{}: this key works there", entry.group));
+        lab.refuse(format!("this key works elsewhere: {}", entry.group));
         return None;
     }
     while lab.popups().mode == Mode::Help {
@@ -67,12 +67,12 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let search = lab.popups().help.text.as_str();
     let found = find_entries(search);
     let title = match search {
-        "" => "help: type to search, Enter does it".to_owned(),
+        "" => "help: type to search, Enter: do it".to_owned(),
         search => format!("help: {search}_ ({})", found.len()),
     };
     let inside = popup_rule(&title, area, theme, buf);
     if found.is_empty() {
-        let text = "nothing has that in it: Esc clears the search";
+        let text = "no entry found; press Esc to clear the search";
         write(inside, (1, 0), text, theme.style(Role::Text), buf);
     }
     let selected = selected_of(&found, lab);
@@ -177,7 +177,7 @@ fn help_lines(entries: &[HelpEntry], grouped: bool, width: usize) -> Vec<HelpLin
 
 fn heading(entry: &HelpEntry, width: usize) -> Vec<HelpLine> {
     let text = match entry.pane {
-        Some(_) => format!("{}: keys of this pane, Tab turns to it", entry.group),
+        Some(_) => format!("{}: keys of this pane; Tab goes to it", entry.group),
         None => entry.group.to_owned(),
     };
     let lines = wrapped(&text, width.saturating_sub(1)).into_iter();
@@ -248,7 +248,7 @@ const PLACES: [(Mode, &str); 5] = [
         "in lists: presets and files, lessons, help, settings",
     ),
     (Mode::Lessons, "in the list of lessons"),
-    (Mode::Find, "while a value is searched for"),
+    (Mode::Find, "while searching for a value"),
     (Mode::Help, "in this list"),
     (Mode::Dialog, "in a dialog"),
 ];
