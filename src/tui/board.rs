@@ -93,7 +93,7 @@ fn draw(lines: &[String], first: usize, area: Rect, buf: &mut Buffer) {
     if rows < lines.len() && !area.is_empty() {
         let (last, all) = (first + rows, lines.len());
         let text = format!(
-            "lines {} to {last} of {all}; arrows and PgDn scroll; q leaves",
+            "lines {} to {last} of {all}   arrows, PgDn: scroll   q: quit",
             first + 1
         );
         write(

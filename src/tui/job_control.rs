@@ -4,7 +4,7 @@ use nix::unistd::{Pid, getpgid, getpgrp, getppid, getsid};
 use std::fs;
 
 /// Message when Ctrl-Z does nothing because [`can_be_resumed`] is false.
-pub const NO_SHELL: &str = "there is no shell to go back to: q leaves, and keeps the session";
+pub const NO_SHELL: &str = "no shell to return to; press q to quit and keep the session";
 
 /// Returns true if a shell with job control started this process and is still running.
 ///

@@ -7,7 +7,7 @@ use crate::lab::sheet::AskedAnswer;
 use crate::lab::view::Pane;
 use crate::lab::{Lab, LabRequest, Mode};
 
-const NUMBER_FIRST: &str = "a number is asked for: type it, then Enter. Tab leads to the lab";
+const NUMBER_FIRST: &str = "type a number, then press Enter; Tab goes to the lab";
 
 /// Carries out `key` in `lab`. Returns a request if only the main loop can fulfill it.
 pub fn press(key: Key, lab: &mut Lab) -> Option<LabRequest> {
@@ -72,12 +72,12 @@ fn refusal(mode: Mode, key: Key) -> String {
         Mode::Browser => "Enter opens, Esc closes",
         Mode::Lessons => "Enter opens, Esc closes the list",
         Mode::Find => "Enter edits the value, Esc shows all values",
-        Mode::Help => "Enter does the entry, Esc closes",
-        Mode::Dialog => "Enter applies what is typed, Esc cancels",
+        Mode::Help => "Enter does the selected entry, Esc closes",
+        Mode::Dialog => "Enter applies, Esc cancels",
     };
     match elsewhere(mode, key) {
         Some(place) => format!("{key} is a key {place}; {here}"),
-        None => format!("no key {key} here; {here}"),
+        None => format!("{key} does nothing here; {here}"),
     }
 }
 
@@ -88,8 +88,8 @@ fn elsewhere(mode: Mode, key: Key) -> Option<String> {
         let way = match pane.id {
             Pane::Lesson => "L lists the lessons",
             Pane::Step => "v opens it",
-            Pane::Parameters => "e turns to it",
-            Pane::Traces | Pane::Above | Pane::ThreeD => "Tab turns to it",
+            Pane::Parameters => "e goes to it",
+            Pane::Traces | Pane::Above | Pane::ThreeD => "Tab goes to it",
         };
         return Some(format!("of the pane \"{}\": {way}", pane.title));
     }
@@ -99,6 +99,6 @@ fn elsewhere(mode: Mode, key: Key) -> Option<String> {
         Mode::Lab => "of the lab".to_owned(),
         Mode::Browser | Mode::Lessons | Mode::Help => "of lists (o, L, ?, c)".to_owned(),
         Mode::Find => "of the search for a value (/)".to_owned(),
-        Mode::Dialog => "of dialogs, where text is typed".to_owned(),
+        Mode::Dialog => "of dialogs".to_owned(),
     })
 }

@@ -19,7 +19,10 @@ fn the_help_does_the_entry_that_is_found() {
     let mut stage = open(SMALL);
     let step = stage.step();
     stage.press("?/one time step forward");
-    stage.shows("help: one time step forward_").press("\n").wait(0.1);
+    stage
+        .shows("help: one time step forward_")
+        .press("\n")
+        .wait(0.1);
     assert_eq!(
         (stage.lab.popups().mode, stage.step()),
         (Mode::Lab, step + 1)

@@ -128,7 +128,7 @@ fn the_keys_of_the_lab_mean_something_wherever_the_focus_is() {
 fn a_key_that_means_nothing_here_says_where_it_does() {
     for (keys, said) in [
         ("n", "L lists the lessons"),
-        ("!", "no key ! here; ? lists the keys"),
+        ("!", "! does nothing here; ? lists the keys"),
         ("c\u{10}", "settings"),
     ] {
         Stage::open("method-2", &[], SMALL).press(keys).shows(said);

@@ -46,8 +46,8 @@ fn a_question_of_a_lesson_stays_unanswered_until_the_reader_answers() {
             stage
                 .press("\t")
                 .press("t")
-                .shows("when you have predicted");
-            stage.press("a").shows("when you have predicted").wait(6.0);
+                .shows("hidden until you have predicted");
+            stage.press("a").shows("until you have predicted").wait(6.0);
             let after = stage.lab.player().run().scenario();
             assert_eq!(before.motion, after.motion, "{place}");
             answers_nothing(&stage, &place);
@@ -112,7 +112,7 @@ fn a_number_takes_its_unit_and_another_of_its_kind() {
 #[test]
 fn letters_at_a_number_question_are_no_keys_of_the_lab() {
     let mut stage = asked_for_newtons();
-    stage.press("p").shows("a number is asked for");
+    stage.press("p").shows("type a number, then press Enter");
     stage.press("about");
     assert!(stage.lab.player().run().scenario().pushes.is_empty());
     assert_eq!(stage.class.open_lesson().unwrap().place.page, 5);
@@ -138,7 +138,7 @@ fn what_answers_a_question_stays_hidden_while_a_round_is_open() {
     of_class(&mut stage, 1, false);
     stage.press("1\n").wait(6.0);
     answers_nothing(&stage, "answered, and the round is open");
-    stage.press("t").shows("when the round is over").wait(6.0);
+    stage.press("t").shows("until the round is over").wait(6.0);
     of_class(&mut stage, 1, true);
     stage.shows("reliable");
     of_class(&mut stage, 2, false);

@@ -194,10 +194,10 @@ fn an_open_question_hides_what_answers_it_and_names_its_keys() {
     let (mut stage, _folder, name) = with(&text);
     stage.lesson(&name, 1).arrive();
     let hidden = "The verdict and the exact motion come back when you have predicted.";
-    let unchosen = "1 2 3 or ↑ ↓ choose  n without one";
+    let unchosen = "1 2 3 or ↑ ↓ choose  n skip";
     assert_eq!(rows_below(&stage), [unchosen, hidden]);
     stage.press("2").wait(0.0);
-    let chosen = "1 2 3 or ↑ ↓ choose  Enter this is my prediction  n without one";
+    let chosen = "1 2 3 or ↑ ↓ choose  Enter lock this prediction  n skip";
     assert_eq!(rows_below(&stage), [chosen, hidden]);
     // Neither the exact motion nor its numbers, nor advice; the run can be played.
     stage.shows_no("reliable");
@@ -207,8 +207,8 @@ fn an_open_question_hides_what_answers_it_and_names_its_keys() {
     stage
         .commands("exact = true")
         .press("t")
-        .shows("when you have predicted");
-    stage.press("a").shows("when you have predicted");
+        .shows("until you have predicted");
+    stage.press("a").shows("until you have predicted");
     // The column of the exact motion is empty: each row ends with the run's number.
     stage
         .press("e")
@@ -220,10 +220,7 @@ fn an_open_question_hides_what_answers_it_and_names_its_keys() {
     assert!(stage.step() > step);
     // A number is typed; then all of it comes back.
     stage.press("\n");
-    assert_eq!(
-        rows_below(&stage)[0],
-        "Enter type your prediction  n without one"
-    );
+    assert_eq!(rows_below(&stage)[0], "Enter type your prediction  n skip");
     stage.press("3\n").wait(6.0);
     assert!(rows_below(&stage)[0].starts_with("reliable:"));
     stage.shows("exact");

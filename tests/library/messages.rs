@@ -276,7 +276,7 @@ fn a_wrong_number_in_the_export_is_told_once() {
 fn a_count_that_is_too_large_is_told() {
     Stage::open("method-2", &[], LARGE)
         .press("99999999999")
-        .shows("999999999 is the most that is counted");
+        .shows("999999999 is the largest count");
 }
 
 #[test]

@@ -233,9 +233,7 @@ fn the_chosen_point_is_written_out_and_massless_ones_share_a_row() {
     stage.shows("rim 1: ").shows("hub, top, foot");
     // Each of the points without mass can be chosen.
     stage.commands("sum_to = 12");
-    stage
-        .shows("top: it has no mass")
-        .shows_no("hub, top, foot");
+    stage.shows("top has no mass").shows_no("hub, top, foot");
     stage.commands("phase = 'new momentum'");
     stage.shows("L turns by ").shows("sideways, not down");
 }
@@ -389,7 +387,7 @@ fn a_phase_shows_its_own_arrows_in_space() {
     stage.commands("pause = true\nstep = 2\nshow = ['3d', 'step']");
     for (page, shown, hidden) in [
         (2, "Ω angular velocity|L angular momentum", "torque|u axis"),
-        (3, "u axis of the turn", "L angular|before"),
+        (3, "u axis of rotation", "L angular|before"),
         (5, "gray: before the step", "L angular"),
         (6, "τ torque|weight", "L angular|Ω angular"),
         (7, "L angular momentum|dL = dt τ|new L|as long", "Ω angular"),

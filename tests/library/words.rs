@@ -254,9 +254,9 @@ fn a_file_in_a_folder_is_opened_with_enter() {
     std::fs::write(folder.path().join("runs/mine.toml"), title).unwrap();
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.lab.files_mut().work_in(folder.path());
-    stage.press("oruns").shows("Enter lists its files");
+    stage.press("oruns").shows("press Enter to list its files");
     stage.press("\n");
-    stage.shows("file of").shows("mine.toml").shows("../");
+    stage.shows("file in").shows("mine.toml").shows("../");
     for _ in 0..200 {
         std::thread::sleep(std::time::Duration::from_millis(5));
         stage.wait(0.1);

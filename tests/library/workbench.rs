@@ -221,7 +221,7 @@ fn the_browser_opens_what_the_filter_finds() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.press("o").shows("> method-2").press("↓");
     stage.shows("> wobble-push").shows("The wobble push");
-    stage.press("z z").shows("nothing has that in its name");
+    stage.press("z z").shows("no matching preset or file");
     stage.press("\n").shows("nothing is selected");
     stage.press("\u{1b}").shows("> method-2").press("loo");
     stage.shows("> loops").press("\n");
@@ -298,7 +298,9 @@ fn a_notice_goes_with_time_and_at_the_next_key() {
 #[test]
 fn what_does_nothing_says_why() {
     let mut stage = Stage::open("method-2", &[], SMALL);
-    stage.press("!").shows("no key ! here; ? lists the keys");
+    stage
+        .press("!")
+        .shows("! does nothing here; ? lists the keys");
     stage.press("\n").shows("Enter types it");
     stage
         .press("/")

@@ -44,7 +44,7 @@ fn sit(ground: &Ground, name: &str) -> (Terminal, String) {
 /// Votes for the second choice.
 fn vote(lab: &mut Terminal) {
     lab.wait_for("1 2 3 4 or ↑ ↓ choose");
-    lab.ask("2", "this is my prediction");
+    lab.ask("2", "lock this prediction");
     lab.ask("\r", "2 is about fifty times smaller you");
 }
 
@@ -272,7 +272,7 @@ fn a_seat_waits_for_its_class_and_the_projector_shows_it() {
     teacher.press("n");
     projector.wait_for("0 of 1 have answered");
     // A marked answer counts when the page is turned.
-    anna.ask("3", "Enter this is my prediction");
+    anna.ask("3", "Enter lock this prediction");
     teacher.ask("n", "0 of 1 have answered; press n again to go on");
     teacher.press("n");
     projector.wait_for("3 of 10");

@@ -16,7 +16,7 @@ fn a_prediction_survives_a_kill_and_is_handed_in() {
     let ground = Ground::new();
     let mut lab = ground.open(&["lesson", LESSON, "--page", "2"]);
     lab.wait_for("1 stays as it is");
-    lab.ask(&DOWN.repeat(3), "this is my prediction");
+    lab.ask(&DOWN.repeat(3), "lock this prediction");
     lab.press("\r");
     // The session is saved within half a second, or a little later on a busy machine.
     lab.wait_until("the saved prediction", |_| {

@@ -593,7 +593,7 @@ fn without_a_place_for_sessions_the_lab_opens_and_says_so() {
     fs::write(ground.state(), "in the way").unwrap();
     for (args, words) in [
         ("--paused --at 30", "sessions cannot be kept in"),
-        ("--resume", "session not kept"),
+        ("--resume", "session not saved"),
     ] {
         let mut lab = ground.open(args);
         lab.wait_for(words);

@@ -43,8 +43,8 @@ fn on_a_full_disk_the_trouble_stays_and_nothing_is_promised() {
     lab.press(".");
     lab.wait_for_step(31);
     lab.wait_for("the session cannot be kept");
-    lab.ask("P", "session not kept · the push to come");
-    lab.ask(ESC, "session not kept");
+    lab.ask("P", "session not saved · the push to come");
+    lab.ask(ESC, "session not saved");
     lab.forget();
     lab.press("q");
     lab.wait_for("there is no session to come back to");
@@ -178,7 +178,7 @@ fn a_confined_lab_writes_in_its_folder_alone() {
     lab.press("s");
     lab.press(&format!("{CLEAR}new.toml\r"));
     lab.wait_for("the run is in");
-    lab.ask(CTRL_Z, "there is no shell to go back to");
+    lab.ask(CTRL_Z, "no shell to return to");
     lab.quit();
     assert_eq!(ground.files(), ["inside", "secret.toml"], "no state folder");
     let files = ".gyrolab new.toml out.toml own.toml pipe.csv up";

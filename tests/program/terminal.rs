@@ -164,7 +164,7 @@ fn a_paste_into_a_field_is_cut_and_says_so() {
     assert_eq!(terminal.ground().files(), files);
     terminal.ask("o", "type to filter");
     terminal.ask(&paste(&"x".repeat(20_000)), "xxxxx...");
-    terminal.wait_for("nothing has that in its name");
+    terminal.wait_for("no matching preset or file");
     terminal.ask("\u{15}\u{1b}", "type to filter");
     // Where nothing is typed, pasted letters are no keys.
     terminal.press("\u{1b}");
@@ -280,7 +280,7 @@ fn ctrl_l_draws_all_of_it_again() {
 }
 
 const CTRL_Z: &str = "\u{1a}";
-const NO_SHELL: &str = "there is no shell to go back to";
+const NO_SHELL: &str = "no shell to return to";
 
 #[test]
 fn ctrl_z_is_refused_where_the_lab_leads_its_session() {

@@ -22,7 +22,7 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let browser = &lab.popups().browser;
     let title = match browser.folder() {
         None => TITLE.to_owned(),
-        Some(folder) => format!("{TITLE} of {}", folder.display()),
+        Some(folder) => format!("{TITLE} in {}", folder.display()),
     };
     let inside = popup_rule(&title, area, theme, buf);
     if inside.is_empty() {
@@ -81,7 +81,7 @@ fn filter_line(browser: &Browser, theme: &Theme, area: Rect, buf: &mut Buffer) {
 fn list(browser: &Browser, theme: &Theme, area: Rect, buf: &mut Buffer) {
     let shown = browser.shown();
     if shown.is_empty() {
-        let text = "nothing has that in its name";
+        let text = "no matching preset or file";
         write(area, (1, 0), text, theme.style(Role::Text), buf);
     }
     let height = area.height as usize;
@@ -109,7 +109,10 @@ fn preview(browser: &Browser, theme: &Theme, area: Rect, buf: &mut Buffer) {
         Some(Ok(scenario)) => described(scenario, width),
         Some(Err(problem)) => refused(problem, width),
         None if browser.choice().is_some_and(|entry| entry.is_folder) => {
-            vec![("a folder: Enter lists its files".to_owned(), Role::Label)]
+            vec![(
+                "folder; press Enter to list its files".to_owned(),
+                Role::Label,
+            )]
         }
         None => Vec::new(),
     };

@@ -162,11 +162,11 @@ fn answer_keys(asked: AskedAnswer, theme: &Theme, area: Rect, buf: &mut Buffer) 
         AskedAnswer::Number => (String::new(), vec![("Enter", "type your prediction")]),
         AskedAnswer::Choice { count, is_chosen } => {
             let numbers: Vec<_> = (1..=count).map(|number| number.to_string()).collect();
-            let locks = is_chosen.then_some(("Enter", "this is my prediction"));
+            let locks = is_chosen.then_some(("Enter", "lock this prediction"));
             (numbers.join(" "), locks.into_iter().collect())
         }
     };
-    keys.push(("n", "without one"));
+    keys.push(("n", "skip"));
     let gap = if area.width >= WIDE_FROM { 3 } else { 2 };
     let (of_key, of_word) = (theme.style(Role::Heading), theme.style(Role::Label));
     let mut x = 1;

@@ -108,7 +108,7 @@ pub fn has_message(lab: &Lab) -> bool {
     types_value || popups.count.is_some() || lab.notice().is_some() || messages.trouble().is_some()
 }
 
-const NOT_KEPT: &str = "session not kept";
+const NOT_KEPT: &str = "session not saved";
 
 /// Returns the text of the note on a screen of this width. It mentions an unsaved session as long as saving fails.
 fn said(lab: &Lab, width: u16) -> (String, Role) {
@@ -118,10 +118,10 @@ fn said(lab: &Lab, width: u16) -> (String, Role) {
     }
     let message = match popups.count {
         Some(MOST_COUNTED) => Some(format!(
-            "{MOST_COUNTED} is the most that is counted: now the key; Esc forgets it"
+            "{MOST_COUNTED} is the largest count; press a key, or Esc to cancel"
         )),
         Some(count) => Some(format!(
-            "{count}: now the key, such as . for that many steps; Esc forgets it"
+            "{count}: press a key, such as . for this number of steps; Esc cancels"
         )),
         None => lab.notice(),
     };

@@ -91,9 +91,7 @@ fn reached(beside: &DataComparison, sum: &Sum, end_s: f64) -> [String; 2] {
     let last_s = beside.last_s().filter(|&last_s| last_s > end_s);
     let [long, short] = match last_s.map(shortest) {
         Some(last_s) if reached < sum.points => [
-            format!(
-                "{reached} of {all}, they go on after the run: g and {last_s} s play it to there"
-            ),
+            format!("{reached} of {all}; data go beyond the run: press g and type {last_s} s"),
             format!("{reached} of {all}: g, {last_s} s"),
         ],
         _ if reached == 0 || reached == sum.points => [all.clone(), all],
@@ -126,7 +124,7 @@ fn verdict(beside: &DataComparison) -> Option<[String; 2]> {
 /// Returns the distances of the data from the run, the most important first, each in full and in short.
 fn parts(sum: &Sum) -> Vec<[String; 2]> {
     if sum.compared == 0 {
-        return vec![["none of them reached yet"; 2].map(str::to_owned)];
+        return vec![["none reached yet"; 2].map(str::to_owned)];
     }
     let mut parts = Vec::new();
     if sum.weighed > 0 {

@@ -95,17 +95,17 @@ fn nothing_yet(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let texts: [&str; 2] = if player.step_number() == 0 {
         [
             "No time step has been taken yet.",
-            "Press . to take the first: it is then shown here phase by phase, each with its formula and its numbers.",
+            "Press . to take the first. It is then shown here phase by phase, with formulas and numbers.",
         ]
     } else if player.is_busy() {
         [
-            "The run goes on.",
-            "Press space to stop it: the time step taken last is then shown here phase by phase.",
+            "The run is playing.",
+            "Press space to pause it. The last time step is then shown here phase by phase.",
         ]
     } else {
         [
             "This time step would take too long to compute again.",
-            "Press . to take the next: it is then shown here phase by phase.",
+            "Press . to take the next time step, which is then shown here phase by phase.",
         ]
     };
     let sections =
@@ -410,7 +410,7 @@ pub(super) fn about_point(lab: &Lab) -> Option<String> {
     let name = name_of(&explained.scenario, point);
     let mass_kg = explained.scenario.body.mechanics.points()[point].mass;
     if is_summed(table) && mass_kg == 0.0 {
-        return Some(format!("{name}: it has no mass and adds nothing"));
+        return Some(format!("{name} has no mass and adds nothing"));
     }
     let short = |number: f64| significant(number, 4);
     let [of_x, of_y] = match (table.columns.first()?.0, table.row(row)) {

@@ -392,7 +392,7 @@ impl Scene<'_> {
                 ArrowKind::Floor => format!("{} N", significant(self.floor_force(), 3)),
                 ArrowKind::Push if loads.pushes.is_empty() => continue,
                 ArrowKind::Push => "push".to_owned(),
-                ArrowKind::TurnAxis => "axis of the turn".to_owned(),
+                ArrowKind::TurnAxis => "axis of rotation".to_owned(),
             };
             words.push((kind.label(), meaning, kind.role()));
         }
