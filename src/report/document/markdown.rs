@@ -32,6 +32,7 @@ fn write_document(out: &mut String, document: &Document) -> fmt::Result {
                 writeln!(out, "{marks} {}", line(document, text))?;
             }
             Block::Paragraph(text) => writeln!(out, "{}", paragraph(document, text))?,
+            Block::Quote(text) => writeln!(out, "> {}", paragraph(document, text))?,
             Block::Formula(text) => writeln!(out, "> {}", formula(&Formula::parse(text)))?,
             Block::List { is_numbered, items } => {
                 for (number, item) in (1..).zip(items) {

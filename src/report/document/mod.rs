@@ -50,6 +50,8 @@ pub enum Block {
         text: Text,
     },
     Paragraph(Text),
+    /// What another text says, set off from the paragraphs.
+    Quote(Text),
     /// A formula on a line of its own, in the notation between two `$` of a text.
     Formula(String),
     List {
@@ -101,6 +103,10 @@ impl Document {
 
     pub fn paragraph(&mut self, text: &str) {
         self.blocks.push(Block::Paragraph(Text::marked(text)));
+    }
+
+    pub fn quote(&mut self, text: &str) {
+        self.blocks.push(Block::Quote(Text::marked(text)));
     }
 
     /// Adds a formula on a line of its own.

@@ -30,8 +30,8 @@ const TEXT_WIDTH_MM: f64 = 160.0;
 const TABLE_CHARACTERS: f64 = 86.0;
 /// What stands between two columns, in characters.
 const COLUMN_GAP: f64 = 2.5;
-/// A table with more rows may be broken across pages.
-const MOST_ROWS_OF_FLOAT: usize = 24;
+/// A table with more lines may be broken across pages.
+const MOST_LINES_OF_FLOAT: f64 = 28.0;
 
 pub(super) fn write(document: &Document) -> String {
     let mut out = String::from(PREAMBLE);
@@ -56,6 +56,10 @@ fn write_document(out: &mut String, document: &Document) -> fmt::Result {
                 writeln!(out, "\\{command}{{{}}}", line(document, text))?;
             }
             Block::Paragraph(text) => writeln!(out, "{}", line(document, text))?,
+            Block::Quote(text) => {
+                let text = line(document, text);
+                writeln!(out, "\\begin{{quote}}\n{text}\n\\end{{quote}}")?;
+            }
             Block::Formula(text) => writeln!(out, "\\[{}\\]", formula(&Formula::parse(text)))?,
             Block::List { is_numbered, items } => {
                 let name = if *is_numbered { "enumerate" } else { "itemize" };
@@ -86,8 +90,9 @@ fn write_list(out: &mut String, document: &Document, name: &str, items: &[Text])
 }
 
 fn write_table(out: &mut String, document: &Document, table: &Table) -> fmt::Result {
-    let columns = column_formats(table);
-    let is_long = table.rows.len() > MOST_ROWS_OF_FLOAT;
+    let formats = column_formats(table);
+    let is_long = lines(table, &formats) > MOST_LINES_OF_FLOAT;
+    let columns: String = formats.iter().map(ToString::to_string).collect();
     let label = table.label.as_ref().map(|it| format!("\\label{{{it}}}"));
     let label = label.unwrap_or_default();
     let caption = format!("\\caption{{{}}}{label}", line(document, &table.caption));
@@ -133,36 +138,70 @@ fn row<'a>(document: &Document, table: &Table, cells: impl Iterator<Item = &'a T
     format!("{} \\\\", cells.collect::<Vec<_>>().join(" & "))
 }
 
+/// The format of a column.
+enum ColumnFormat {
+    /// The `table-format` of siunitx.
+    Number(String),
+    Line,
+    /// Text that is broken into lines, and the part of the page's width that it takes.
+    Lines(f64),
+}
+
+impl fmt::Display for ColumnFormat {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(format) => write!(f, "S[table-format={format}]"),
+            Self::Line => f.write_str("l"),
+            Self::Lines(part) => {
+                write!(
+                    f,
+                    ">{{\\raggedright\\arraybackslash}}p{{{part:.3}\\linewidth}}"
+                )
+            }
+        }
+    }
+}
+
 /// Returns the formats of the columns. If the table is wider than the page, long columns of text share what the others leave.
-fn column_formats(table: &Table) -> String {
-    let widths: Vec<f64> = (0..table.columns.len())
-        .map(|column| width(table, column))
-        .collect();
+fn column_formats(table: &Table) -> Vec<ColumnFormat> {
+    let all = 0..table.columns.len();
+    let widths: Vec<f64> = all.clone().map(|column| width(table, column)).collect();
     let gaps = COLUMN_GAP * widths.len() as f64;
     let is_wide = widths.iter().sum::<f64>() + gaps > TABLE_CHARACTERS;
     let fair = (TABLE_CHARACTERS - gaps) / widths.len() as f64;
     let is_broken = |column: usize| {
         is_wide && table.columns[column].kind == ColumnKind::Text && widths[column] > fair.min(24.0)
     };
-    let all = 0..widths.len();
-    let kept: f64 = all
-        .clone()
-        .filter(|it| !is_broken(*it))
-        .map(|it| widths[it])
-        .sum();
+    let kept = all.clone().filter(|column| !is_broken(*column));
+    let kept: f64 = kept.map(|column| widths[column]).sum();
     // The root: a column with four times the text is twice as wide and twice as high.
     let share = |column: usize| widths[column].sqrt();
-    let shares: f64 = all.clone().filter(|it| is_broken(*it)).map(share).sum();
+    let shares: f64 = all
+        .clone()
+        .filter(|column| is_broken(*column))
+        .map(share)
+        .sum();
     let left = (TABLE_CHARACTERS - gaps - kept).max(0.3 * TABLE_CHARACTERS);
-    let formats = all.map(|column| match table.columns[column].kind {
-        ColumnKind::Number => format!("S[table-format={}]", number_format(table, column)),
+    let format = |column: usize| match table.columns[column].kind {
+        ColumnKind::Number => ColumnFormat::Number(number_format(table, column)),
         ColumnKind::Text if is_broken(column) => {
-            let part = left / TABLE_CHARACTERS * share(column) / shares;
-            format!(">{{\\raggedright\\arraybackslash}}p{{{part:.3}\\linewidth}}")
+            ColumnFormat::Lines(left / TABLE_CHARACTERS * share(column) / shares)
         }
-        ColumnKind::Text => "l".to_owned(),
-    });
-    formats.collect()
+        ColumnKind::Text => ColumnFormat::Line,
+    };
+    all.map(format).collect()
+}
+
+/// Returns about how many lines the rows of `table` take.
+fn lines(table: &Table, formats: &[ColumnFormat]) -> f64 {
+    let lines_of_row = |row: &Vec<Text>| {
+        let cells = row.iter().zip(formats).map(|(cell, format)| match format {
+            ColumnFormat::Lines(part) => (length(cell) as f64 / (part * TABLE_CHARACTERS)).ceil(),
+            ColumnFormat::Number(_) | ColumnFormat::Line => 1.0,
+        });
+        cells.fold(1.0, f64::max)
+    };
+    table.rows.iter().map(lines_of_row).sum()
 }
 
 /// Returns the width of a column that is not broken, in characters.
