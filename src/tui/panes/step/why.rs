@@ -25,7 +25,7 @@ const ANY: &str = "Each force makes a torque τ = X × F square to it. In the ti
                    not with the force.";
 const FRICTION_TORQUE_TEXT: &str = "The forces make a torque τ = X × F, and friction makes one too. In the time dt both add dL to L, which is not along τ; \
                       and the axle goes with L.";
-const NO_TORQUE_TEXT: &str = "No torque acts: L stays as it is, and the axle circles about it.";
+const NO_TORQUE_TEXT: &str = "No torque acts. L stays constant, and the axle circles about it.";
 const UPRIGHT_TEXT: [&str; 2] = ["L is upright:", "no side is sideways"];
 /// Minimum lines of a picture.
 const LEAST_PICTURE: u16 = 6;
@@ -269,7 +269,7 @@ fn from_above(explained: &StepWorkings, view: &View, area: Rect, buf: &mut Buffe
 fn dip(explained: &StepWorkings, is_seen: bool, view: &View, area: Rect, buf: &mut Buffer) {
     let area = headed("first dip, magnified", view, area, buf);
     let Some(dip) = &explained.dip else {
-        let upright = "the axle is upright at first: no side of it is down";
+        let upright = "the axle starts upright: it cannot dip to a side";
         return text(upright, Role::Text, view, area, buf);
     };
     if area.height < 4 || area.width < 8 {
@@ -282,11 +282,11 @@ fn dip(explained: &StepWorkings, is_seen: bool, view: &View, area: Rect, buf: &m
         .collect();
     let far = way.iter().fold(0.0_f64, |far, at| far.max(at.amax()));
     if far <= DISPLACEMENT_ROUNDING * explained.scenario.arm_m() {
-        let still = "it has not moved yet: . takes a step";
+        let still = "no motion yet; press . to take a step";
         return text(still, Role::Text, view, area, buf);
     }
     let note = match (is_seen, dip.is_whole) {
-        (false, _) => "dt is too long for the true dip: this one is dt's own",
+        (false, _) => "dt is too long: this dip comes from the time step",
         (true, true) => "",
         (true, false) => "so far",
     };
