@@ -152,10 +152,10 @@ impl Comparison {
         self.pinned = pinned.then_some(Pinned::Present);
         Done::saying(match (pinned, was_pinned) {
             (true, false) => {
-                "this run is pinned: all of it stays, in long and short dashes, whatever changes; i unpins it"
+                "this run is pinned: it stays visible, in long and short dashes; i unpins it"
             }
-            (true, true) => "this run is pinned now, instead of the one before",
-            (false, true) => "the pinned run is taken away",
+            (true, true) => "this run is pinned now, instead of the previous one",
+            (false, true) => "the run is unpinned",
             (false, false) => "no run is pinned",
         })
     }
@@ -169,9 +169,9 @@ impl Comparison {
     ) -> ActionResult {
         let Some(name) = name else {
             return Ok(Done::saying(if self.data.take().is_some() {
-                "the measured data are taken away"
+                "the measured data are removed"
             } else {
-                "there are no measured data beside the run"
+                "there are no measured data to remove"
             }));
         };
         let put = self.put_beside(name, &ColumnOptions::default(), player, files, false);
@@ -318,7 +318,7 @@ impl Comparison {
     /// # Errors
     /// Returns an error if there are no such rows or no difference was found.
     pub fn to_difference(&self, view: &View) -> Result<Vec<Command>, String> {
-        let none = "there are no rows of a program of one's own beside a run of the report's scheme: gyrolab method-1 --measured mine.csv";
+        let none = "no rows of your own program to compare with a run of the report's scheme: gyrolab method-1 --measured mine.csv";
         let data = self.data.as_ref().ok_or(none)?;
         let own = data.own.as_ref().ok_or(none)?;
         let first = own
@@ -433,11 +433,11 @@ pub(super) fn show_exact(shown: bool, player: &mut Player) -> Done {
         player.run.set_overlay(shown);
     }
     if !shown {
-        return Done::saying("without the exact motion");
+        return Done::saying("the exact motion is hidden");
     }
     Done::saying(match cost::why_exact_unavailable(player.run().scenario()) {
-        Some(why) => format!("{why}: it is left out; a shorter run has it"),
-        None => "the exact motion (same start, same pushes) is dashed; t takes it away".to_owned(),
+        Some(why) => format!("{why}: it is not shown; try a shorter run"),
+        None => "the exact motion (same start, same pushes) is dashed; t hides it".to_owned(),
     })
 }
 

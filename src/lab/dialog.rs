@@ -124,7 +124,7 @@ impl Dialog {
             ValueSource::Derived(derived, _) => vec![derived.about().to_owned()],
             ValueSource::NextPush(field) => vec![
                 field.about().to_owned(),
-                "it acts when p gives the push".to_owned(),
+                "it takes effect when p starts the push".to_owned(),
             ],
         };
         let fields = [(label.as_str(), value.text.clone())];
@@ -149,11 +149,11 @@ impl Dialog {
         let free_name = |about, extension| files.free_name(runs.name(), about, extension);
         match ask {
             Ask::Value => {
-                let nothing = "no value to set has that in its name: Esc shows all of them";
+                let nothing = "no editable value matches: Esc shows all of them";
                 Self::value(&edits.values).ok_or_else(|| nothing.to_owned())
             }
             Ask::Export | Ask::Figure if files.is_exporting() => {
-                Err("one export at a time: Esc stops the one under way".to_owned())
+                Err("one export at a time: Esc stops the running one".to_owned())
             }
             Ask::Export => {
                 let scenario = run_up_to(None, "export", runs, player)?;
@@ -199,7 +199,7 @@ impl Dialog {
         let fields = [("file", path), ("kind", kind.to_owned())];
         let kinds = RUN_FIGURE_NAMES.join(", ");
         let info = [
-            "the file's end says in which form: .svg, .pdf or .png".to_owned(),
+            "the extension selects the format: .svg, .pdf or .png".to_owned(),
             format!("kind: {kinds}, or columns such as tilt_deg,energy_J"),
         ];
         let title = format!("draw steps 0 to {step}");
@@ -210,7 +210,7 @@ impl Dialog {
     /// contain `later` actions.
     fn save_run(step: u64, later: usize, path: String) -> Self {
         let left_out =
-            format!("without {later} later actions: go to the end of the run to have them in it");
+            format!("without {later} later actions: go to the end of the run to include them");
         let up_to = format!("the run up to step {step}: gyrolab run FILE gives the same rows as x");
         let info = [up_to].into_iter().chain((later > 0).then_some(left_out));
         let fields = [("file", path)];
@@ -240,7 +240,7 @@ impl Dialog {
     /// Creates a dialog that lists the settings whose labels match `filter`, with their values in `view`. The row
     /// `selected` is selected.
     pub(super) fn settings(view: &View, filter: &str, selected: usize) -> Self {
-        let info = "markers, colors, background, frames and mouse are kept for the next time";
+        let info = "markers, colors, background, frames and mouse are saved for the next session";
         let settings = SETTINGS.iter();
         let all = settings
             .map(|setting| InputField::choice(setting.label, &(setting.value)(view)))
@@ -428,7 +428,7 @@ impl Dialog {
                 let (rows, bytes) = (HumanCount(rows), DecimalBytes(bytes));
                 vec![
                     format!("{rows} rows, about {bytes}"),
-                    "every 10 writes each tenth row, and the last".to_owned(),
+                    "every 10 writes every tenth row, and the last".to_owned(),
                 ]
             }
             Err(reason) => vec![reason],
@@ -445,7 +445,10 @@ impl Dialog {
             }
             Refusal::Exists(path) => {
                 let path = self.asked_to_replace.insert(path);
-                format!("{} exists: Enter again replaces it", PrintablePath(path))
+                format!(
+                    "{} exists: press Enter again to replace it",
+                    PrintablePath(path)
+                )
             }
         };
         self.form.info.retain(|line| *line != complaint); // shown only once

@@ -22,14 +22,9 @@ const UNDO: [&str; 4] = [
     "nothing to undo",
     "undone",
     "the previous run",
-    "U brings it again",
+    "U redoes it",
 ];
-const REDO: [&str; 4] = [
-    "nothing to do again",
-    "done again",
-    "the run after",
-    "u takes it back",
-];
+const REDO: [&str; 4] = ["nothing to redo", "redone", "the next run", "u undoes it"];
 
 /// The end of the message about an edit that restarted the run.
 const FROM_START: &str = "rerun from the start; u returns to the previous run";
@@ -116,7 +111,7 @@ impl Edits {
         }
         let said = match table.len() {
             1 => EditMessage::Value(table.keys().cloned().collect()),
-            more => EditMessage::Text(format!("{more} values; u takes them back")),
+            more => EditMessage::Text(format!("{more} values; u undoes them")),
         };
         self.perform(acts, coalesces, said, player)
     }
@@ -169,7 +164,7 @@ impl Edits {
     pub(super) fn push(&mut self, choice: &PushChoice, player: &Player) -> Edited {
         let (push, given) = self.given(choice, player)?;
         let said = format!(
-            "pushed: {}; u takes it back, P chooses another",
+            "pushed: {}; u undoes it, P chooses another",
             push.in_words()
         );
         let acts = vec![Act::Push(given)];
@@ -297,11 +292,9 @@ impl Edits {
             scenario,
             said: match later {
                 0 => said,
-                1 => EditMessage::Text(
-                    "a later action has made way for it; u brings it back".to_owned(),
-                ),
+                1 => EditMessage::Text("a later action was discarded; u restores it".to_owned()),
                 _ => EditMessage::Text(format!(
-                    "{later} later actions have made way for it; u brings them back"
+                    "{later} later actions were discarded; u restores them"
                 )),
             },
         })
@@ -415,16 +408,14 @@ impl Edits {
     fn value_in_words(&self, key: &str, player: &Player) -> String {
         let value = self.values.in_words(key);
         match Effect::of_key(key) {
-            Effect::None => format!("{value}; u takes it back"),
-            _ if is_of_a_push_that_is_over(key, player) => {
-                "that push is over and acts no more: u takes this back, \
-                and g goes to before it"
-                    .to_owned()
-            }
+            Effect::None => format!("{value}; u undoes it"),
+            _ if is_of_a_push_that_is_over(key, player) => "that push is over: u undoes this, \
+                and g goes back before it"
+                .to_owned(),
             _ if player.nudges_at_start() => {
                 format!("{value}, {FROM_START}")
             }
-            _ => format!("{value}, from the next step on; u takes it back"),
+            _ => format!("{value}, from the next step on; u undoes it"),
         }
     }
 }

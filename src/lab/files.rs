@@ -83,7 +83,7 @@ impl Files {
         self.admit_reading(Path::new(name))?;
         let checked = match presets::find(name) {
             Some(_) => Ok(()),
-            None => refuse_waiting(name, "it can be opened at the command line only"),
+            None => refuse_waiting(name, "only the command line can open it"),
         };
         checked
             .and_then(|()| Document::open(name)?.scenario())
@@ -127,7 +127,7 @@ impl Files {
         let path = self.path_of(&export.path);
         self.may_export_to(&path)?;
         let begun = Exporting::begin(scenario, &path, checked, export.force);
-        self.begin(begun, "the export goes on in the background")
+        self.begin(begun, "exporting in the background")
     }
 
     fn begin(&mut self, begun: Result<Exporting, DestinationError>, said: &str) -> ActionResult {
@@ -161,7 +161,7 @@ impl Files {
         };
         let format = PageFormat::from_path(&path).map_err(|refusal| refusal.to_string())?;
         let begun = Exporting::begin_figure(source, &path, format, figure.force);
-        self.begin(begun, "the figure is drawn in the background")
+        self.begin(begun, "drawing the figure in the background")
     }
 
     /// Saves the run as a run file, or its present state as a scenario.
@@ -178,7 +178,7 @@ impl Files {
 
     fn may_export_to(&self, path: &Path) -> Result<(), Refusal> {
         if self.exporting.is_some() {
-            return Err("one export at a time: wait until the one under way is done".into());
+            return Err("one export at a time: wait until the running one is done".into());
         }
         is_named(path)?;
         Ok(self.admit_writing(path)?)

@@ -116,7 +116,7 @@ impl InputForm {
         });
         if typed.peek().is_some() {
             self.complaint = Some(format!(
-                "a field takes at most {MOST_TYPED} characters: what was pasted is cut"
+                "a field takes at most {MOST_TYPED} characters: the pasted text is cut off"
             ));
         }
     }

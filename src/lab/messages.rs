@@ -18,7 +18,7 @@ use std::time::Duration;
 const MESSAGE_STAYS: Duration = Duration::from_secs(5);
 
 /// The beginning of the message at the end of the scenario's run, before what to try next.
-const END_OF_RUN: &str = "end of the run: space goes on, r begins again";
+const END_OF_RUN: &str = "end of the run: space continues, r restarts";
 
 /// The mention of the exact motion in a line about what to try, and its replacement if the exact motion is shown
 /// already.
@@ -139,9 +139,9 @@ impl Messages {
     ///
     /// These are `remedy`, a key that fixes the run, if one is known, and undo if the run has edits.
     pub(super) fn tell_of_break(&mut self, text: &str, remedy: Option<&str>, is_edited: bool) {
-        let unknown = "a shorter time step or another scheme may mend it (e)";
+        let unknown = "try a shorter time step or another scheme (e)";
         let undo = if is_edited {
-            ", u takes the last edit back"
+            ", u undoes the last edit"
         } else {
             ""
         };
@@ -154,12 +154,12 @@ pub(super) fn halt_in_words(halt: Halt, next: Option<&str>) -> Option<String> {
     match (halt, next) {
         (Halt::Arrived | Halt::ConditionMet, _) => None,
         (Halt::GaveUp, _) => Some(format!(
-            "what the run was played to did not come true in {} steps",
+            "the condition did not hold at any of {} steps",
             HumanCount(MOST_UNTIL)
         )),
         (Halt::EndOfRun, Some(next)) => Some(format!("{END_OF_RUN}. Next: {next}")),
         (Halt::EndOfRun, None) => {
-            Some("end of the scenario's run: space goes on, r begins again".to_owned())
+            Some("end of the scenario's run: space continues, r restarts".to_owned())
         }
         (Halt::NotFinite(error), _) => Some(format!("{} at step {}", error.fact(), error.step)),
     }
@@ -191,10 +191,10 @@ pub(super) fn note<'a>(view: &'a View, runs: &'a Runs, player: &'a Player) -> Co
         return "".into();
     }
     if view.asked().is_some() {
-        return "The verdict and the exact motion come back when you have predicted.".into();
+        return "The verdict and the exact motion are hidden until you have predicted.".into();
     }
     if view.hides_answers() {
-        return "The verdict and the exact motion come back when the round is over.".into();
+        return "The verdict and the exact motion are hidden until the round is over.".into();
     }
     let is_alone = view.sheet.as_ref().is_some_and(|sheet| sheet.is_alone);
     if is_alone || view.hides(HideablePart::LookAt) {
@@ -208,7 +208,7 @@ pub(super) fn note<'a>(view: &'a View, runs: &'a Runs, player: &'a Player) -> Co
     }
     set.or(changed)
         .or_else(|| changed::look_at(player.run().scenario()))
-        .unwrap_or("? lists the keys; the scenario's own line, view.look_at, would stand here")
+        .unwrap_or("? lists the keys; a scenario can show its own line here (view.look_at)")
         .into()
 }
 

@@ -39,7 +39,7 @@ pub fn find(name: &str, run: Option<&LiveRun>) -> Result<NumberSource, String> {
             readout.meaning
         )),
         (Some(readout), _) if readout.source == readouts::ReadoutSource::Clock => {
-            Err(format!("{name} is not counted in the lab"))
+            Err(format!("{name} is not available in the lab"))
         }
         (Some(readout), _) => Ok(NumberSource::Readout(readout)),
         (None, Ok((_, kind))) if holds_number(kind) => Ok(match name {

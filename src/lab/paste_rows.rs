@@ -23,31 +23,31 @@ pub(super) fn keep(
     player: &Player,
 ) -> Result<(String, Command), Refusal> {
     let reason = |problems: Problems| {
-        let problems = problems.in_file("what was pasted").to_string();
+        let problems = problems.in_file("pasted data").to_string();
         problems.lines().next().unwrap_or_default().to_owned()
     };
     if text.len() > MOST_PASTED {
-        let rule = "what was pasted is longer than 1 MB: print fewer rows, or columns, or digits";
+        let rule = "the pasted text is longer than 1 MB: print fewer rows, columns or digits";
         return Err(rule.into());
     }
     // Terminals paste the end of a line as the key Enter.
     let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
     let text = text.replace('\r', "\n");
     if text.contains(|c| is_steering(c) && !"\n\t".contains(c)) {
-        return Err("what was pasted holds control characters: copy the rows alone".into());
+        return Err("the pasted text contains control characters: copy only the rows".into());
     }
     let name = files.free_name("pasted", "", "csv");
     let checked = comparison.check(&name, &text, player);
     let unjudged = checked.map_err(reason)?.map(reason);
     let path = files.path_of(&name);
-    files.save("what was pasted", &text, &path, false)?;
+    files.save("the pasted text", &text, &path, false)?;
     let is_confined = files.confined().is_some();
     let whole = std::path::absolute(&path).ok().filter(|_| !is_confined);
     let kept = whole
         .and_then(|whole| whole.to_str().map(str::to_owned))
         .unwrap_or_else(|| name.clone());
     let key = Table::from_iter([("view.measured".to_owned(), kept.into())]);
-    let mut words = format!("the rows that were pasted are in {name}; u takes them back");
+    let mut words = format!("the pasted rows are saved in {name}; u removes them");
     if let Some(why) = unjudged {
         words += &format!("; no verdict: {why}");
     }

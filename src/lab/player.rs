@@ -207,9 +207,7 @@ impl Player {
         self.seek(step, SeekPurpose::Command);
         let said = is_beyond.then(|| {
             let (step, end) = (HumanCount(step), HumanCount(end));
-            format!(
-                "step {step} is beyond the end of the run, step {end}: it is played on to there"
-            )
+            format!("step {step} is beyond the end of the run, step {end}: playing on to it")
         });
         Ok(Done::saying_any(said).going_on(PendingAction::Going))
     }
@@ -227,7 +225,7 @@ impl Player {
         if time_s >= 0.0 && time_s.is_finite() {
             Ok(Simulation::step_at(self.run().scenario(), time_s))
         } else {
-            Err("must be a time from 0 s on: the run begins there".to_owned())
+            Err("must be a time from 0 s on, where the run begins".to_owned())
         }
     }
 
@@ -264,7 +262,7 @@ impl Player {
         Ok(if is_played {
             Done::SILENT.going_on(PendingAction::Playing)
         } else {
-            Done::saying("it holds already, at this step")
+            Done::saying("the condition holds already, at this step")
         })
     }
 
@@ -417,7 +415,7 @@ impl Player {
 
 /// The targets that the user may type, for messages.
 pub(super) const WHERE: &str =
-    "a step (421), a time (12.5 s), so many on or back (+50, -2 s), start or end";
+    "a step (421), a time (12.5 s), forward or back (+50, -2 s), start or end";
 
 fn begins_with_exact(scenario: &Scenario) -> Option<bool> {
     scenario.file.viewed("exact")?.as_bool()

@@ -168,7 +168,7 @@ impl Popups {
             (None, Mode::Browser) => self.browser.filter_by(|line| type_into(line, text)),
             _ => {
                 let place =
-                    "what is pasted goes into fields and filters; rows of your own program go here";
+                    "paste into fields and filters; rows of your own program can be pasted here";
                 return Some(place.to_owned());
             }
         }
@@ -209,7 +209,7 @@ mod tests {
     #[test]
     fn pasted_text_goes_where_text_is_typed() {
         let mut popups = Popups::default();
-        assert!(popups.paste("q").unwrap().contains("goes into fields"));
+        assert!(popups.paste("q").unwrap().contains("paste into fields"));
         popups.open_dialog(Dialog::go_to());
         assert_eq!(popups.paste("400"), None);
         assert_eq!(popups.take_dialog().unwrap().form.text(0), "400");

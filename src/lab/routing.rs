@@ -53,7 +53,7 @@ impl Lab {
             Action::ChoosePush => {
                 self.view.turn_to(Pane::Parameters);
                 self.edits.values.select_next_push();
-                self.say("the push to come: p gives it");
+                self.say("the next push: p starts it");
             }
             Action::Parameters => self.turn_to_parameters(),
             Action::Edit if self.view.focus != Pane::Parameters => self.turn_to_parameters(),
@@ -104,7 +104,7 @@ impl Lab {
             Action::Lesson(key) => return Ok(Some(LabRequest::Lesson(key))),
             Action::Redraw => return Ok(Some(LabRequest::Redraw)),
             Action::Suspend if self.files.confined().is_some() => {
-                return Err("there is no shell to go back to: q leaves".to_owned());
+                return Err("there is no shell to go back to: q quits".to_owned());
             }
             Action::Suspend => return Ok(Some(LabRequest::Suspend)),
             Action::Quit => match self.quit_warning() {
@@ -119,7 +119,8 @@ impl Lab {
     /// Returns the warning to show before the user quits, if quitting ends something.
     fn quit_warning(&self) -> Option<String> {
         if self.files.is_exporting() {
-            let text = "an export is under way: q again leaves it unfinished, and writes nothing";
+            let text =
+                "an export is running: press q again to stop it and quit; nothing is written";
             return Some(text.to_owned());
         }
         self.quit_warning.clone()
@@ -277,7 +278,7 @@ impl Lab {
         } else if self.view.sheet.is_some() {
             return Some(LabRequest::Lesson(LessonKey::Leave));
         } else {
-            self.say("nothing to close; q leaves");
+            self.say("nothing to close; q quits");
         }
         None
     }
@@ -331,7 +332,7 @@ impl Lab {
                 self.popups.mode = Mode::Lab;
                 self.carry_out_all(&[Command::Run]);
                 if was_edited {
-                    self.say("the run that you edited is kept: u brings it back");
+                    self.say("the run that you edited is kept: u returns to it");
                 }
             }
             self.tell_answer(answer);

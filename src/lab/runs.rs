@@ -133,7 +133,7 @@ impl Runs {
     pub(super) fn run_up_to(&self, step: u64, to: &str) -> Result<Arc<Scenario>, String> {
         if step == 0 {
             return Err(format!(
-                "there is nothing to {to} yet: the run stands at step 0"
+                "there is nothing to {to} yet: the run is at step 0"
             ));
         }
         let run = self.journal().scenario_until(step);

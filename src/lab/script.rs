@@ -75,10 +75,10 @@ impl CommandScript {
     pub(super) fn left_in_words(&self) -> String {
         let origin = &self.origin;
         match self.count() {
-            1 => format!("1 command of {origin} is left: space goes on with it, Esc leaves it out"),
-            left => format!(
-                "{left} commands of {origin} are left: space goes on with them, Esc leaves them out"
-            ),
+            1 => format!("1 command of {origin} is left: space continues, Esc drops it"),
+            left => {
+                format!("{left} commands of {origin} are left: space continues, Esc drops them")
+            }
         }
     }
 
@@ -105,8 +105,8 @@ impl CommandScript {
             ..Self::default()
         };
         match left {
-            1 => "stopped: 1 command is left out".to_owned(),
-            left => format!("stopped: {left} commands are left out"),
+            1 => "stopped: 1 command was dropped".to_owned(),
+            left => format!("stopped: {left} commands were dropped"),
         }
     }
 
@@ -201,8 +201,7 @@ impl CommandScript {
         if to_go.is_some_and(|to_go| to_go > MOST_UNTIL) {
             player.pause();
             let most = HumanCount(MOST_UNTIL);
-            let reason =
-                format!("is more than {most} steps away: a longer time step leads there sooner");
+            let reason = format!("is more than {most} steps away: use a longer time step");
             return Err(self.fail(&placed, &reason));
         }
         match answer {
@@ -225,7 +224,7 @@ impl CommandScript {
                 player.pause();
                 Err(self.fail(
                     &placed,
-                    &format!("commands take at most {most} steps in all"),
+                    &format!("commands take at most {most} steps in total"),
                 ))
             }
             None => Ok(()),

@@ -85,7 +85,7 @@ pub struct SessionSummary {
 impl SessionSummary {
     pub fn read(content: &SessionContent) -> Result<Self, Unreadable> {
         let runs: KeptRuns = read("the run", &content.work)?;
-        let place: KeptPlace = read("the place in it", &content.place)?;
+        let place: KeptPlace = read("the state of the screen", &content.place)?;
         let present = runs.journal.present();
         Ok(Self {
             name: present.name.clone(),
@@ -102,7 +102,8 @@ pub struct Unreadable(String);
 
 /// Returns the state of the lessons in `content`; empty if there is none or it cannot be read.
 pub fn lessons_in(content: &SessionContent) -> Table {
-    read("the place in it", &content.place).map_or(Table::new(), |place: KeptPlace| place.lessons)
+    read("the state of the screen", &content.place)
+        .map_or(Table::new(), |place: KeptPlace| place.lessons)
 }
 
 /// Returns the text of `journal` and the pinned run for a session. It is written on the thread that first reads it.
@@ -120,7 +121,7 @@ pub(super) fn written(journal: &Journal, reference: Option<&Reference>) -> Share
 fn read<'a, T: Deserialize<'a>>(what: &str, text: &'a str) -> Result<T, Unreadable> {
     toml::from_str(text).map_err(|error| {
         let line = error.message().lines().next().unwrap_or_default();
-        Unreadable(format!("{what} is not what gyrolab keeps: {line}"))
+        Unreadable(format!("{what} is not valid: {line}"))
     })
 }
 
@@ -129,7 +130,7 @@ pub(super) type KeptContent = (Journal, Arc<Scenario>, Option<KeptPinned>, KeptP
 
 pub(super) fn kept(content: &SessionContent) -> Result<KeptContent, Unreadable> {
     let KeptRuns { journal, pinned } = read("the run", &content.work)?;
-    let place = read("the place in it", &content.place)?;
+    let place = read("the state of the screen", &content.place)?;
     let scenario = journal
         .scenario()
         .map_err(|problems| Unreadable(problems.in_one_line()))?;
@@ -187,9 +188,9 @@ impl KeptPlace {
     pub(super) fn in_words(&self) -> String {
         match &self.exporting {
             Some(path) => {
-                format!("as it was left; the export to {path} was cut off, x begins another")
+                format!("session resumed; the export to {path} was cut off, x starts another")
             }
-            None => "as it was left; space goes on".to_owned(),
+            None => "session resumed; space continues".to_owned(),
         }
     }
 }

@@ -55,7 +55,7 @@ const fn row(
 #[rustfmt::skip]
 pub(super) const SETTINGS: [LabSetting; 8] = [
     row("verdict", |view| shown(view, HideablePart::Health), |view, _| hide_or_show(view, HideablePart::Health)),
-    row("what theory predicts", |view| shown(view, HideablePart::Predicted), |view, _| hide_or_show(view, HideablePart::Predicted)),
+    row("theory", |view| shown(view, HideablePart::Predicted), |view, _| hide_or_show(view, HideablePart::Predicted)),
     row("screen", |view| if view.look.bare { "bare: two panes, title and time" } else { "everything" }.to_owned(), |view, _| {
         Changed::By(Command::look("bare", !view.look.bare))
     }),
@@ -80,7 +80,7 @@ pub(super) const SETTINGS: [LabSetting; 8] = [
         view.fps = FRAME_RATES[index % count];
         Changed::Remembered("fps", view.fps.into())
     }),
-    row("mouse", |view| if view.mouse { "acts on the lab" } else { "selects the terminal's text" }.to_owned(), |view, _| {
+    row("mouse", |view| if view.mouse { "controls the lab" } else { "selects text in the terminal" }.to_owned(), |view, _| {
         view.mouse = !view.mouse;
         Changed::Remembered("mouse", view.mouse.into())
     }),

@@ -123,7 +123,7 @@ impl Lab {
                 self.carry_out_all(&[Command::Pause]);
                 let is_of_page = self.view.sheet.as_ref().is_some_and(|sheet| sheet.plays);
                 self.tell(if is_of_page {
-                    "paused: space goes on".to_owned()
+                    "paused: space continues".to_owned()
                 } else {
                     format!("paused: {}", self.script.left_in_words())
                 });

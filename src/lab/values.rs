@@ -102,7 +102,7 @@ impl Values {
         let is_meant = |value: &&ListedValue| value.key.as_deref() == Some(key);
         let Some(value) = listed.iter().find(is_meant) else {
             let near = nearest(key, listed.iter().filter_map(|value| value.key.as_deref()));
-            return Err(format!("{key} is no value of this scenario: {near}"));
+            return Err(format!("{key} is not a value of this scenario: {near}"));
         };
         let nudged = value.nudged(times, &self.file, scenario);
         nudged.map_err(|reason| format!("{} {reason}", value.label))

@@ -181,7 +181,7 @@ fn the_pinned_run_stays_until_it_is_unpinned() {
         stage.commands(command);
         assert_eq!(pinned_s(&stage), Some(40.0), "{command}");
     }
-    stage.shows("pinned").press("i").shows("taken away");
+    stage.shows("pinned").press("i").shows("unpinned");
     assert!(!stage.lab.comparison().is_pinned());
     stage.wait(6.0).shows_no("pinned");
 }
@@ -348,7 +348,7 @@ fn an_exact_motion_that_would_take_too_long_is_left_out_and_said() {
     let mut stage = Stage::open("wing-nut", &set, LARGE);
     stage.commands("pause = true").shows("NO EXACT MOTION");
     assert!(stage.lab.player().run().overlay().is_none());
-    let words = "its exact motion must be integrated, which would take too long for 4000000000 s: it is left out";
+    let words = "its exact motion must be integrated, which would take too long for 4000000000 s: it is not shown";
     stage.press("tt").shows(words);
     // It is drawn again where it can be.
     stage.commands("set = { 'motion.time_step_s' = 0.01 }\nstep = 3");

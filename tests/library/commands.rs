@@ -141,9 +141,9 @@ fn what_is_wrong_is_told_with_its_line_and_the_nearest_right_name() {
         ),
         (
             "[[do]]\nrun = true\nstep = 1",
-            "demo.toml:1: do.0: holds run, step: one command each",
+            "demo.toml:1: do.0: contains run, step: write each command",
         ),
-        ("[[do]]", "demo.toml:1: do.0: holds no command"),
+        ("[[do]]", "demo.toml:1: do.0: contains no command"),
         (
             "do = 3",
             "demo.toml:1: do (3) must be an array of tables: write [[do]]",
@@ -165,7 +165,7 @@ fn what_is_wrong_is_told_with_its_line_and_the_nearest_right_name() {
             "[[do]]\nset = { \"start.momentum_Js.3\" = 1 }",
             ".0, .1 and .2",
         ),
-        ("[[do]]\nset = {}", "must hold a key"),
+        ("[[do]]\nset = {}", "must contain a key"),
         (
             "[[do]]\nset = { motion.time_step_s = 0.05 }",
             "do.0.set.motion: would be set as a whole: write each key in quotes, \"motion.time_step_s\"",
@@ -176,7 +176,7 @@ fn what_is_wrong_is_told_with_its_line_and_the_nearest_right_name() {
         ),
         (
             "[[do]]\nexport = \"x.csv\"\nevery = 10",
-            "do.0.every: unknown command: what belongs to export stands in its value: \"run.csv\", or { path",
+            "do.0.every: unknown command: values for export go inside its own value: \"run.csv\", or { path",
         ),
         ("[[do]]\nopen = \"wobble-pus\"", "did you mean wobble-push?"),
         ("[[do]]\nstep = 0", "do.0.step (0) must not be 0"),
@@ -348,7 +348,7 @@ fn places_conditions_and_refusals() {
         desk.carry_out(&nobody)
             .unwrap_err()
             .to_string()
-            .contains("no value of this scenario")
+            .contains("not a value of this scenario")
     );
 }
 
@@ -397,7 +397,7 @@ fn a_condition_that_never_holds_is_given_up() {
         "[[do]]\ngo_to = 9000000\n[[do]]\ngo_to = \"start\"\n[[do]]\nrun_until = \"z_m > 1000\"",
     );
     let in_all = given_up.unwrap_err();
-    let limit = "run_until: commands take at most 10,000,000 steps in all";
+    let limit = "run_until: commands take at most 10,000,000 steps in total";
     assert!(in_all.contains(limit), "{in_all}");
     assert!(both.step() < 2_000_000, "{}", both.step());
 }
@@ -437,7 +437,7 @@ fn esc_stops_the_commands_and_a_refusal_says_where() {
     let stopped = desk.step();
     assert_eq!(
         desk.lab.notice().unwrap(),
-        "stopped: 2 commands are left out"
+        "stopped: 2 commands were dropped"
     );
     desk.pass(Duration::from_secs(1));
     assert_eq!((desk.step(), desk.lab.script().is_done()), (stopped, true));

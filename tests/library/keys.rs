@@ -43,12 +43,12 @@ fn one_dialog_holds_the_settings_with_their_values() {
     stage.commands("pause = true").press("c");
     for words in [
         "verdict",
-        "what theory predicts",
+        "theory",
         "screen",
         "braille",
         "dark",
         "15 at most",
-        "acts on the lab",
+        "controls the lab",
     ] {
         stage.shows(words);
     }

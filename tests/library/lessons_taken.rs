@@ -193,7 +193,7 @@ fn an_open_question_hides_what_answers_it_and_names_its_keys() {
     let text = LESSON.replace("hide = [\"health\", \"predicted\"]\n", "exact = true\n");
     let (mut stage, _folder, name) = with(&text);
     stage.lesson(&name, 1).arrive();
-    let hidden = "The verdict and the exact motion come back when you have predicted.";
+    let hidden = "The verdict and the exact motion are hidden until you have predicted.";
     let unchosen = "1 2 3 or ↑ ↓ choose  n skip";
     assert_eq!(rows_below(&stage), [unchosen, hidden]);
     stage.press("2").wait(0.0);

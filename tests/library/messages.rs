@@ -108,11 +108,11 @@ fn numbers_that_are_no_longer_finite_are_told_with_what_helps() {
         stage.lab.notice().unwrap_or_default()
     };
     let cure = "a: rerun with srkn11b, dt 0.01 s";
-    let back = ", u takes the last edit back";
+    let back = ", u undoes the last edit";
     let edit = "set = { 'motion.gravity_m_per_s2' = 9 }";
     assert_eq!(end("", true), format!("{begin}{cure}"));
     assert_eq!(end(edit, true), format!("{begin}{cure}{back}"));
-    let may = "a shorter time step or another scheme may mend it (e)";
+    let may = "try a shorter time step or another scheme (e)";
     assert_eq!(end("", false), format!("{begin}{may}"));
     assert_eq!(end(edit, false), format!("{begin}{may}{back}"));
 }
@@ -124,8 +124,7 @@ fn what_mends_a_run_that_broke_down_is_told_as_soon_as_it_is_found() {
     stage.lab.take_advice();
     stage.commands("pause = true");
     stage.commands("go_to = 2000").wait(0.1);
-    stage
-        .shows("no longer finite at step 3: a shorter time step or another scheme may mend it (e)");
+    stage.shows("no longer finite at step 3: try a shorter time step or another scheme (e)");
     await_advice(&stage);
     stage.wait(0.1).shows("a: rerun with srkn11b, dt 0.01 s");
 }
@@ -198,7 +197,7 @@ fn space_pauses_commands_and_lets_them_go_on() {
     assert!(paused < 500);
     assert_eq!(
         desk.lab.notice().unwrap(),
-        "paused: 2 commands of demo.toml are left: space goes on with them, Esc leaves them out"
+        "paused: 2 commands of demo.toml are left: space continues, Esc drops them"
     );
     desk.pass(Duration::from_secs(1));
     assert_eq!((desk.step(), desk.lab.script().count()), (paused, 2));
@@ -258,7 +257,7 @@ fn undo_names_the_run_to_which_it_returns() {
     let mut stage = Stage::open("method-2", &[], LARGE);
     stage.commands("pause = true\ngo_to = 10\nset = { 'start.tilt_deg' = 30 }");
     stage.press("u");
-    let words = "undone: this is the previous run; U brings it again";
+    let words = "undone: this is the previous run; U redoes it";
     assert_eq!(stage.lab.notice().as_deref(), Some(words));
 }
 

@@ -227,7 +227,9 @@ fn a_mouse_outside_or_one_that_is_the_terminals_does_nothing() {
         }
     }
     assert_eq!(desk.stage.picture(), before);
-    desk.stage.press("c↑→").shows("selects the terminal's text");
+    desk.stage
+        .press("c↑→")
+        .shows("selects text in the terminal");
     desk.stage.press("\u{1b}");
     let selecting = desk.stage.picture();
     for did in all {

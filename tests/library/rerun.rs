@@ -232,9 +232,9 @@ fn a_restart_does_not_move_the_view() {
 fn another_run_opened_over_an_edited_one_is_one_undo_away() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.wait(2.0).commands("pause = true");
-    stage.press("ocusps\n").shows_no("u brings it back");
+    stage.press("ocusps\n").shows_no("u returns to it");
     stage.press("u").press("/dt\n0.05\n").press("\u{1b}\u{1b}");
-    stage.press("ocusps\n").shows("u brings it back");
+    stage.press("ocusps\n").shows("u returns to it");
     stage.press("u");
     assert_eq!(time_step_s(stage.lab.player().run().scenario()), 0.05);
 }

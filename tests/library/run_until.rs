@@ -99,7 +99,7 @@ fn a_name_that_is_no_number_is_refused_with_the_nearest() {
             "motion.scheme == 1",
             "column 1: there is no number named motion.scheme: that key holds no number",
         ),
-        ("wall_s > 3", "column 1: wall_s is not counted in the lab"),
+        ("wall_s > 3", "column 1: wall_s is not available in the lab"),
         ("motion.time_step > 1", "did you mean motion.time_step_s?"),
     ] {
         let refusal = refusal(condition);

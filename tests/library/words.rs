@@ -21,7 +21,7 @@ fn esc_turns_from_the_values_back_to_the_run() {
         assert_eq!(stage.focus(), "traces", "{key}");
     }
     stage.key(Key::Esc);
-    stage.shows("nothing to close; q leaves");
+    stage.shows("nothing to close; q quits");
 }
 
 #[test]

@@ -148,7 +148,7 @@ fn speed_is_apart_from_the_time_step() {
 fn the_run_pauses_once_at_its_end() {
     let mut stage = Stage::open("method-2", &["motion.steps=50"], SMALL);
     stage.wait(3.0);
-    stage.shows("end of the run: space goes on, r begins again");
+    stage.shows("end of the run: space continues, r restarts");
     stage.shows("Next: t draws the exact motion");
     stage.shows("paused");
     assert_eq!(stage.step(), 50);
@@ -238,7 +238,7 @@ fn esc_closes_one_thing_at_a_time_and_never_leaves() {
         assert_eq!(stage.key(Key::Esc), None);
     }
     assert_eq!(stage.lab.popups().mode, Mode::Lab);
-    stage.shows("q leaves");
+    stage.shows("q quits");
     assert_eq!(stage.key(Key::Char('q')), Some(LabRequest::Quit));
 }
 

@@ -147,7 +147,7 @@ fn what_cannot_be_recorded_leaves_no_file() {
         ("[[do]]\nchapter = 3\n", "do.0.chapter"),
         ("[[do]]\nchapter = \"two\\nlines\"\n", "do.0.chapter"),
         ("[[do]]\nwait_s = 5000\n", "longer than an hour"),
-        ("", "holds no command"),
+        ("", "contains no command"),
     ] {
         ground.write("wrong.toml", commands);
         let output = ground.run("cast wrong.toml -o x.cast");

@@ -123,7 +123,7 @@ fn a_seat_reaches_nothing_of_another() {
         anna.press(&format!("\x15{name}\r"));
         anna.wait_until("a refusal", |lab| {
             let words = lab.words();
-            words.contains("stays in its folder") || words.contains("lab's own")
+            words.contains("stays in its folder") || words.contains("reserved for the lab")
         });
     }
     anna.press("\x15mine.csv\r");

@@ -40,10 +40,10 @@ fn what_is_refused_is_told_and_the_picture_up_to_there_shown() {
     let text = "[[do]]\nstep = 5\n[[do]]\nredo = 1\n[[do]]\nstep = 5\n";
     ground.write("demo.toml", text);
     let output = ground.run("show --do demo.toml");
-    let words = "demo.toml:3: redo: nothing to do again; the command after it is not carried out";
+    let words = "demo.toml:3: redo: nothing to redo; the command after it is not carried out";
     failed(&output, &[words]);
     has(stdout(&output), "step    5 of");
-    has_no(stdout(&output), "nothing to do again"); // it is said once
+    has_no(stdout(&output), "nothing to redo"); // it is said once
     ground.write("demo.toml", "[[do]]\nstp = 5\n");
     let misspelled = ground.run("show --do demo.toml");
     let advice = "demo.toml:2: do.0.stp: unknown command: did you mean step?";

@@ -143,7 +143,7 @@ fn the_lab_and_its_farewell_show_names_escaped() {
     let own_end = own.find(|c: char| c.is_ascii_alphabetic()).unwrap();
     let lines: Vec<_> = own[own_end + 1..].lines().collect();
     assert!(
-        lines.iter().any(|line| line.contains("no scp line")),
+        lines.iter().any(|line| line.contains("no scp command")),
         "{lines:?}"
     );
     assert!(

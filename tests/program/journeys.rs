@@ -16,7 +16,7 @@ const CTRL_Z: &str = "\u{1a}";
 /// Ctrl-U: clears the field of a dialog.
 const CLEAR: &str = "\u{15}";
 /// The message of a lab that has resumed a session.
-const AS_LEFT: &str = "as it was left";
+const AS_LEFT: &str = "session resumed";
 
 /// The lab with Method 2, standing still at `step`.
 fn paused_at(ground: &Ground, step: u64) -> Terminal {
@@ -88,7 +88,7 @@ fn push(lab: &mut Terminal) {
     lab.press("p");
     lab.wait_until("a push", |lab| {
         let words = lab.words();
-        words.contains("pushed: ") || words.contains("made way")
+        words.contains("pushed: ") || words.contains("discarded")
     });
 }
 
@@ -201,7 +201,7 @@ fn an_export_is_the_run_that_was_saved() {
     lab.wait_for("L lessons");
     lab.ask("x", "export steps 0 to 285");
     answer(&mut lab, "mine.csv");
-    lab.wait_for("exists: Enter again replaces it");
+    lab.wait_for("exists: press Enter again to replace it");
     assert_eq!(ground.read("mine.csv"), "mine");
     lab.ask("\r", "wrote ");
     assert!(fs::read(ground.file("mine.csv")).unwrap() == csv);
@@ -299,7 +299,7 @@ fn an_export_is_stopped_by_esc_and_by_the_second_q_and_leaves_nothing() {
     lab.ask(ESC, "the export was stopped, and nothing was written");
     assert_eq!(ground.files(), ["state"]);
     begin_export(&mut lab);
-    lab.ask("q", "q again leaves it unfinished");
+    lab.ask("q", "press q again to stop it");
     lab.quit();
     assert_eq!(ground.files(), ["state"]);
     resumed(&ground).wait_for_step(LONG);
@@ -314,7 +314,7 @@ fn a_line_that_is_lost_in_an_export_leaves_no_part_and_is_told_of() {
         ended(&mut lab, end);
         assert_eq!(ground.files(), ["state"], "{end}");
         let resumed_lab = ground.open("--resume");
-        resumed_lab.wait_for("run.csv was cut off, x begins another");
+        resumed_lab.wait_for("run.csv was cut off, x starts another");
         resumed_lab.wait_for_step(LONG);
     });
 }
@@ -592,7 +592,7 @@ fn without_a_place_for_sessions_the_lab_opens_and_says_so() {
     let ground = Ground::new();
     fs::write(ground.state(), "in the way").unwrap();
     for (args, words) in [
-        ("--paused --at 30", "sessions cannot be kept in"),
+        ("--paused --at 30", "sessions cannot be saved in"),
         ("--resume", "session not saved"),
     ] {
         let mut lab = ground.open(args);
@@ -612,9 +612,9 @@ fn a_place_for_sessions_that_is_lost_is_told_of_and_found_again() {
     fs::remove_dir_all(&folder).unwrap();
     fs::write(&folder, "in the way").unwrap();
     lab.press(".");
-    lab.wait_for("the session cannot be kept");
+    lab.wait_for("the session cannot be saved");
     let said = lab.words();
-    assert_eq!(said.matches("cannot be kept:").count(), 1, "{said}");
+    assert_eq!(said.matches("cannot be saved:").count(), 1, "{said}");
     fs::remove_file(&folder).unwrap();
     push(&mut lab);
     wait_until_kept(&lab, &ground);

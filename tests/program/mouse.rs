@@ -102,9 +102,9 @@ fn the_mouse_can_stay_with_the_terminal() {
     lab.wait_for("L lessons");
     lab.ask(".", "step 1");
     assert!(!lab.sent_text().contains(MOUSE_ON));
-    lab.ask("c\x1b[A\r", "mouse acts on the lab");
+    lab.ask("c\x1b[A\r", "mouse controls the lab");
     lab.wait_until("the mouse", |lab| lab.sent_text().contains(MOUSE_ON));
-    lab.ask("\r", "mouse selects the terminal's text");
+    lab.ask("\r", "mouse selects text in the terminal");
     lab.wait_until("the mouse back", |lab| lab.sent_text().contains(MOUSE_OFF));
     lab.ask("\x1b", "L lessons");
     lab.quit();
@@ -116,7 +116,7 @@ fn the_lab_stops_once_at_the_end_with_and_without_a_name() {
     for name in ["", "method-2"] {
         let mut lab = Terminal::open(&format!("{name} --paused --at 2290"));
         lab.wait_for("L lessons");
-        lab.ask(" ", "end of the run: space goes on");
+        lab.ask(" ", "end of the run: space continues");
         lab.wait_for_step(2300);
         lab.press(" ");
         lab.wait_until("a step beyond the end", |lab| lab.step() > Some(2310));

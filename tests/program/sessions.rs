@@ -10,7 +10,7 @@ const ESC: &str = "\u{1b}";
 const CTRL_Z: &str = "\u{1a}";
 /// Takes away what a dialog offers, or what was typed into it.
 const CLEAR: &str = "\u{15}";
-const AS_LEFT: &str = "as it was left";
+const AS_LEFT: &str = "session resumed";
 
 #[test]
 fn seventy_six_acts_each_earlier_than_the_one_before_are_come_back_to() {
@@ -43,7 +43,7 @@ fn on_a_full_disk_the_trouble_stays_and_nothing_is_promised() {
     lab.press(".");
     lab.wait_for_step(31);
     lab.wait_for("the session cannot be kept");
-    lab.ask("P", "session not saved · the push to come");
+    lab.ask("P", "session not saved · the next push");
     lab.ask(ESC, "session not saved");
     lab.forget();
     lab.press("q");
@@ -65,9 +65,9 @@ fn on_a_full_disk_the_end_names_the_step_that_the_disk_has() {
     shell.wait_for(AS_LEFT);
     shell.press(".");
     shell.wait_for_step(31);
-    shell.wait_for("the session cannot be kept");
+    shell.wait_for("the session cannot be saved");
     shell.press("q");
-    shell.wait_for("what was done last is lost: the session cannot be kept");
+    shell.wait_for("what was done last is lost: the session cannot be saved");
     shell.wait_for("--resume comes back to step 30 of Method 2");
 }
 
@@ -165,8 +165,8 @@ fn a_confined_lab_writes_in_its_folder_alone() {
             ("own/../../new.toml", "stays in its folder"),
             (".gyrolab/1.session", "begin with a dot"),
             ("/dev/tty", "stays in its folder"),
-            ("pipe.csv", "regular files alone"),
-            ("-", "no name for a file"),
+            ("pipe.csv", "only regular files"),
+            ("-", "cannot be the name of a file"),
         ] {
             lab.press(key);
             lab.press(&format!("{CLEAR}{name}\r"));

@@ -171,7 +171,7 @@ fn a_paste_into_a_field_is_cut_and_says_so() {
     terminal.wait_until("the lab", |terminal| {
         !terminal.words().contains("type to filter")
     });
-    terminal.ask(&paste("qqq"), "what is pasted goes into");
+    terminal.ask(&paste("qqq"), "paste into fields");
     terminal.quit();
 }
 
@@ -193,7 +193,7 @@ fn rows_that_are_pasted_are_judged_until_they_are_taken_back() {
     again.wait_for("L lessons");
     again.ask("M", "step 1");
     again.ask("u", "undone");
-    again.ask("M", "no rows of a program");
+    again.ask("M", "no rows of your own program");
     for (pasted, told) in [
         (&*"0,1\r".repeat(250_001), "longer than 1 MB"),
         ("step,x_m\r0,\u{7f}1\r", "control characters"),
@@ -203,7 +203,7 @@ fn rows_that_are_pasted_are_judged_until_they_are_taken_back() {
     }
     assert_eq!(ground.files(), ["pasted.csv", "state"]);
     let gap = "step,t_s,x_m\r0,0,0\r1,0.001,\r";
-    let told = "no verdict: what was pasted:3: x_m: is missing";
+    let told = "no verdict: pasted data:3: x_m: is missing";
     again.ask(&format!("\u{1b}[200~{gap}\u{1b}[201~"), told);
     again.quit();
 }

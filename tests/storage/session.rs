@@ -350,7 +350,7 @@ fn trouble_is_told_as_long_as_it_lasts_and_it_is_tried_again() {
     session.note(content("run", "two"));
     written(&session);
     for place in ["three", "four"] {
-        assert!(session.trouble().unwrap().contains("cannot be kept"));
+        assert!(session.trouble().unwrap().contains("cannot be saved"));
         session.note(content("run", place));
         written(&session);
     }

@@ -39,7 +39,7 @@ pub fn read(document: &Document) -> Result<Commands, Problems> {
     let mut problems = Problems::default();
     let mut list = Vec::new();
     for name in document.table().keys().filter(|name| *name != "do") {
-        let rule = "unknown key: a file of commands holds [[do]] and nothing else";
+        let rule = "unknown key: a file of commands contains only [[do]] tables";
         problems.add(|| Problem::at(name, rule));
     }
     match document.table().get("do") {
@@ -59,7 +59,7 @@ pub fn read(document: &Document) -> Result<Commands, Problems> {
             Problem::with_value("do", other, rule)
         }),
         None => problems.add(|| {
-            let rule = "holds no command: write a table [[do]] for each";
+            let rule = "contains no command: write a [[do]] table for each";
             Problem::at("", rule)
         }),
     }
@@ -87,7 +87,7 @@ fn one(value: &Value) -> Result<Command, Problems> {
     match commands.collect::<Vec<_>>()[..] {
         [(name, argument)] => Command::new(name, argument)?.with_rerun(table.get(RERUN)),
         [] => {
-            let rule = "holds no command: there is gyrolab man for their names";
+            let rule = "contains no command: gyrolab man lists their names";
             Err(Problem::at("", rule).into())
         }
         _ => {
@@ -96,7 +96,7 @@ fn one(value: &Value) -> Result<Command, Problems> {
                 .map(String::as_str)
                 .collect::<Vec<_>>()
                 .join(", ");
-            let rule = format!("holds {names}: one command each, the next in a [[do]] of its own");
+            let rule = format!("contains {names}: write each command in its own [[do]]");
             Err(Problem::at("", rule).into())
         }
     }
@@ -107,7 +107,7 @@ fn one(value: &Value) -> Result<Command, Problems> {
 pub(super) fn unknown(name: &str, beside: Option<&CommandRow>) -> Problem {
     let near = match beside {
         Some(row) => format!(
-            "what belongs to {} stands in its value: {}",
+            "values for {} go inside its own value: {}",
             row.name, row.value
         ),
         None => nearest(name, COMMANDS.iter().map(|row| row.name)),

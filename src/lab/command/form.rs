@@ -118,11 +118,11 @@ pub(super) fn check_together(command: &Command) -> Result<(), Problem> {
         },
         Command::Save(save) if save.from_here && save.to_step.is_some() => Err(Problem::at(
             "to_step",
-            "has no place beside from_here, which saves the present state",
+            "cannot be used with from_here, which saves the present state",
         )),
         Command::NextPush(choice) if *choice == PushChoice::default() => Err(Problem::at(
             "",
-            "must hold one of point, force_N, toward, from_s, for_s",
+            "must contain one of point, force_N, toward, from_s, for_s",
         )),
         Command::Push(PushChoice {
             force_N: Some(Force::Vector(_)),
@@ -135,7 +135,7 @@ pub(super) fn check_together(command: &Command) -> Result<(), Problem> {
             ..
         }) => Err(Problem::at(
             "toward",
-            "has no place beside a force of three numbers, which has a direction",
+            "cannot be used with a force of three numbers, which has a direction",
         )),
         _ => Ok(()),
     }
@@ -207,7 +207,7 @@ fn are_keys(name: &str, value: &Value) -> Result<(), Problems> {
     let keys = match value {
         Value::Table(table) if !table.is_empty() => table,
         _ => {
-            let rule = "must hold a key and its value: { \"motion.time_step_s\" = 0.05 }";
+            let rule = "must contain a key and its value: { \"motion.time_step_s\" = 0.05 }";
             return Err(Problem::with_value(name, value, rule).into());
         }
     };

@@ -119,7 +119,7 @@ impl OwnCode {
             .unwrap_or_default()
             .to_string_lossy();
         let words = match self.outcome() {
-            None => format!("{name} is being held against the run"),
+            None => format!("{name} is being compared with the run"),
             Some(Err(why)) => format!("{name}: {why}"),
             Some(Ok(verdict)) => match (verdict.first_step, &verdict.trial) {
                 (Some(step), Some(SlipTrial { words, .. })) => {

@@ -12,11 +12,11 @@ const COST_OF_A_POINT: u64 = 30;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Missing {
-    #[error("the run has not been there")]
+    #[error("the run has not reached that step")]
     NotReached,
-    #[error("its steps take so long that they are only computed by going there")]
+    #[error("its steps take too long to compute: go there to see them")]
     TooFar,
-    #[error("the tilt turns nowhere on that side")]
+    #[error("the tilt has no turning point on that side")]
     NoTurn,
 }
 

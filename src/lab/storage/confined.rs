@@ -73,7 +73,7 @@ impl Confined {
     pub fn sessions(&self) -> Result<PathBuf, String> {
         match fs::symlink_metadata(&self.sessions) {
             Ok(there) if !there.is_dir() => Err(format!(
-                "sessions cannot be kept in {}: it is not a folder",
+                "sessions cannot be saved in {}: it is not a folder",
                 PrintablePath(&self.sessions)
             )),
             _ => Ok(self.sessions.clone()),
@@ -109,7 +109,7 @@ impl Confined {
         if self.is_seat() && size_of(&self.root) >= MOST_OF_SEAT {
             let most = MOST_OF_SEAT / 1_000_000;
             return Err(format!(
-                "the files of this seat take {most} MB, the most of a seat: ask your teacher to remove some"
+                "the files of this seat take {most} MB, the maximum: ask your teacher to remove some"
             ));
         }
         Ok(())
@@ -127,7 +127,7 @@ impl Confined {
             match component {
                 Component::CurDir => {}
                 Component::Normal(name) if name == "-" => {
-                    return Err("- is no name for a file here".to_owned());
+                    return Err("- cannot be the name of a file here".to_owned());
                 }
                 Component::Normal(name) => full.push(name),
                 Component::ParentDir | Component::RootDir | Component::Prefix(_) => {
@@ -148,7 +148,7 @@ impl Confined {
         }
         match fs::metadata(&full) {
             Ok(there) if !there.is_file() && !there.is_dir() => {
-                Err("this lab reads and writes regular files alone".to_owned())
+                Err("this lab reads and writes only regular files".to_owned())
             }
             _ => Ok(()),
         }
@@ -159,7 +159,7 @@ impl Confined {
         let inside = path.strip_prefix(&self.root).map_err(|_| leads_out(path))?;
         for name in inside {
             if name.as_encoded_bytes().starts_with(b".") {
-                return Err("names that begin with a dot are the lab's own".to_owned());
+                return Err("names that begin with a dot are reserved for the lab".to_owned());
             }
         }
         Ok(())

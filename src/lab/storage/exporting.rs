@@ -141,7 +141,7 @@ impl Exporting {
             return None;
         }
         let worker = self.worker.take_if(|worker| worker.is_finished())?;
-        let broken = Err("the export broke off, and nothing was written".to_owned());
+        let broken = Err("the export failed, and nothing was written".to_owned());
         Some(worker.join().unwrap_or(broken))
     }
 }
@@ -244,7 +244,7 @@ fn draw(
         rows: None,
         bytes: bytes.len() as u64,
         warnings: told
-            .map(|text| text.replace(EXACT_BESIDE, "t, then X draws that beside it"))
+            .map(|text| text.replace(EXACT_BESIDE, "t, then X draws it too"))
             .collect(),
         not_finite: None,
     })
@@ -330,7 +330,7 @@ pub fn scp_line(path: &Path) -> Option<String> {
     let host = OsStr::from_bytes(system.nodename().to_bytes());
     let made = scp_line_from(port, &user.unwrap_or_default(), host, path.as_os_str());
     Some(made.unwrap_or_else(|what| {
-        format!("no scp line: {what} holds characters that cannot be typed in a shell")
+        format!("no scp command: {what} contains characters that cannot be typed in a shell")
     }))
 }
 

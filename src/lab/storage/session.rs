@@ -92,7 +92,7 @@ pub fn folder() -> Result<PathBuf, String> {
     match state.filter(|folder| folder.is_absolute()) {
         Some(folder) => Ok(folder.join("gyrolab")),
         None => Err(
-            "sessions cannot be kept: there is no home folder; set HOME or XDG_STATE_HOME to the full path of a folder"
+            "sessions cannot be saved: there is no home folder; set HOME or XDG_STATE_HOME to the full path of a folder"
                 .to_owned(),
         ),
     }
@@ -193,7 +193,7 @@ impl Session {
         });
         match begun {
             Ok(held) => Self::start(held, None),
-            Err(error) => Err(error_about(&error, "sessions cannot be kept in", folder)),
+            Err(error) => Err(error_about(&error, "sessions cannot be saved in", folder)),
         }
     }
 
@@ -255,7 +255,7 @@ impl Session {
         let state = locked(&self.state);
         let mut trouble = state.trouble.clone();
         if !is_in_time {
-            let slow = "the session cannot be kept: the disk takes too long";
+            let slow = "the session cannot be saved: the disk takes too long";
             trouble.get_or_insert_with(|| slow.to_owned());
         }
         ClosedSession {
@@ -334,7 +334,7 @@ fn save(held: &HeldSession, state: &Mutex<SaveState>) {
     match saved {
         Ok(()) => (state.kept, state.trouble) = (Some(content), None),
         Err(error) => {
-            state.trouble = Some(format!("the session cannot be kept: {error}"));
+            state.trouble = Some(format!("the session cannot be saved: {error}"));
             state.is_news = true;
         }
     }

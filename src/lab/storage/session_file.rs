@@ -253,7 +253,7 @@ impl HeldSession {
         let text = format!("{SESSION_FORMAT}\n{}\n{texts}", sum_of(&texts));
         if text.len() > LONGEST_SESSION {
             return Err(io::Error::other(format!(
-                "it would be longer than {LONGEST_SESSION} bytes, the most that is read of a session"
+                "it would be longer than {LONGEST_SESSION} bytes, the maximum for a session"
             )));
         }
         private_files::replace(&path, &text)

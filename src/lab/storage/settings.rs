@@ -20,15 +20,15 @@ pub const SETTINGS_FILE: &str = "settings.toml";
 /// Maximum size of a settings file, bytes.
 const LONGEST_SETTINGS: usize = 1 << 20;
 
-const SETTINGS_HEADER: &str = "# What was chosen in the lab. gyrolab writes this file; config.toml in the configuration folder is yours, and wins.\n";
+const SETTINGS_HEADER: &str = "# Choices made in the lab. gyrolab writes this file; config.toml in the configuration folder is yours, and takes priority.\n";
 
 #[rustfmt::skip]
 pub const SETTINGS_KEYS: &[SchemaRow] = &[
-    may("marker", OneOf(&["braille", "octant", "half-block", "dot", "ascii"]), "characters that dots are drawn with"),
-    may("color", OneOf(&["auto", "always", "never", "16", "256", "truecolor"]), "how many colors the lab uses"),
+    may("marker", OneOf(&["braille", "octant", "half-block", "dot", "ascii"]), "characters with which dots are drawn"),
+    may("color", OneOf(&["auto", "always", "never", "16", "256", "truecolor"]), "number of colors"),
     may("background", OneOf(&["dark", "light"]), "the background of the terminal"),
-    may("fps", Whole(1, 60), "frames a second at most"),
-    may("mouse", Flag, "whether the lab takes the mouse"),
+    may("fps", Whole(1, 60), "maximum frames per second"),
+    may("mouse", Flag, "true if the lab uses the mouse"),
 ];
 
 const SETTINGS_SCHEMA: Schema = Schema(&[SETTINGS_KEYS]);
@@ -134,7 +134,7 @@ pub fn remember(folder: &Path, key: &str, value: Value) -> Result<(), String> {
     };
     remembered().map_err(|error| {
         let path = PrintablePath(&path);
-        format!("the choice cannot be remembered in {path}: {error}")
+        format!("the choice cannot be saved in {path}: {error}")
     })
 }
 

@@ -20,8 +20,8 @@ use toml::Table;
 const CURSOR_SHARE: f64 = 0.02;
 const PAN_SHARE: f64 = 0.5;
 /// The messages about residuals: shown, and refused.
-const RESIDUALS_TEXT: &str = "measured less run, where something was measured; m shows both again";
-const NO_DATA: &str = "there are no measured data beside the run: gyrolab --measured FILE";
+const RESIDUALS_TEXT: &str = "measured minus run, where there are measurements; m shows both again";
+const NO_DATA: &str = "there are no measured data: start with gyrolab --measured FILE";
 const TURN_DEG: f64 = 10.0;
 /// Maximum number of swings that is given in a message.
 const MOST_COUNTED_SWINGS: f64 = 100.0;
@@ -76,7 +76,7 @@ impl View {
     pub(in crate::lab) fn magnify(&mut self, times: f64) -> Done {
         self.magnified = times;
         Done::saying(if times > 1.0 {
-            format!("values are magnified {times} times; Z shows more of them")
+            format!("values are magnified {times} times; Z zooms out")
         } else {
             "values are shown in full".to_owned()
         })
@@ -110,12 +110,12 @@ impl View {
 
     /// Marks the step of the cursor. If another step is marked, reports the swings of the tilt between the two.
     fn mark_turn(&mut self, player: &Player) -> ActionResult {
-        let none = "the cursor is nowhere: ) and ( put it on a turn of the tilt";
+        let none = "there is no cursor: ) and ( put it on a turn of the tilt";
         let here = self.cursor.ok_or(none)?;
         let Some(mark) = self.swing_mark.take().filter(|mark| *mark != here) else {
             self.swing_mark = Some(here);
             return Ok(Done::saying(
-                "marked: ) to a later turn of the tilt, and | counts the swings between",
+                "marked: ) moves to a later turn of the tilt, | counts the swings between",
             ));
         };
         let (from, to) = (mark.min(here), mark.max(here));
@@ -190,7 +190,7 @@ impl View {
         let factor = if is_larger { 0.5 } else { 2.0 };
         let length_s = factor * self.window.length_s();
         if length_s < 2.0 * player.motion().time_step_s {
-            return Err("two time steps are the shortest window".to_owned());
+            return Err("the shortest window is two time steps".to_owned());
         }
         if length_s >= player.whole_s() {
             let whole = Command::look("detail_s", player.whole_s());
@@ -327,5 +327,5 @@ fn fourth_strip_in_words(strip: FourthStrip) -> String {
 
 /// Returns the error for a length of time below two time steps.
 fn too_short(what: &str, least_s: f64) -> ActionResult {
-    Err(format!("the {what} two time steps at least: {least_s} s").into())
+    Err(format!("the {what} at least two time steps: {least_s} s").into())
 }

@@ -38,7 +38,7 @@ pub(super) fn in_words(
             let middle = short(0.5 * (low + high));
             format!("theory: {predicted} s, {middle} deg{asymmetry}")
         }
-        _ => "no theory of it here".to_owned(),
+        _ => "no theory for this run".to_owned(),
     };
     Some(format!(
         "{swings} swings of the tilt in {} s: period {period} s, mean {} deg; {theory}",
