@@ -77,31 +77,27 @@ const TEXT: ValueKind = By(|value| match value.as_str() {
 
 #[rustfmt::skip]
 const PREDICT: Schema = Schema(&[&[
-    must("name", Line, "compare calls the prediction by it"),
+    must("name", Line, "compare refers to the prediction by it"),
     must("ask", TEXT, "the question"),
     may("choices", By(are_choices), "the answers to choose from"),
     may("unit", By(is_unit), "the unit of a number"),
-    may("right", Number(Any), "the number that comes out, or of the choice"),
-    may("within", Number(Positive), "how far off is right too"),
+    may("right", Number(Any), "the right number, or the number of the right choice"),
+    may("within", Number(Positive), "tolerance of the right number"),
     may("expected", TEXT, "the common wrong answer, for the teacher"),
-    may("explain", TEXT, "what to say if few are right, for the teacher"),
-    may("draw", By(is_drawn), "what a worksheet has axes for"),
+    may("explain", TEXT, "explanation if few are right, for the teacher"),
+    may("draw", By(is_drawn), "the axes on a worksheet"),
 ]]);
 
 const COMPARE: Schema = Schema(&[&[
     must(PREDICTION, Line, "the name of a predict block"),
     may(WITH, TEXT, "a number of the run"),
-    must(
-        "text",
-        TEXT,
-        "what is said, with {with:.2} and {prediction}",
-    ),
+    must("text", TEXT, "the text, with {with:.2} and {prediction}"),
 ]]);
 
 const CHECK: Schema = Schema(&[&[
     must("that", TEXT, "the condition, such as \"t_s >= 60\""),
-    may("goal", By(is_goal), "what is to be reached"),
-    may("hint", TEXT, "help for one who has not got there"),
+    may("goal", By(is_goal), "the goal in words"),
+    may("hint", TEXT, "help for a student who is stuck"),
 ]]);
 
 fn are_choices(value: &Value) -> Result<(), String> {
@@ -178,7 +174,7 @@ impl<'a> BlockContent<'a> {
             problems: Vec::new(),
         };
         if content.keys.is_empty() {
-            let rule = "holds nothing: its keys stand between the fences";
+            let rule = "is empty: write its keys between the fences";
             content.refuse(Problem::at("", rule));
         }
         Ok(content)
@@ -283,7 +279,7 @@ fn expression(
     let expression = parse(text).map_err(|fault| fault.to_string())?;
     expression.bind(find).map_err(|fault| fault.to_string())?;
     if expression.is_condition() && !is_condition {
-        return Err("compares: a number must stand here".to_owned());
+        return Err("is a comparison: write a number".to_owned());
     }
     Ok(expression)
 }
@@ -329,11 +325,11 @@ pub(super) fn setup(
         }
     }
     if table.contains_key(RERUN) && !table.contains_key(SET) {
-        let rule = "says how set acts, and there is no set in this block";
+        let rule = "applies to set, and this block has no set";
         content.refuse(Problem::at(RERUN, rule));
     }
     if table.contains_key("go_to") && table.contains_key(RUN_UNTIL) {
-        let rule = "has no place beside go_to: one of the two ends a block";
+        let rule = "cannot be combined with go_to: use one of the two";
         content.refuse(Problem::at(RUN_UNTIL, rule));
     }
     let keep = match table.get(KEEP_KEY) {
@@ -390,11 +386,10 @@ pub(super) fn predict(
     let ask = content.markdown("ask", find);
     let [has_choices, has_unit] = ["choices", "unit"].map(|key| content.keys.contains_key(key));
     if has_choices && has_unit {
-        let rule = "has no place beside choices: a choice has no unit";
+        let rule = "cannot be combined with choices: a choice has no unit";
         content.refuse(Problem::at("unit", rule));
     } else if !has_choices && !has_unit {
-        let rule =
-            "lacks choices = [\"...\", \"...\"], or unit = \"deg\" where a number is asked for";
+        let rule = "needs choices = [\"...\", \"...\"], or unit = \"deg\" to ask for a number";
         content.refuse(Problem::at("", rule));
     }
     let asked = if has_unit {
@@ -433,13 +428,13 @@ fn read_right(
         (AnswerKind::Choice(choices), right, within) => (1..=choices.len())
             .find(|number| within.is_none() && right == Some(*number as f64))
             .map(|number| Some(Right::Choice(number)))
-            .ok_or("must be the number of a choice, counted from 1, and within has no place there"),
+            .ok_or("must be the number of a choice, counted from 1, without within"),
         (AnswerKind::Number { .. }, Some(value), Some(within)) => {
             Ok(Some(Right::Number { value, within }))
         }
-        (AnswerKind::Number { .. }, ..) => Err(
-            "must come together: right is the number that comes out, within (above 0) how far off is right too",
-        ),
+        (AnswerKind::Number { .. }, ..) => {
+            Err("must come together: right is the right number, within (above 0) its tolerance")
+        }
     }
 }
 
@@ -474,14 +469,14 @@ pub(super) fn check(
         return Err(content.problems);
     };
     if that.names().next().is_none() {
-        let rule = "names no number of the run: it holds always or never";
+        let rule = "uses no number of the run: it holds always or never";
         content.refuse(Problem::with_value("that", &that.text().into(), rule));
     }
     let goals = content.texts("goal");
     let parts = that.conjuncts(|_| None).len();
     if goals.len() > 1 && goals.len() != parts {
         let rule = format!(
-            "has {} lines, and that joins {parts} parts with and",
+            "has {} lines, but the condition has {parts} parts joined by and",
             goals.len()
         );
         content.refuse(Problem::at("goal", rule));

@@ -40,7 +40,7 @@ impl KeptNames {
                 "is one too many: a lesson keeps at most {MOST_KEPT_NUMBERS} numbers"
             ));
         } else if !begins || !characters.all(|c| c.is_ascii_alphanumeric() || c == '_') {
-            "must begin with a letter and go on with letters, digits and _, none of them accented"
+            "must begin with a letter and have only letters without accents, digits and _"
         } else if RESERVED.contains(&name) {
             "means something else in a lesson: choose another name"
         } else if readouts::find(name).is_some() || numbers::find(name, None).is_ok() {
@@ -86,7 +86,7 @@ impl KeptNames {
         let found = numbers::find(name, None).map(|_| ());
         if found.is_ok() && self.open_from.is_none_or(|from| page < from) {
             return Err(format!(
-                "{name} is a number of a run, and no lab block has opened one yet"
+                "{name} is a number of a run, but no lab block has opened a run yet"
             ));
         }
         found.map_err(|reason| {

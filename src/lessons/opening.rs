@@ -15,7 +15,7 @@ use std::sync::{Mutex, PoisonError};
 
 /// Maximum length of a lesson file, bytes.
 pub const LONGEST_LESSON_FILE: u64 = 1 << 20;
-const TOO_LONG: &str = "is longer than 1 MiB, the most of a lesson";
+const TOO_LONG: &str = "is longer than 1 MiB, the maximum for a lesson";
 
 /// Opens the lesson `name`: a file if the name contains a `/` or ends in `.md`, else a shipped lesson.
 ///
@@ -99,7 +99,8 @@ pub fn read_file(path: &Path) -> Result<Lesson, Problems> {
 /// Returns an error for a file that could block, too.
 pub fn read_again(path: &Path) -> Result<Lesson, Problems> {
     if Destination::may_wait(path) {
-        let rule = "is not a regular file, which a lesson in the lab must be: it is read again whenever it changes";
+        let rule =
+            "is not a regular file: the lab needs one, because it rereads a lesson that changes";
         let origin = path.display().to_string();
         return Err(Problems::one(origin, Problem::at("", rule)));
     }

@@ -182,8 +182,8 @@ impl<'a> LessonWalk<'a> {
         if !opens && steps > MOST_BEFORE && page.states_numbers(&self.kept) {
             let (steps, most) = (HumanCount(steps), HumanCount(MOST_BEFORE));
             let rule = format!(
-                "states numbers of a run of {steps} steps that pages before it open: it is set there when it is turned \
-                to, and at most {most} steps are played for that; its lab block should open a run of its own"
+                "states numbers of a run of {steps} steps from earlier pages, but at most {most} steps are replayed \
+                when it is opened: add a lab block that opens a run"
             );
             found.add(|| on_line(page.line, Problem::at(format!("## {}", page.heading), rule)));
         }
@@ -222,7 +222,7 @@ impl<'a> LessonWalk<'a> {
                     format!("does not hold after the {block} of its page: {numbers}")
                 }
                 ((true, first), (true, last)) => format!(
-                    "holds without the {block} of its page too, so it tells nothing: {}",
+                    "holds without the {block} of its page too, so it checks nothing: {}",
                     if has_task { first } else { last }
                 ),
             };

@@ -44,8 +44,9 @@ fn elements(text: &str) -> Result<Vec<Element<'_>>, Problem> {
     plain(text, &lines)?;
     let elements = structure(text, &lines, &BlockKind::words())?;
     if elements.len() > MOST_LESSON_BLOCKS {
-        let rule =
-            format!("has more than {MOST_LESSON_BLOCKS} pages and blocks, the most of a lesson");
+        let rule = format!(
+            "has more than {MOST_LESSON_BLOCKS} pages and blocks, the maximum for a lesson"
+        );
         return Err(Problem::at("", rule));
     }
     Ok(elements)
@@ -63,7 +64,7 @@ fn plain(text: &str, lines: &Lines) -> Result<(), Problem> {
         None => Ok(()),
         Some((at, c)) => {
             let rule = format!(
-                "holds the control or invisible character U+{:04X}, which no lesson may hold",
+                "contains the control or invisible character U+{:04X}: remove it",
                 u32::from(c)
             );
             Err(on_line(lines.at(at), Problem::at("", rule)))
@@ -125,7 +126,7 @@ impl Assembly {
             match blocks::setup(&reader, &mut self.names, page, known_from) {
                 Ok(setup) => {
                     if !is_opened && !setup.opens() {
-                        let rule = "opens nothing, and there is nothing open before it: open = \"method-2\" says which run";
+                        let rule = "opens no run, and no block before it does: add open = \"method-2\" or another run";
                         self.refuse(element.line, Problem::at(word, rule));
                     }
                     self.setups.push(setup);
@@ -142,7 +143,7 @@ impl Assembly {
             PieceKind::Title(words) => self.add_title(words, line),
             PieceKind::Heading(words) => {
                 if words.is_empty() {
-                    let rule = "is a page without a heading: write it behind ##";
+                    let rule = "is a page without a heading: write one after ##";
                     self.refuse(line, Problem::at("##", rule));
                 }
                 self.need_title(line);
@@ -169,7 +170,7 @@ impl Assembly {
             return self.refuse(line, Problem::at("#", rule));
         }
         if words.is_empty() {
-            let rule = "is a title without words: write them behind #";
+            let rule = "is an empty title: write it after #";
             self.refuse(line, Problem::at("#", rule));
         }
         self.has_title = true;
@@ -209,16 +210,16 @@ impl Assembly {
         let Some(kind) = BlockKind::find(word) else {
             let near = nearest(word, BlockKind::words().into_iter().chain(LANGUAGES));
             let also = if near.starts_with("did you mean") {
-                format!(" (shown as they are: {})", listed(LANGUAGES.into_iter()))
+                format!(" (shown unchanged: {})", listed(LANGUAGES.into_iter()))
             } else {
                 String::new()
             };
-            let rule = format!("is no block of a lesson: {near}{also}");
+            let rule = format!("is not a lesson block: {near}{also}");
             return self.refuse(line, Problem::at(word, rule));
         };
         let needs_page = !matches!(kind, BlockKind::Lesson | BlockKind::Notes);
         if needs_page && self.lesson.pages.is_empty() {
-            let rule = "stands before the first page: write its heading, ## ..., above it";
+            let rule = "is before the first page: write a heading, ## ..., above it";
             return self.refuse(line, Problem::at(word, rule));
         }
         self.add_block(kind, &self.reader(word, inside, line));
@@ -256,11 +257,11 @@ impl Assembly {
     fn add_head(&mut self, reader: &BlockReader<'_>) {
         let line = reader.line;
         if self.has_head {
-            let rule = "stands twice: a lesson has one such block";
+            let rule = "occurs twice: a lesson has only one such block";
             return self.refuse(line, Problem::at("lesson", rule));
         }
         if !self.lesson.pages.is_empty() {
-            let rule = "stands on a page: its place is below the title";
+            let rule = "is on a page: move it below the title";
             return self.refuse(line, Problem::at("lesson", rule));
         }
         self.has_head = true;
@@ -283,7 +284,7 @@ impl Assembly {
         make: fn(Setup) -> LessonBlock,
     ) {
         if self.lesson.pages.last().and_then(same).is_some() {
-            let rule = "stands twice on this page, which has one: begin another page with ##";
+            let rule = "occurs twice on this page: begin another page with ##";
             return self.refuse(reader.line, Problem::at(reader.word, rule));
         }
         let mut setups = self.setups.iter();
@@ -329,16 +330,13 @@ impl Assembly {
     fn check_compare(&mut self, compare: &Compare) {
         let rule = match self.lesson.predict(&compare.prediction) {
             Some(asked) if asked.line < compare.line => return,
-            Some(asked) => format!("is asked for later, on line {}", asked.line),
+            Some(asked) => format!("is asked for only later, on line {}", asked.line),
             None if self.predictions.is_empty() => {
-                "is asked for nowhere: a predict block asks".to_owned()
+                "is not asked for: add a predict block with this name".to_owned()
             }
             None => {
                 let known = self.predictions.iter().map(String::as_str);
-                format!(
-                    "is asked for nowhere: {}",
-                    nearest(&compare.prediction, known)
-                )
+                format!("is not asked for: {}", nearest(&compare.prediction, known))
             }
         };
         let name = toml::Value::from(compare.prediction.as_str());

@@ -151,7 +151,7 @@ impl<'a> FileWalk<'a, '_> {
         let word = words.next().unwrap_or_default();
         let is_of_lessons = self.words.contains(&word);
         if !is_alone && is_of_lessons {
-            let rule = "stands in a list or a quotation: a block begins at the edge of the page";
+            let rule = "is in a list or a quotation: move it to the left margin";
             return Err(on_line(line, Problem::at(word, rule)));
         }
         if !is_alone {
@@ -160,17 +160,17 @@ impl<'a> FileWalk<'a, '_> {
         let text = self.text;
         let block = &text[range.clone()];
         let inside = between_fences(block).ok_or_else(|| {
-            let rule = format!("is not closed: a line {} must end it", fence_of(block));
+            let rule = format!("is not closed: end it with a line {}", fence_of(block));
             on_line(line, Problem::at(named(word), rule))
         })?;
         if let Some(extra) = words.next().filter(|_| is_of_lessons) {
-            let rule = format!("stands alone behind its fence, without {extra}");
+            let rule = format!("must be the only word after its fence: remove {extra}");
             return Err(on_line(line, Problem::at(word, rule)));
         }
         if let Some(at) = another_fence(inside, fence_of(block), self.words) {
             let begin = line + 1 + at;
             let rule = format!(
-                "is not closed before line {begin}, where another block begins: a line {} must end it",
+                "is not closed before line {begin}, where another block begins: end it with a line {}",
                 fence_of(block)
             );
             return Err(on_line(line, Problem::at(named(word), rule)));

@@ -62,7 +62,7 @@ impl TextFormat {
     fn read(text: &str) -> Result<Self, String> {
         Self::parse(text).ok_or_else(|| {
             format!(
-                "{text} is no way to write a number: there is .3 for three decimals, and .2e with an exponent"
+                "{text} is not a number format: use .3 for three decimals, or .2e for an exponent"
             )
         })
     }
@@ -162,7 +162,7 @@ fn placeholder(
     // If the line ends or another placeholder begins first, the closing brace is missing.
     let first = text.find(['\n', '{', '}']);
     let Some(end) = first.filter(|&end| text[end..].starts_with('}')) else {
-        let rule = "is not closed in its line by }: a brace that is meant as one is written \\{";
+        let rule = "is not closed by } on its line: write a literal brace as \\{";
         let begin = brief(&text[..first.unwrap_or(text.len())], 40);
         return Err((format!("{{{}", begin.trim_end()), rule.to_owned()));
     };
@@ -185,7 +185,7 @@ fn placeholder_content(
     let expression = Expression::parse(written.trim()).map_err(|fault| fault.to_string())?;
     expression.bind(find).map_err(|fault| fault.to_string())?;
     if expression.is_condition() {
-        return Err("compares: a number must stand here".to_owned());
+        return Err("is a comparison: write a number".to_owned());
     }
     Ok((expression, format))
 }

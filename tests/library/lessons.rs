@@ -269,7 +269,10 @@ fn a_prediction_is_compared_after_it_was_asked_for() {
     let text = WHOLE
         .replace("Stop the push.", late)
         .replace("prediction = \"finer\"", "prediction = \"late\"");
-    has(unreadable(&text), "(\"late\") is asked for later, on line ");
+    has(
+        unreadable(&text),
+        "(\"late\") is asked for only later, on line ",
+    );
     let kept_late = WHOLE
         .replace("Stop the push.", "{other}")
         .replace("go_to = 10\n", "go_to = 10\nkeep = { other = \"t_s\" }\n");
@@ -324,7 +327,7 @@ fn a_file_that_is_too_long_is_refused_with_its_length() {
     for (text, words) in [
         (
             pages(1_000_000),
-            "long.md: is longer than 1 MiB, the most of a lesson",
+            "long.md: is longer than 1 MiB, the maximum for a lesson",
         ),
         (lines, "at most 20000"),
         (pages(4_000), "more than 1000 pages and blocks"),

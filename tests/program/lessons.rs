@@ -197,9 +197,13 @@ fn check_tells_what_is_wrong_with_a_lesson_and_plays_it() {
         (
             "steer.md",
             "Ω",
-            "holds the control or invisible character U+001B",
+            "contains the control or invisible character U+001B",
         ),
-        ("long.md", "", "is longer than 1 MiB, the most of a lesson"),
+        (
+            "long.md",
+            "",
+            "is longer than 1 MiB, the maximum for a lesson",
+        ),
     ] {
         let place = match line {
             "" => file.to_owned(),

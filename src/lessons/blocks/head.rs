@@ -11,13 +11,13 @@ const LONGEST_LESSON: i64 = 600;
 
 #[rustfmt::skip]
 const HEAD: Schema = Schema(&[&[
-    may("about", Line, "what the lesson is about"),
-    may("minutes", Whole(1, LONGEST_LESSON), "how long it takes"),
-    may("level", By(is_level), "what it takes for granted"),
+    may("about", Line, "the subject of the lesson"),
+    may("minutes", Whole(1, LONGEST_LESSON), "duration"),
+    may("level", By(is_level), "required prior knowledge"),
     may("needs", Lines, "lessons to take first, and tools"),
-    may("goals", Lines, "what a student can do afterwards"),
-    may("leaves_out", Lines, "what a real top does and the model does not"),
-    may("page_minutes", By(are_page_minutes), "how long each page takes"),
+    may("goals", Lines, "abilities of a student afterwards"),
+    may("leaves_out", Lines, "properties of a real top that the model lacks"),
+    may("page_minutes", By(are_page_minutes), "duration of each page"),
 ]]);
 
 /// The content of the block.
