@@ -210,7 +210,9 @@ impl OpenLesson {
         let page = page.unwrap_or(self.place.page);
         if self.lesson.page(page).is_none() {
             let (name, pages) = (&self.lesson.name, self.lesson.pages.len());
-            return Err(format!("{name} has the pages 1 to {pages}, not {page}"));
+            return Err(format!(
+                "{name} has no page {page}: its pages are 1 to {pages}"
+            ));
         }
         self.turn_to(page);
         self.replay_page(false, lab)
@@ -277,7 +279,7 @@ impl OpenLesson {
         if lab.script().has_broken_off() {
             self.under_way = Some(PendingBlock::Left).filter(|_| self.is_under_way());
             if self.plays() && lab.script().was_stopped() {
-                lab.tell("you have left the page's run: b plays it again, n goes to its end");
+                lab.tell("you left the page's run: press b to play it again, n to jump to its end");
             }
             return true;
         }
@@ -321,7 +323,7 @@ impl OpenLesson {
                 Err(problems) => {
                     let text = problems.to_string();
                     let first = text.lines().next().unwrap_or_default();
-                    lab.tell(format!("the page stays as it was: {first}"));
+                    lab.tell(format!("the changed lesson has an error: {first}"));
                 }
             }
         }
@@ -358,7 +360,7 @@ impl OpenLesson {
         self.lesson = Arc::new(Lesson { name, ..lesson });
         self.reached.clear();
         self.place.stated = None;
-        lab.tell("the lesson was read again: b begins the page again");
+        lab.tell("lesson reloaded; press b to restart the page");
     }
 
     /// Records the checks of the page that hold now, and reports the task as done once all have held. Returns true if a

@@ -105,7 +105,7 @@ pub(super) fn list(
         }
     }
     if names.is_empty() {
-        let none = "no lesson has that in its title: Esc clears the filter";
+        let none = "no matching lesson; press Esc to clear the filter";
         let hint = Paragraph::new(SheetLineKind::Hint, none);
         sheet.paragraphs.push(hint);
     }
@@ -329,7 +329,7 @@ impl Writer<'_> {
         if is_missing && !self.overlay.is_of_teacher && !self.overlay.is_followed {
             let pages = &mut lesson.pages.iter();
             if let Some(page) = pages.find(|page| page.asks(&compare.prediction)) {
-                let text = format!("You predicted nothing: page {} asks for it.", page.number);
+                let text = format!("You made no prediction. Page {} asks for it.", page.number);
                 self.add(Paragraph::new(SheetLineKind::Hint, text));
             }
         }
@@ -399,16 +399,16 @@ impl Writer<'_> {
         let has_task = self.open.page().is_some_and(|page| page.task().is_some());
         let is_last = number == self.open.lesson.pages.len();
         let text = match (self.open.is_under_way(), has_task, is_last) {
-            (_, true, _) if self.overlay.is_followed => "k steps aside to try it; h: a hint.",
+            (_, true, _) if self.overlay.is_followed => "k: leave the class to try it; h: hint.",
             _ if self.overlay.is_followed => return,
-            _ if self.open.has_left() => "b: the page again; n goes on.",
-            _ if self.open.plays() => "The run plays: space stops it, n goes to its end.",
-            (true, ..) => "The run is on its way; space pauses it.",
+            _ if self.open.has_left() => "b: restart the page; n: continue.",
+            _ if self.open.plays() => "The run is playing. space: pause; n: jump to its end.",
+            (true, ..) => "The run is being computed. space: pause.",
             (false, true, _) if !self.open.shows_hints => {
-                "h: a hint; b: the page again; n: next page."
+                "h: hint; b: restart the page; n: next page."
             }
-            (false, true, false) => "h shows how it is done; b: the page again; n: next page.",
-            (false, true, true) => "h shows how it is done; b: the page again; L: other lessons.",
+            (false, true, false) => "h: show how it is done; b: restart the page; n: next page.",
+            (false, true, true) => "h: show how it is done; b: restart the page; L: other lessons.",
             (false, false, false) => return, // the footer names n
             (false, false, true) => "This is the end of the lesson. L: other lessons.",
         };

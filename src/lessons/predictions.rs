@@ -40,10 +40,10 @@ impl Predictions {
     /// Returns an error, and changes nothing, if the round already has an answer or `given` does not fit the question.
     pub fn lock(&mut self, predict: &Predict, given: LockedAnswer) -> Result<(), String> {
         if self.in_round(predict, given.round).is_some() {
-            return Err("is locked already: a prediction is not changed".to_owned());
+            return Err("is already locked and cannot be changed".to_owned());
         }
         if !predict.asked.accepts(&given.answer) {
-            return Err("is no answer to this question".to_owned());
+            return Err("does not answer this question".to_owned());
         }
         let all = self.locked.entry(predict.name.clone()).or_default();
         all.retain(|other| other.round != given.round);

@@ -199,12 +199,11 @@ impl Lessons {
             (LessonDialog::List { selected, .. }, LessonKey::Leave) => {
                 self.selected = *selected;
                 self.shown = LessonDialog::Nothing;
-                let text =
-                    "the lessons are closed: L lists them again, each stands where it was left";
+                let text = "lessons closed; press L to reopen each where you left it";
                 lab.refuse(text);
             }
             (_, LessonKey::Leave) => {
-                lab.refuse("nothing is open on this page: L lists the lessons, q leaves");
+                lab.refuse("nothing to close; L lists the lessons, q quits");
             }
             (LessonDialog::List { selected, .. }, LessonKey::Move(direction)) => {
                 let last = names.len().saturating_sub(1);
@@ -217,7 +216,7 @@ impl Lessons {
             (LessonDialog::List { .. }, _) => {
                 lab.refuse("Enter opens the selected lesson, Esc closes the list");
             }
-            (LessonDialog::Nothing, _) => lab.refuse("no lesson is open: L lists them"),
+            (LessonDialog::Nothing, _) => lab.refuse("no lesson is open; press L to list them"),
             (LessonDialog::Lesson(open), key) => scrolls = open.on_key(key, lab),
         }
         self.show(lab);

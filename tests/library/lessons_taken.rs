@@ -292,7 +292,7 @@ fn an_open_prediction_can_be_left_open() {
     let (mut stage, _folder, _) = taken(1);
     stage.press("↓").press("nn").arrive().shows("2 of 4");
     stage.shows("It is 5.0.").shows_no("You said: it");
-    stage.shows("You predicted nothing: page 1 asks");
+    stage.shows("You made no prediction. Page 1 asks");
     // Where nothing else is said, a blank stands for the prediction.
     stage.shows("You said: ….");
     stage.press("N").arrive();
@@ -372,7 +372,7 @@ fn a_file_that_changes_is_read_again_and_the_page_stays() {
     stage.wait(2.0).shows("Now it is 5.0").shows("2 of 4");
     assert_eq!(stage.step(), step, "the run stays");
     fs::write(&name, LESSON.replace("```compare", "```compere")).unwrap();
-    stage.wait(2.0).shows("the page stays as it was");
+    stage.wait(2.0).shows("the changed lesson has an error");
     stage.shows("Now it is 5.0");
 }
 
@@ -388,7 +388,7 @@ fn a_file_that_could_keep_the_lab_waiting_is_refused() {
     assert!(refusal.contains("is not a regular file"), "{refusal}");
     fs::remove_file(&name).unwrap();
     fs::rename(&fifo, &name).unwrap();
-    stage.wait(2.0).shows("the page stays as it was");
+    stage.wait(2.0).shows("the changed lesson has an error");
     stage.shows("2 of 4");
 }
 
@@ -488,7 +488,7 @@ fn a_page_plays_its_run_and_n_leads_to_its_end() {
         .shows("Watch.")
         .shows("The run plays")
         .shows_no("It is");
-    stage.press("p").wait(0.1).shows("b plays it again");
+    stage.press("p").wait(0.1).shows("press b to play it again");
     stage.press("n").shows("2 of 4").shows("It is 5.0.");
     stage.press("b").wait(0.5).shows_no("It is").wait(2.0);
     stage

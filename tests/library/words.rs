@@ -160,7 +160,7 @@ fn esc_leads_out_of_the_lessons() {
     for _ in 0..3 {
         stage.press("\u{1b}");
     }
-    stage.shows("L lists the lessons, q leaves");
+    stage.shows("L lists the lessons, q quits");
     stage.press("L").press("\u{1b}").press("\u{1b}");
     assert!(stage.lab.view().sheet.is_none());
 }

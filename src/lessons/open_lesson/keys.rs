@@ -10,7 +10,7 @@ use crate::lessons::predictions::{LockedAnswer, Predictions, Tried};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-const LOCKED: &str = "your answer is locked: a prediction is not changed";
+const LOCKED: &str = "your answer is locked and cannot be changed";
 
 impl OpenLesson {
     pub(in crate::lessons) fn on_key(
@@ -57,9 +57,9 @@ impl OpenLesson {
         }
         if self.asked().is_some() && !std::mem::replace(&mut self.was_asked, true) {
             lab.refuse(if self.has_chosen() {
-                "Enter locks the answer that you chose. n again leaves it open"
+                "press Enter to lock your answer, or n again to skip"
             } else {
-                "write down a prediction first. n again leaves it open"
+                "write down a prediction first, or press n again to skip"
             });
             return;
         }
@@ -153,7 +153,7 @@ impl OpenLesson {
             let mut asked = self.page().into_iter().flat_map(LessonPage::predicts);
             return lab.refuse(match asked.next() {
                 Some(_) => LOCKED,
-                None => "nothing is asked here",
+                None => "this page asks no question",
             });
         };
         let AnswerKind::Choice(choices) = &predict.asked else {
@@ -161,7 +161,7 @@ impl OpenLesson {
         };
         let chosen = self.chosen.get(&predict.name);
         match chosen.and_then(|at| choices.get(*at)) {
-            None => lab.refuse("choose an answer first: its number, or Up and Down"),
+            None => lab.refuse("choose an answer first: type its number, or press Up and Down"),
             Some(choice) => self.lock(&predict, PredictionAnswer::Choice(choice.clone()), lab),
         }
     }
@@ -186,7 +186,7 @@ impl OpenLesson {
 
     fn ask_number(&self, typed: Option<char>, lab: &mut Lab) {
         if let Some(AnswerKind::Number { unit }) = self.asked().map(|predict| &predict.asked) {
-            let about = "Enter locks it: a prediction is not changed";
+            let about = "Enter locks it; it cannot be changed later";
             lab.popups_mut()
                 .ask_number("your prediction", unit, about, typed);
         }
