@@ -43,14 +43,14 @@ impl Adviser {
             && player.steps_to_go().is_none()
             && is_believed(player) == Some(false)
         {
-            self.search = Some(background::advice(to_be_mended(player)));
+            self.search = Some(background::advice(run_to_fix(player)));
         }
     }
 
     /// Searches for advice if the numbers are unreliable, and waits for the result.
     pub(super) fn look_now(&mut self, player: &Player) {
         if is_believed(player) == Some(false) {
-            self.offer = offered(&advise(&to_be_mended(player)), player);
+            self.offer = offer_from(&advise(&run_to_fix(player)), player);
         }
     }
 
@@ -58,7 +58,7 @@ impl Adviser {
     pub(super) fn advance(&mut self, player: &Player) -> bool {
         let has_come = self.search.as_mut().is_some_and(BackgroundJob::take_news);
         if has_come {
-            self.offer = self.advice().and_then(|advice| offered(advice, player));
+            self.offer = self.advice().and_then(|advice| offer_from(advice, player));
         }
         has_come
     }
@@ -83,7 +83,7 @@ impl Adviser {
     /// Returns the command that follows the advice.
     ///
     /// # Errors
-    /// Returns an error if there is no advice now, with the reason.
+    /// Returns an error if there is no advice to follow now.
     pub fn followed(&self, player: &Player) -> Result<Command, String> {
         match self.why_none(player) {
             Some(reason) => Err(reason.to_owned()),
@@ -112,8 +112,8 @@ impl Adviser {
         }
         let offer = self.offer.take().or_else(|| {
             let known = self.advice().copied();
-            let advice = known.unwrap_or_else(|| advise(&to_be_mended(player)));
-            offered(&advice, player)
+            let advice = known.unwrap_or_else(|| advise(&run_to_fix(player)));
+            offer_from(&advice, player)
         });
         offer.ok_or_else(|| "no time step or scheme was found that fixes this run".to_owned())
     }
@@ -127,7 +127,7 @@ fn is_believed(player: &Player) -> Option<bool> {
 ///
 /// After an edit of the time step at step 0 the scenario has as many steps as before, but the lab plays as many
 /// seconds.
-fn to_be_mended(player: &Player) -> Arc<Scenario> {
+fn run_to_fix(player: &Player) -> Arc<Scenario> {
     let scenario = player.run().scenario();
     let end_s = player.end_s.max(player.run().now().time_s);
     let steps = Simulation::step_at(scenario, end_s).max(1);
@@ -141,7 +141,7 @@ fn to_be_mended(player: &Player) -> Arc<Scenario> {
 }
 
 /// Returns the offer that `advice` makes; `None` if there is nothing to change or this run cannot be changed that way.
-fn offered(advice: &Advice, player: &Player) -> Option<Offer> {
+fn offer_from(advice: &Advice, player: &Player) -> Option<Offer> {
     let (time_step_s, scheme) = match *advice {
         Advice::TimeStep(time_step_s) => (time_step_s, None),
         Advice::Scheme {

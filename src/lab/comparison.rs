@@ -1,5 +1,5 @@
-//! The references with which the run is compared: the exact motion, the run before an edit (its ghost), a pinned run,
-//! and measured data.
+//! Everything with which the run is compared: the exact motion, the run before an edit (its ghost), a pinned run, and
+//! measured data.
 
 mod column;
 mod data;
@@ -27,9 +27,9 @@ use std::time::Duration;
 /// enough.
 const SHORT_RUN_SHARE: f64 = 0.1;
 /// Computing time for reading the run at the measured times in each round of the main loop, while the run moves, and
-/// while it is paused (`CATCHING_UP`).
+/// while it is paused (`PAUSED_BUDGET`).
 const MEASURED_BUDGET: Duration = Duration::from_millis(6);
-const CATCHING_UP: Duration = Duration::from_millis(40);
+const PAUSED_BUDGET: Duration = Duration::from_millis(40);
 
 enum Pinned {
     /// The present run, unchanged since it was pinned.
@@ -54,7 +54,7 @@ fn computing_share(player: &Player) -> Duration {
     if player.is_moving() {
         MEASURED_BUDGET
     } else {
-        CATCHING_UP
+        PAUSED_BUDGET
     }
 }
 

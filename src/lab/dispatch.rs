@@ -67,8 +67,8 @@ impl Lab {
             Command::Look(patch) => view.look(patch, player, &self.step_pane),
             Command::NextPush(choice) => edits.choose_next_push(choice, player),
             Command::Push(choice) => self.push(choice),
-            Command::Undo(times) => self.turn(Edits::undo, *times),
-            Command::Redo(times) => self.turn(Edits::redo, *times),
+            Command::Undo(times) => self.undo_or_redo(Edits::undo, *times),
+            Command::Redo(times) => self.undo_or_redo(Edits::redo, *times),
             Command::Open(name) => {
                 let scenario = files.open_scenario(name)?;
                 let edit = edits.open(name, Arc::new(scenario), player);
@@ -97,14 +97,18 @@ impl Lab {
     /// Starts the push of `choice`. In a lesson, a push that is tried again replaces the previous try.
     fn push(&mut self, choice: &PushChoice) -> ActionResult {
         if self.view.sheet.is_some() && self.edits.is_push_tried_again(choice, &self.player) {
-            self.turn(Edits::undo, 1)?;
+            self.undo_or_redo(Edits::undo, 1)?;
         }
         let edit = self.edits.push(choice, &self.player)?;
         Ok(self.apply(edit))
     }
 
     /// Undoes or redoes `times` edits.
-    fn turn(&mut self, turn: fn(&mut Edits, &Player) -> Edited, times: u32) -> ActionResult {
+    fn undo_or_redo(
+        &mut self,
+        turn: fn(&mut Edits, &Player) -> Edited,
+        times: u32,
+    ) -> ActionResult {
         let mut done = Done::SILENT;
         for _ in 0..times {
             let edit = turn(&mut self.edits, &self.player)?;

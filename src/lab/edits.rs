@@ -162,7 +162,7 @@ impl Edits {
 
     /// Pushes from the next step on: with the next push, changed by the values of `choice`.
     pub(super) fn push(&mut self, choice: &PushChoice, player: &Player) -> Edited {
-        let (push, given) = self.given(choice, player)?;
+        let (push, given) = self.resolve_push(choice, player)?;
         let said = format!(
             "pushed: {}; u undoes it, P chooses another",
             push.in_words()
@@ -172,7 +172,11 @@ impl Edits {
     }
 
     /// Returns the push of `choice` in two forms: as the user chooses it, and as it acts at the present step.
-    fn given(&self, choice: &PushChoice, player: &Player) -> Result<(NextPush, PushFile), String> {
+    fn resolve_push(
+        &self,
+        choice: &PushChoice,
+        player: &Player,
+    ) -> Result<(NextPush, PushFile), String> {
         let push = self.chosen(choice, player)?;
         let run = player.run();
         let mut given = push.given(run.scenario(), run.simulation().state())?;
@@ -186,7 +190,7 @@ impl Edits {
     /// since.
     pub(super) fn is_push_tried_again(&self, choice: &PushChoice, player: &Player) -> bool {
         let here = player.step_number();
-        self.given(choice, player).is_ok()
+        self.resolve_push(choice, player).is_ok()
             && player.run().furthest() > here
             && self.runs.journal().ends_with_push_at(here)
             && !self.runs.is_at_floor()
@@ -304,15 +308,15 @@ impl Edits {
         if self.runs.is_at_floor() {
             return Err("nothing to undo: the page began here".into());
         }
-        self.move_cursor(Journal::undo, UNDO, player)
+        self.move_in_journal(Journal::undo, UNDO, player)
     }
 
     pub(super) fn redo(&mut self, player: &Player) -> Edited {
-        self.move_cursor(Journal::redo, REDO, player)
+        self.move_in_journal(Journal::redo, REDO, player)
     }
 
     /// Undoes or redoes one edit, with `turn`.
-    fn move_cursor(
+    fn move_in_journal(
         &mut self,
         turn: fn(&mut Journal) -> &[Arc<JournalEntry>],
         [nothing, done, run, back]: [&str; 4],

@@ -59,7 +59,7 @@ impl Files {
     /// Checks that the file `path` may be read and written.
     ///
     /// # Errors
-    /// Returns an error if it may not, with the reason.
+    /// Returns an error if the lab is restricted to another folder.
     pub fn admit(&self, path: &Path) -> Result<(), String> {
         self.confined().map_or(Ok(()), |folder| folder.check(path))
     }
@@ -67,7 +67,7 @@ impl Files {
     /// Checks that the file `path` may be read. The lab of a seat may also read files in the class's folder.
     ///
     /// # Errors
-    /// Returns an error if it may not, with the reason.
+    /// Returns an error if the lab is restricted to another folder.
     pub fn admit_reading(&self, path: &Path) -> Result<(), String> {
         self.confined()
             .map_or(Ok(()), |folder| folder.check_reading(path))

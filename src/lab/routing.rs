@@ -1,6 +1,6 @@
 //! Passes actions to the parts of the lab.
 //!
-//! A new [`Action`] gets its arm in `Lab::act`, or in `act_on_top` if it concerns popups or the main loop.
+//! A new [`Action`] gets its arm in `Lab::act`, or in `act_on_popups` if it concerns popups or the main loop.
 
 use super::action::{
     Action, Ask, Direction, FieldEdit, LabRequest, LessonKey, PAGE_KEY_ROWS, repeated, signed,
@@ -74,13 +74,13 @@ impl Lab {
                 }
             }
             Action::Move(direction, far) => self.move_by(direction, times * far)?,
-            other => return self.act_on_top(other, &cleared),
+            other => return self.act_on_popups(other, &cleared),
         }
         Ok(None)
     }
 
     /// Carries out an action on popups, or returns the request for an action of the main loop.
-    fn act_on_top(
+    fn act_on_popups(
         &mut self,
         action: Action,
         cleared: &Cleared,

@@ -18,7 +18,7 @@ pub struct Runs {
     kept: Option<SharedText>,
     /// The pinned run written with it.
     kept_reference: Option<Reference>,
-    /// The number of acts that undo keeps: those before the page of a lesson began.
+    /// Number of acts at the start of the journal that undo does not touch: those before the page of a lesson began.
     floor: Option<usize>,
 }
 

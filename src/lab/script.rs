@@ -121,7 +121,7 @@ impl CommandScript {
     /// Returns the command with which the one in progress continues after a pause.
     ///
     /// A run goes to the same step or until the same condition holds. A wait lasts for the rest of its time at `now`.
-    fn under_way_again(&self, player: &Player, now: Duration) -> Option<LocatedCommand> {
+    fn resumed_command(&self, player: &Player, now: Duration) -> Option<LocatedCommand> {
         let (placed, under_way) = self.under_way.as_ref()?;
         let command = match under_way {
             PendingAction::Going => {
@@ -145,7 +145,7 @@ impl CommandScript {
         if let Some((_, PendingAction::Exporting)) = self.under_way {
             return;
         }
-        if let Some(again) = self.under_way_again(player, now) {
+        if let Some(again) = self.resumed_command(player, now) {
             self.under_way = None;
             self.left.push_front(again);
         }

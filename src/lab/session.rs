@@ -61,7 +61,7 @@ pub(super) struct KeptPlace {
     exporting: Option<String>,
     /// The measured data shown with the run.
     pub(super) measured: Option<String>,
-    /// The new names of its columns.
+    /// The renamed columns of these data.
     #[serde(default)]
     map: Vec<Renaming>,
     /// The uncertainties for columns without any.
@@ -95,7 +95,7 @@ impl SessionSummary {
     }
 }
 
-/// The error that the content of a session cannot be read.
+/// The reason why the content of a session cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct Unreadable(String);

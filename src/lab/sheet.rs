@@ -4,9 +4,9 @@ use crate::engine::text::ascii::in_ascii;
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Sheet {
-    /// Text at the left of its top rule.
+    /// The text at the left of the top rule.
     pub title: String,
-    /// Text at the right of its top rule: the page number.
+    /// The text at the right of the top rule: the page number.
     pub place: String,
     pub paragraphs: Vec<Paragraph>,
     /// The first and the last paragraph that must be visible. A longer sheet is scrolled to them.
@@ -28,13 +28,13 @@ pub struct Sheet {
     pub is_list: bool,
     /// True if the sheet fills the screen and the run is not shown.
     pub is_alone: bool,
-    /// Text on its top rule instead of the title, unless empty. It may change while the page stays.
+    /// The text on the top rule instead of the title, unless empty. It may change while the page stays.
     pub framed: String,
-    /// Text in its last row.
+    /// The text in the last row.
     pub border: String,
 }
 
-/// The answer that a question waits for.
+/// The kind of answer for which a question waits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AskedAnswer {
     Choice {
@@ -60,9 +60,9 @@ pub enum SheetLineKind {
     Text,
     /// An entry of a list.
     Item {
-        /// The text in front of it: a dash or a number.
+        /// The text in front of the entry: a dash or a number.
         mark: String,
-        /// Nesting depth of the list: the number of lists that contain it.
+        /// Nesting depth of its list: the number of lists that contain the list.
         depth: u16,
     },
     Code,
@@ -70,11 +70,11 @@ pub enum SheetLineKind {
     Caption,
     Question,
     Choice {
-        /// Its number, if it has one.
+        /// The number of the choice, if it has one.
         number: Option<usize>,
-        /// True if it is selected.
+        /// True if the choice is selected.
         is_selected: bool,
-        /// Text at the end of its row, for example that it was submitted.
+        /// The text at the end of the row, such as a note that the choice was submitted.
         mark: &'static str,
     },
     /// The prediction, above the result.

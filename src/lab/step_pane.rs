@@ -122,7 +122,7 @@ impl StepPane {
     /// Checks that the scheme of the present step has the phase that `page` names.
     ///
     /// # Errors
-    /// Returns an error if it does not: the phases that the scheme has.
+    /// Returns an error that lists the scheme's phases if it does not have this one.
     pub(super) fn may_show(&self, page: StepPageChoice, player: &Player) -> Result<(), String> {
         let (StepPageChoice::Named(name), Some(shown)) = (page, &self.shown) else {
             return Ok(());

@@ -29,7 +29,7 @@ impl Lab {
             | self.comparison.advance(&self.player, clock)
             | self.adviser.advance(&self.player);
         if let Some(halt) = halt {
-            self.halted(halt);
+            self.on_halt(halt);
         }
         let (is_judged, verdict) = self.comparison.judge(self.edits.runs.name(), &self.player);
         self.changed |= is_judged;
@@ -37,7 +37,7 @@ impl Lab {
             self.tell(verdict);
         }
         self.follow_export();
-        self.go_on_with_script(halt);
+        self.continue_script(halt);
         if self.changed && self.player.is_due(now) {
             self.read_now();
         } else if self.changed {
@@ -67,7 +67,7 @@ impl Lab {
             {
                 stepped = self.player.step_to(next, STEPPING_BUDGET);
             }
-            self.arrive();
+            self.catch_up();
             let reached = self.player.step_number();
             if stepped.is_err() || reached >= step || reached < next {
                 self.view.forget_camera();
@@ -79,13 +79,13 @@ impl Lab {
     }
 
     /// Updates exact motion, measured data and numbers to the present step.
-    fn arrive(&mut self) {
+    fn catch_up(&mut self) {
         self.player.run.follow_exact(|| false);
         self.comparison.catch_up(&self.player);
         self.read_now();
     }
 
-    fn halted(&mut self, halt: Halt) {
+    fn on_halt(&mut self, halt: Halt) {
         self.read_now();
         let next = messages::next(&self.view, &self.edits.runs, &self.player);
         let Some(text) = halt_in_words(halt, next.as_deref()) else {
@@ -116,7 +116,7 @@ impl Lab {
         match (self.script.is_done(), self.script.waits) {
             (false, true) => {
                 self.script.release(&mut self.player);
-                self.go_on_with_script(None);
+                self.continue_script(None);
             }
             (false, false) => {
                 self.script.pause(&self.player, self.now);
@@ -136,7 +136,7 @@ impl Lab {
     /// Replaces the present script by `commands`, which are carried out as time passes.
     pub fn take_commands(&mut self, commands: Commands) {
         self.script = CommandScript::new(commands);
-        self.go_on_with_script(None);
+        self.continue_script(None);
     }
 
     /// Removes the messages of the script's commands, unless one of them was refused.
@@ -149,7 +149,7 @@ impl Lab {
 
     /// Carries out the commands of the script that need not wait any longer. `halt` is the reason if the run has just
     /// stopped by itself.
-    fn go_on_with_script(&mut self, halt: Option<Halt>) {
+    fn continue_script(&mut self, halt: Option<Halt>) {
         if let Err(text) = self.carry_out_script(halt) {
             self.tell(text);
         }
@@ -184,7 +184,7 @@ impl Lab {
             let halt = self.player.advance_to_goal(STEPPING_BUDGET);
             steps += self.player.step_number().abs_diff(from);
             if let Some(halt) = halt {
-                self.halted(halt);
+                self.on_halt(halt);
             } else if go_on(self.player.step_number(), self.player.stop()).is_break() {
                 self.files.drop_export();
                 self.script.drop_all();
@@ -194,9 +194,9 @@ impl Lab {
             if let Err(text) = self.script.limit(steps, &mut self.player) {
                 self.tell(text);
             }
-            self.go_on_with_script(halt);
+            self.continue_script(halt);
         }
-        self.arrive();
+        self.catch_up();
         self.script.take_failure().map_or(Ok(()), |text| {
             self.messages.take_back(); // the caller reports it
             Err(text)

@@ -10,7 +10,7 @@ use toml::Value;
 #[derive(Clone, Debug, PartialEq)]
 pub struct LocatedCommand {
     pub command: Command,
-    /// Its line, from 1; `None` if unknown.
+    /// The line of the command in its file, from 1; `None` if unknown.
     pub line: Option<usize>,
 }
 
@@ -49,7 +49,7 @@ pub fn read(document: &Document) -> Result<Commands, Problems> {
                 .collect();
             let lines = document.lines_of(places.iter().cloned());
             for ((place, value), line) in places.iter().zip(tables).zip(lines) {
-                let read = one(value).map_err(|found| found.inside(place));
+                let read = parse_command(value).map_err(|found| found.inside(place));
                 let command = problems.kept(read);
                 list.extend(command.map(|command| LocatedCommand { command, line }));
             }
@@ -69,7 +69,7 @@ pub fn read(document: &Document) -> Result<Commands, Problems> {
 }
 
 /// Parses the command in `value`, a `[[do]]` table.
-fn one(value: &Value) -> Result<Command, Problems> {
+fn parse_command(value: &Value) -> Result<Command, Problems> {
     let Value::Table(table) = value else {
         return Err(Problem::with_value("", value, "must be a table").into());
     };

@@ -149,7 +149,7 @@ impl ValueSchema {
                 .check(value)
                 .map_err(|rule| Problem::with_value(name, value, rule))?,
             Self::View(path) => SCENARIO.check_part(value, path, name).or(())?,
-            Self::Keys => are_keys(name, value)?,
+            Self::Keys => check_keys(name, value)?,
             Fields(schema, shorthand) => {
                 let whole = match (shorthand, value) {
                     (True, Value::Boolean(true)) => Table::new().into(),
@@ -203,7 +203,7 @@ fn can_be_nudged(key: &str) -> Result<(), String> {
 }
 
 /// Checks `value` of the command `name`: dotted keys of the scenario, each with an allowed value.
-fn are_keys(name: &str, value: &Value) -> Result<(), Problems> {
+fn check_keys(name: &str, value: &Value) -> Result<(), Problems> {
     let keys = match value {
         Value::Table(table) if !table.is_empty() => table,
         _ => {

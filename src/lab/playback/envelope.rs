@@ -3,7 +3,7 @@
 
 /// Minimum reversal of a curve that counts as a turning point, dots. Slow motion is excluded, because it does not turn
 /// back.
-const LEAST_SWING_DOTS: f64 = 2.0;
+const MIN_SWING_DOTS: f64 = 2.0;
 /// Columns on either side in which turning points are counted.
 ///
 /// Swings are unresolved if half of the columns have a turning point: the swings are then shorter than four columns.
@@ -42,7 +42,7 @@ pub fn envelope(columns: &[Option<Rows>]) -> Vec<Option<Rows>> {
         .collect()
 }
 
-/// Returns true for each column in which the curve turns back by more than [`LEAST_SWING_DOTS`].
+/// Returns true for each column in which the curve turns back by more than [`MIN_SWING_DOTS`].
 ///
 /// In each column the curve is assumed to start from the end nearer to its previous position and to go to the other
 /// end.
@@ -70,7 +70,7 @@ fn turning_points(columns: &[Option<Rows>]) -> Vec<bool> {
             };
             if position.is_none() || ahead >= 0.0 {
                 (farthest, farthest_column) = (row, index);
-            } else if -ahead > LEAST_SWING_DOTS {
+            } else if -ahead > MIN_SWING_DOTS {
                 turning[farthest_column] = true;
                 is_down = !is_down;
                 (farthest, farthest_column) = (row, index);

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use std::time::Duration;
 use toml::Value;
 
-/// Maximum time that one frame counts. After a suspension, or on a slow line, the run does not catch up on more.
+/// Maximum time that one frame counts. After a suspension, or on a slow line, the rest of the time is skipped.
 const LONGEST_FRAME: Duration = Duration::from_millis(250);
 
 /// Ends of the 1-2-5 series of playback speeds, simulated seconds per second.

@@ -4,7 +4,7 @@ use crate::engine::recording::Extent;
 
 /// Rounding error of a decimal logarithm, allowed when digits are counted.
 const STRIP_TICK_ROUNDING: f64 = 1e-9;
-/// The last digit of the ends of a range is this fraction of the range: its third significant digit.
+/// Ratio of a range to the last digit of its ends, which is the third significant digit of the range.
 const END_DIGITS: f64 = 100.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]

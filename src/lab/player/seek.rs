@@ -18,7 +18,7 @@ const SEEK_BUDGET: Duration = Duration::from_millis(40);
 const EXACT_BUDGET_FLAT_OUT: Duration = Duration::from_micros(1200);
 /// The same at other times: a tenth of a frame at 15 frames per second.
 const EXACT_BUDGET: Duration = Duration::from_millis(6);
-/// Number of steps after which playing until a condition gives up. Commands of a file go no further in one go.
+/// Number of steps after which playing until a condition gives up. It also limits the steps of the commands in a file.
 pub(in crate::lab) const MOST_UNTIL: u64 = 10_000_000;
 
 /// Maximum [cost](Player::cost) of returning to a step within one frame: about 0.2 s.
@@ -72,7 +72,7 @@ pub(in crate::lab) enum Halt {
     NotFinite(NotFinite),
 }
 
-/// Setting the goal of the run.
+/// Methods that set the goal of the run.
 impl Player {
     /// Seeks `step` and stops there.
     ///
@@ -193,7 +193,7 @@ impl Player {
     }
 }
 
-/// Taking the steps that are due.
+/// Methods that take the steps that are due.
 impl Player {
     /// Advances the run and the exact motion by `wall`, the time up to `now`. `clock` returns the present time.
     ///

@@ -26,12 +26,12 @@ const MORE_TURNS: f64 = 3.0;
 const HYSTERESIS: f64 = 0.1;
 /// Minimum swing of the traced point, as a share of its distance from the pivot. A run with smaller swings is shown as
 /// a whole, which shows slow motion.
-const LEAST_SWING: f64 = 5e-4;
+const MIN_WINDOW_SWING: f64 = 5e-4;
 /// Minimum range of values of a strip, as a share of the distance between pivot and traced point; for the tilt, rad.
-const LEAST_RANGE: f64 = 2e-3;
-/// Wall-clock time below which a passing window is held fixed, s.
+const MIN_STRIP_RANGE: f64 = 2e-3;
+/// A window that passes in less wall-clock time than this stays fixed for a while, s.
 const PASSES_S: f64 = 4.0;
-/// Duration of a fixed window.
+/// Time for which such a window stays fixed.
 const HOLD: Duration = Duration::from_secs(1);
 /// Share of its length by which the window jumps when the run leaves it.
 const JUMP: f64 = 0.5;
@@ -176,7 +176,7 @@ impl Player {
         };
         let few = FEW_WINDOWS * view.swings as f64;
         let arm_m = self.run.scenario().arm_m();
-        span_s / swing.period_s > ease * few && swing.height_m > ease * LEAST_SWING * arm_m
+        span_s / swing.period_s > ease * few && swing.height_m > ease * MIN_WINDOW_SWING * arm_m
     }
 
     /// Returns the swings of the run.
@@ -188,7 +188,7 @@ impl Player {
         let later = self.seen_swing.as_ref();
         let later =
             later.filter(|seen| Arc::ptr_eq(&seen.scenario, scenario) && now_s < seen.now_s);
-        let least_m = LEAST_SWING * scenario.arm_m();
+        let least_m = MIN_WINDOW_SWING * scenario.arm_m();
         match (self.swing(), later) {
             (Some(swing), None) if swing.height_m > least_m => {
                 self.seen_swing = Some(SeenSwing {
@@ -218,7 +218,7 @@ impl Player {
         let (Some(tilt), Some(point)) = (of_tilt, of_point) else {
             return of_tilt.or(of_point);
         };
-        let is_seen = |swing: Swing| swing.height_m > LEAST_SWING * arm_m;
+        let is_seen = |swing: Swing| swing.height_m > MIN_WINDOW_SWING * arm_m;
         let is_of_point = tilt.period_s > MORE_TURNS * point.period_s || !is_seen(tilt);
         Some(if is_of_point && is_seen(point) {
             point
@@ -316,8 +316,8 @@ impl Player {
     /// Returns the minimum range of a strip, m; degrees for the tilt.
     fn least_range(&self, curve: RecordedCurve) -> f64 {
         match curve {
-            RecordedCurve::Tilt => LEAST_RANGE.to_degrees(),
-            _ => LEAST_RANGE * self.run.scenario().arm_m(),
+            RecordedCurve::Tilt => MIN_STRIP_RANGE.to_degrees(),
+            _ => MIN_STRIP_RANGE * self.run.scenario().arm_m(),
         }
     }
 }

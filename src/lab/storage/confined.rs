@@ -84,7 +84,7 @@ impl Confined {
     /// allowed.
     ///
     /// # Errors
-    /// Returns an error if it may not, with the reason.
+    /// Returns an error if it may not be read.
     pub fn check_reading(&self, path: &Path) -> Result<(), String> {
         for root in [Some(&self.root), self.class.as_ref()]
             .into_iter()
@@ -103,7 +103,7 @@ impl Confined {
     /// left.
     ///
     /// # Errors
-    /// Returns an error if it may not, with the reason.
+    /// Returns an error if it may not be written.
     pub fn check_writing(&self, path: &Path) -> Result<(), String> {
         self.check(path)?;
         if self.is_seat() && size_of(&self.root) >= MOST_OF_SEAT {
@@ -120,7 +120,7 @@ impl Confined {
     /// The path must be relative and contain no `..`, and no symbolic link in it may lead out of the folder.
     ///
     /// # Errors
-    /// Returns an error if it is not inside, with the reason.
+    /// Returns an error if a rule is broken.
     pub fn check(&self, path: &Path) -> Result<(), String> {
         let mut full = self.root.clone();
         for component in path.components() {

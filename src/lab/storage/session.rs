@@ -27,7 +27,7 @@ const SAVE_INTERVAL: Duration = Duration::from_millis(500);
 pub struct ClosedSession {
     /// The content that was last saved; `None` if none was.
     pub kept: Option<SessionContent>,
-    /// The reason why that is not the latest content.
+    /// The reason why `kept` is not the latest content; `None` if it is.
     pub trouble: Option<String>,
 }
 
@@ -42,7 +42,7 @@ pub struct Session {
     _at_end: Registered,
 }
 
-/// Requests to the writer to save at once and to answer; with true, the writer then ends.
+/// Requests to the writer to save at once and to answer. If the flag is true, the writer then ends.
 type Flushes = Sender<(Sender<()>, bool)>;
 
 /// The content to save, and what has been saved.

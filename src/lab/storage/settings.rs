@@ -42,7 +42,7 @@ pub struct SettingsFile {
 }
 
 /// Returns the settings of the file `path` with the content `read`. A missing file has no settings.
-fn checked(path: &Path, read: io::Result<Vec<u8>>) -> SettingsFile {
+fn parse_settings(path: &Path, read: io::Result<Vec<u8>>) -> SettingsFile {
     let origin = path.display().to_string();
     let document = match read {
         Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
@@ -56,7 +56,7 @@ fn checked(path: &Path, read: io::Result<Vec<u8>>) -> SettingsFile {
     };
     match document {
         Ok(document) => {
-            let (settings, found) = sifted(document.table());
+            let (settings, found) = split_valid(document.table());
             let placed = found.or(()).map_err(|found| document.placed(found));
             SettingsFile {
                 settings,
@@ -71,7 +71,7 @@ fn checked(path: &Path, read: io::Result<Vec<u8>>) -> SettingsFile {
 }
 
 /// Returns the valid settings in `table`, and the problems of the others.
-fn sifted(table: &Table) -> (Table, Problems) {
+fn split_valid(table: &Table) -> (Table, Problems) {
     let (mut good, mut problems) = (Table::new(), Problems::default());
     for (key, value) in table {
         let name = match key.as_str() {
@@ -108,13 +108,13 @@ pub fn read_config(path: &Path) -> SettingsFile {
         Ok(there) if !there.is_file() => Err(io::Error::other("it is not a file")),
         _ => File::open(path).and_then(|file| private_files::read_at_most(file, LONGEST_SETTINGS)),
     };
-    checked(path, bytes)
+    parse_settings(path, bytes)
 }
 
 /// Reads the program's file in `folder`, if it belongs to the user. Symbolic links are not followed.
 pub fn read(folder: &Path) -> SettingsFile {
     let path = folder.join(SETTINGS_FILE);
-    checked(&path, private_files::read(&path, LONGEST_SETTINGS))
+    parse_settings(&path, private_files::read(&path, LONGEST_SETTINGS))
 }
 
 /// Replaces the setting `key` in the file in `folder`, which is created if it does not exist. Invalid settings in the
@@ -125,7 +125,7 @@ pub fn remember(folder: &Path, key: &str, value: Value) -> Result<(), String> {
         private_files::make_folder(folder)?;
         let mut table = match private_files::read(&path, LONGEST_SETTINGS) {
             // Invalid TOML was reported when the lab was opened.
-            Ok(bytes) => sifted(&toml::from_slice(&bytes).unwrap_or_default()).0,
+            Ok(bytes) => split_valid(&toml::from_slice(&bytes).unwrap_or_default()).0,
             Err(error) if error.kind() == ErrorKind::NotFound => Table::new(),
             Err(error) => return Err(error),
         };

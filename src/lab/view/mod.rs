@@ -43,15 +43,15 @@ pub struct ViewSettings {
     /// Time span of the overview, s; `None` for the whole run.
     pub window_s: Option<f64>,
     /// Length of the traces, s; `None` for a few swings, or the whole run.
-    #[serde(deserialize_with = "where_known")]
+    #[serde(deserialize_with = "value_or_word")]
     pub detail_s: Option<f64>,
     /// The strip below the strips of x, y and z.
     pub detail_of: FourthStrip,
     /// Minimum and maximum of that strip, in its unit; `None` for the range of the run.
-    #[serde(deserialize_with = "where_known")]
+    #[serde(deserialize_with = "value_or_word")]
     pub detail_range: Option<[f64; 2]>,
     /// Minimum and maximum of the strip of z, m; `None` for the range of the run.
-    #[serde(deserialize_with = "where_known")]
+    #[serde(deserialize_with = "value_or_word")]
     pub z_range_m: Option<[f64; 2]>,
     /// The chosen camera of the 3-D view. With `None` the camera is turned so that the axle is seen at an angle.
     pub camera: Option<Camera>,
@@ -63,7 +63,7 @@ pub struct ViewSettings {
     /// The page of the step pane.
     pub phase: StepPageChoice,
     /// Number of table rows that the step pane adds up; `None` for all.
-    #[serde(deserialize_with = "where_known")]
+    #[serde(deserialize_with = "value_or_word")]
     pub sum_to: Option<usize>,
     /// The line about what to look at, if a command has set it. Otherwise the scenario's line is shown.
     pub look_at: Option<String>,
@@ -144,7 +144,7 @@ impl<'de> Deserialize<'de> for FourthStrip {
 }
 
 /// Deserializes a value, or `None` from a word such as "auto" or "all".
-fn where_known<'de, T: DeserializeOwned, D: Deserializer<'de>>(
+fn value_or_word<'de, T: DeserializeOwned, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<Option<T>, D::Error> {
     Ok(Value::deserialize(deserializer)?.try_into().ok())

@@ -80,7 +80,7 @@ impl Pictures {
     }
 
     /// Seeks `step`, which the run has reached, from the present step `here`. Returns the latest step from which the
-    /// pictures must be shown all steps again.
+    /// run must pass all steps to the pictures again.
     pub fn begin_seek(&mut self, step: u64, here: u64) -> u64 {
         let ahead = self.ahead.get_or_insert_with(|| Ahead {
             step: here,
