@@ -181,7 +181,7 @@ impl Dialog {
     fn export(scenario: Arc<Scenario>, path: String) -> Self {
         let fields = [("file", path), ("every", "1".to_owned())];
         let title = format!(
-            "export steps 0 to {}, where x was pressed, as CSV",
+            "export steps 0 to {} (where x was pressed) as CSV",
             scenario.steps
         );
         let mut dialog = Self::new(DialogKind::Export(scenario), &title, &fields, [""; 0]);
@@ -240,7 +240,7 @@ impl Dialog {
     /// Creates a dialog that lists the settings whose labels match `filter`, with their values in `view`. The row
     /// `selected` is selected.
     pub(super) fn settings(view: &View, filter: &str, selected: usize) -> Self {
-        let info = "markers, colors, background, frames and mouse are saved for the next session";
+        let info = "markers, colors, background, frame rate and mouse are saved";
         let settings = SETTINGS.iter();
         let all = settings
             .map(|setting| InputField::choice(setting.label, &(setting.value)(view)))

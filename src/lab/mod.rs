@@ -393,7 +393,7 @@ impl Lab {
                     .put_beside(name, &place.columns(), &self.player, &self.files, false)
         {
             let (name, why) = (printable(name), problems.in_one_line());
-            text += &format!("; the measured data {name} are not beside it: {why}");
+            text += &format!("; the measured data {name} cannot be shown: {why}");
         }
         self.tell(text);
     }

@@ -71,7 +71,7 @@ pub(super) const SETTINGS: [LabSetting; 8] = [
         view.theme.background = next(&Background::ALL, view.theme.background, forward);
         Changed::Remembered("background", view.theme.background.name().into())
     }),
-    row("frames a second", |view| format!("{} at most", view.fps), |view, forward| {
+    row("frames per second", |view| format!("{} at most", view.fps), |view, forward| {
         // config.toml may contain another number: the next offered one follows it.
         let before = FRAME_RATES.partition_point(|rate| *rate < view.fps);
         let after = FRAME_RATES.partition_point(|rate| *rate <= view.fps);

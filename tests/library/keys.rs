@@ -173,10 +173,10 @@ fn lists_filter_as_one_types_and_move_by_the_same_keys() {
     stage
         .press("cback")
         .shows("background")
-        .shows_no("frames a second");
+        .shows_no("frames per second");
     stage.press("\n").shows("light").press("\u{1b}");
-    stage.shows("frames a second").press("\u{1b}");
-    stage.shows_no("frames a second");
+    stage.shows("frames per second").press("\u{1b}");
+    stage.shows_no("frames per second");
 }
 
 #[test]

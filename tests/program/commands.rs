@@ -89,6 +89,6 @@ fn check_takes_files_of_commands() {
     ground.write("bad.toml", "[[do]]\nopen = \"method-3\"\n");
     let good = ground.stdout("check demo.toml");
     assert_eq!(good, "demo.toml: good: 5 commands\n");
-    let words = "bad.toml:2: do.0.open (\"method-3\") is no preset: did you mean";
+    let words = "bad.toml:2: do.0.open (\"method-3\") is not a preset: did you mean";
     ground.refused("check bad.toml", 1, &[words]);
 }

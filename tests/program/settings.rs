@@ -40,7 +40,7 @@ fn what_was_chosen_is_there_at_the_next_start() {
     assert!(!is_ascii(&lab) && has_colors(&lab));
     lab.ask("c\x1b[B\x1b[B\x1b[B\x1b[D", "markers ascii");
     lab.ask("\x1b[B\x1b[D", "colors off");
-    lab.ask("\x1b[B\x1b[B\r", "frames a second 30 at most");
+    lab.ask("\x1b[B\x1b[B\r", "frames per second 30 at most");
     lab.ask("\x1b", "L lessons");
     lab.quit();
     let text = fs::read_to_string(remembered(&ground)).unwrap();

@@ -191,7 +191,7 @@ fn is_scenario(name: &str) -> Result<(), String> {
         return Ok(());
     }
     let near = nearest(name, presets::PRESETS.iter().map(|preset| preset.name));
-    Err(format!("is no preset: {near}"))
+    Err(format!("is not a preset: {near}"))
 }
 
 fn can_be_nudged(key: &str) -> Result<(), String> {

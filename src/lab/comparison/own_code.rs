@@ -123,11 +123,11 @@ impl OwnCode {
             Some(Err(why)) => format!("{name}: {why}"),
             Some(Ok(verdict)) => match (verdict.first_step, &verdict.trial) {
                 (Some(step), Some(SlipTrial { words, .. })) => {
-                    format!("{name} differs at step {step}, M goes there. It has {words}")
+                    format!("{name} differs at step {step} (M goes there). It has {words}")
                 }
                 (Some(step), None) => {
                     let more = verdict.lines[1..].join(" ");
-                    format!("{name} differs at step {step}, M goes there. {more}")
+                    format!("{name} differs at step {step} (M goes there). {more}")
                 }
                 (None, _) => format!("{name}: {}", verdict.lines.join(" · ")),
             }

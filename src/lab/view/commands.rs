@@ -54,7 +54,7 @@ impl View {
                 "residuals" if !self.measured => return Err(NO_DATA.into()),
                 "residuals" if look.residuals => Some(RESIDUALS_TEXT.to_owned()),
                 "residuals" => Some("measured values and the run".to_owned()),
-                "bare" if look.bare => Some("a bare screen: c brings the rest back".to_owned()),
+                "bare" if look.bare => Some("a bare screen: c shows the rest again".to_owned()),
                 _ => None,
             };
         }
@@ -285,7 +285,7 @@ impl View {
         match self.focus {
             Pane::Above => zoom.above = factor,
             Pane::ThreeD => zoom.three_d = factor,
-            _ => return Err("the view from above and the 3-D view are zoomed: Tab".to_owned()),
+            _ => return Err("only the view from above and the 3-D view zoom: press Tab".to_owned()),
         }
         Ok(Command::look("zoom", zoom))
     }
@@ -313,7 +313,7 @@ fn fourth_strip_in_words(strip: FourthStrip) -> String {
         FourthStrip::Auto => "a large screen has a fourth strip: tilt, or distance from exact",
         FourthStrip::Tilt => "a strip shows the tilt",
         FourthStrip::Distance => {
-            "a strip shows the distance from the exact motion, while t shows it"
+            "a strip shows the distance from the exact motion, if t shows that"
         }
         FourthStrip::Column(name) => {
             return format!("a strip shows {name}; j shows the next column");
