@@ -20,10 +20,10 @@ pub fn lines(folder: &ClassFolder, width: usize) -> Vec<String> {
     board.extend(unread);
     board.extend(seats.iter().filter_map(|it| it.trouble.clone()));
     for seat in login::waiting(folder, unix_ms() / 1000) {
-        board.push(seat.in_words() + "; k 4 in the teacher's lab ends that");
+        board.push(seat.in_words() + "; press k 4 in the teacher's lab to end this");
     }
     if folder.is_full() {
-        board.push("the disk is full: what is answered now cannot be kept".to_owned());
+        board.push("the disk is full: new answers cannot be saved".to_owned());
     }
     match folder.state() {
         Err(reason) => board.push(reason),
@@ -35,10 +35,12 @@ pub fn lines(folder: &ClassFolder, width: usize) -> Vec<String> {
             if !state.is_on {
                 board.push("the class is over".to_owned());
             } else if !folder.is_teacher_alive() {
-                let resumes = "the teacher's lab is gone: gyrolab class --resume --folder DIR";
+                let resumes =
+                    "the teacher's lab is gone; reopen it with gyrolab class --resume --folder DIR";
                 board.push(resumes.to_owned());
             } else if !state.is_followed {
-                let alone = "the students go on alone: k 3 in the teacher's lab ends that";
+                let alone =
+                    "the students work on their own; press k 3 in the teacher's lab to end this";
                 board.push(alone.to_owned());
             }
             let lesson = opening::open_again(&state.lesson);

@@ -220,10 +220,10 @@ impl ClassFolder {
     pub fn publish(&self, state: &ClassState) -> Result<(), String> {
         let text = toml::to_string(state).map_err(|error| error.to_string())?;
         if text.len() > LONGEST_STATE {
-            return Err("the class's state is above 128 kB".to_owned());
+            return Err("the class's state exceeds 128 kB".to_owned());
         }
         shared::replace(&self.state_file(), &text)
-            .map_err(|error| format!("the class cannot be told: {error}"))
+            .map_err(|error| format!("the class cannot be updated: {error}"))
     }
 
     pub fn touch_state(&self) {

@@ -132,7 +132,9 @@ impl Follower {
             Some((file, _)) if *file == run.snapshot.run => {}
             _ => {
                 if lab.show_run(&run.snapshot).is_err() {
-                    return Err("the teacher's run cannot be read: n and N turn pages".to_owned());
+                    return Err(
+                        "the teacher's run cannot be read: press n or N to turn pages".to_owned(),
+                    );
                 }
                 let shown = Arc::clone(lab.player().run().scenario());
                 self.shown = PresentedView {

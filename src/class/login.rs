@@ -26,10 +26,10 @@ const LONGEST_WAIT_S: u64 = 3600;
 /// Maximum length of a file with a count, bytes.
 const LONGEST_COUNT: usize = 100;
 
-pub const ASKS: &str = "A name for your seat (the teacher sees it, others do not);\n\
-    or, to come back, your seat's word, such as anna-471108: ";
+pub const ASKS: &str = "A name for your seat (only the teacher sees it);\n\
+    or, to return, the word of your seat, such as anna-471108: ";
 const RULE: &str = "a name has letters, digits and hyphens,\n\
-    no blanks, 24 at most; the word of a seat ends\n\
+    no blanks, at most 24; the word of a seat ends\n\
     in a hyphen and six digits";
 
 /// Wrong codes for a seat since its right code was typed or the teacher reset the count.
@@ -118,7 +118,7 @@ pub fn find(folder: &ClassFolder, typed: &str, now_unix_s: u64) -> Result<Seat, 
 fn begin(folder: &ClassFolder, name: &str) -> Result<Seat, String> {
     if all_seats(folder)?.len() >= MOST_SEATS {
         return Err(format!(
-            "this class has {MOST_SEATS} seats, the most that it can have: ask your teacher"
+            "this class is full with {MOST_SEATS} seats: ask your teacher"
         ));
     }
     for _ in 0..100 {
@@ -127,10 +127,10 @@ fn begin(folder: &ClassFolder, name: &str) -> Result<Seat, String> {
         match seat.make() {
             Ok(true) => return Ok(seat),
             Ok(false) => {}
-            Err(error) => return Err(format!("no seat can be made: {error}")),
+            Err(error) => return Err(format!("the seat cannot be created: {error}")),
         }
     }
-    Err("no seat is free under that name: choose another".to_owned())
+    Err("all seats with that name are taken: choose another name".to_owned())
 }
 
 /// Returns the seat `word`, whose name is `name`.

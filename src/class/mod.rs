@@ -102,7 +102,7 @@ pub struct NoClass;
 
 impl ClassRole for NoClass {
     fn on_class_key(&mut self, lab: &mut Lab, _lessons: &mut Lessons) {
-        lab.refuse("this is no lab of a class: gyrolab man class says how one begins");
+        lab.refuse("this lab is not in a class; see gyrolab man class");
     }
 }
 

@@ -50,7 +50,7 @@ impl Projector {
                 Paragraph::new(SheetLineKind::Text, "The class has not begun."),
                 Paragraph::new(
                     SheetLineKind::Hint,
-                    "Its page comes here by itself. q leaves.",
+                    "Its page appears here when it begins. q: quit.",
                 ),
             ]);
             return overlay;

@@ -62,7 +62,7 @@ impl Players {
         });
         Ok(Self {
             is_over,
-            thread: Some(thread.map_err(|error| format!("the players cannot begin: {error}"))?),
+            thread: Some(thread.map_err(|error| format!("the players cannot start: {error}"))?),
         })
     }
 }

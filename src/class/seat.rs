@@ -174,10 +174,10 @@ impl Seat {
         })
         .map_err(|error| error.to_string())?;
         if text.len() > LONGEST_SEAT_FILE {
-            return Err("the file of this seat is above 1 MB".to_owned());
+            return Err("the file of this seat exceeds 1 MB".to_owned());
         }
         shared::replace(&self.file("seat"), &text)
-            .map_err(|error| format!("your answers cannot be kept: {error}"))
+            .map_err(|error| format!("your answers cannot be saved: {error}"))
     }
 
     /// Opens the seat in this process. A lab that has it open elsewhere notices that. Returns the token of this

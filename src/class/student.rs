@@ -20,7 +20,7 @@ use std::ops::ControlFlow;
 use std::time::Duration;
 use toml::Table;
 
-const GO_ON_ALONE: &str = "your teacher lets you go on alone: n and N turn pages";
+const GO_ON_ALONE: &str = "you now work on your own: press n or N to turn pages";
 
 /// The role of a student's lab.
 #[derive(Debug, Default)]
@@ -152,16 +152,16 @@ impl Student {
     fn look(&mut self, lab: &mut Lab, lessons: &mut Lessons) {
         if !self.seat.is_held(&self.lock_token) {
             self.ended = Some(if self.seat.is_there() {
-                "this seat was opened in another lab, which goes on from here"
+                "this seat was opened in another lab: continue there"
             } else {
-                "this seat is gone: ask your teacher, or take a new one"
+                "this seat is gone: ask your teacher, or take a new seat"
             });
         }
         let change = self.follower.look(lab);
         let state = self.follower.state();
         if state.is_some_and(|state| state.closed.contains(&self.seat.word)) {
             let closed =
-                "your teacher has closed this seat: once it is open again, its word leads back";
+                "your teacher has closed this seat: once it is open again, type its word to return";
             self.ended = Some(closed);
         }
         match change {
@@ -169,13 +169,13 @@ impl Student {
             ClassChange::Begun => {
                 self.has_begun = true;
                 if self.record.is_aside {
-                    lab.tell("the class is on: k brings you to its page");
+                    lab.tell("the class is on: press k to join it");
                 } else {
                     lab.refuse("the class is on");
                 }
             }
-            ClassChange::Over => lab.tell("the class is over: n and N turn pages"),
-            ClassChange::Gone => lab.tell("the teacher's lab is gone: n and N turn pages"),
+            ClassChange::Over => lab.tell("the class is over: press n or N to turn pages"),
+            ClassChange::Gone => lab.tell("the teacher's lab is gone: press n or N to turn pages"),
         }
         self.end_rounds(lab, lessons);
         self.note_whether_alone(lab);
@@ -211,7 +211,7 @@ impl Student {
             self.follower.forget_shown();
             lab.tell(GO_ON_ALONE);
         } else if was_alone && self.follows() {
-            self.come_back("your teacher goes on with the class", lab);
+            self.come_back("your teacher continues the class", lab);
         }
     }
 
@@ -228,7 +228,7 @@ impl Student {
                 self.set_aside(true);
                 self.waiting = WaitingPage::Left;
                 if lessons.open_lesson().is_none() {
-                    lab.tell("a free lab, for homework: k leads back to the waiting page");
+                    lab.tell("a free lab for homework: press k to return to the waiting page");
                 }
             }
             (WaitingPage::Unseen | WaitingPage::Left, true) => {
@@ -244,7 +244,7 @@ impl Student {
         let word = &self.seat.word;
         let seat = format!("Your seat is {word}.");
         let starts = "The class starts here when your teacher starts it.";
-        let offer = "Until then, Enter opens a lesson as homework, and Esc opens a free lab. Ctrl-C leaves.";
+        let offer = "Until then, press Enter to open a lesson as homework, Esc for a free lab, or Ctrl-C to quit.";
         vec![
             Paragraph::new(SheetLineKind::Heading, seat),
             Paragraph::new(SheetLineKind::Text, starts),
@@ -284,7 +284,7 @@ impl Student {
             ..ClassOverlay::default()
         };
         if overlay.is_followed {
-            overlay.border = "k: step aside\nk: aside".to_owned();
+            overlay.border = "k: leave the class\nk: leave".to_owned();
         }
         let now_ms = unix_ms();
         for (name, question) in state.questions.get(&open.lesson.name).into_iter().flatten() {
@@ -324,8 +324,8 @@ impl Student {
         let of = format!("{page} of {}", open.lesson.pages.len());
         let on = format!("the class is on {}", state.page);
         if self.record.is_aside {
-            let short = format!("aside, k: back · {page}, class on {}", state.page);
-            format!("aside, k: back · {of} · {on}\n{short}\naside, k: back · {page}")
+            let short = format!("left, k: rejoin · {page}, class on {}", state.page);
+            format!("left, k: rejoin · {of} · {on}\n{short}\nleft, k: rejoin · {page}")
         } else if !self.follows() {
             format!(
                 "on your own · {of} · {on}\nalone · {of} · class on {}",
@@ -352,7 +352,7 @@ impl Student {
         self.set_aside(true);
         self.follower.forget_shown();
         self.next_look = Duration::ZERO;
-        lab.tell("you have stepped aside: k leads back to the class");
+        lab.tell("you have left the class: press k to rejoin");
     }
 
     /// Rejoins the class for the reason `why`. A run that the student has played meanwhile is pinned.
@@ -368,7 +368,7 @@ impl Student {
         if is_own && lab.carry_out(&Command::Pin(true)).is_ok() {
             self.has_pinned = true;
             return lab.tell(format!(
-                "{why}; your own run is pinned beside its run: i takes it away"
+                "{why}; your own run is pinned for comparison: press i to unpin it"
             ));
         }
         lab.refuse(why);
@@ -411,7 +411,7 @@ impl ClassRole for Student {
                 && lessons.open_lesson().is_none()
                 && lab.notice().is_none()
             {
-                lab.tell("the class is on: k brings you to its page");
+                lab.tell("the class is on: press k to join it");
             }
             lab.files_mut().note = self.note_for_exports(lessons);
             lessons.set_overlay(self.overlay(lessons), lab);
@@ -432,7 +432,7 @@ impl ClassRole for Student {
         if self.follower.class().is_none() {
             lessons.on_key(LessonKey::List, lab);
         } else if self.record.is_aside {
-            self.come_back("back in the class", lab);
+            self.come_back("you have rejoined the class", lab);
         } else if self.follows() {
             self.step_aside(lab);
         } else {
@@ -444,7 +444,7 @@ impl ClassRole for Student {
     fn intercept(&mut self, key: LessonKey, lab: &mut Lab, _lessons: &Lessons) -> bool {
         let is_of_teacher = key == LessonKey::Notes && self.follower.class().is_some();
         if is_of_teacher {
-            lab.refuse("the notes are the teacher's");
+            lab.refuse("the notes are only for the teacher");
         }
         is_of_teacher
     }
@@ -476,7 +476,7 @@ impl ClassRole for Student {
             return Ok(ended.to_owned());
         }
         let word = &self.seat.word;
-        let back = format!("Your seat is {word}: type that when you come back.");
+        let back = format!("Your seat is {word}: type this word to return.");
         saved.map_err(|reason| {
             format!("{reason}\nYour last answers are lost: tell your teacher. {back}")
         })?;

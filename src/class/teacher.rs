@@ -87,7 +87,12 @@ impl Teacher {
     fn quit_warning(&self) -> Option<String> {
         let here = self.state.here as u64;
         let is_needed = here > 0 && self.rehearsal.is_none();
-        is_needed.then(|| format!("{} here: q again ends the class", counted(here, "seat")))
+        is_needed.then(|| {
+            format!(
+                "{} here: press q again to end the class",
+                counted(here, "seat")
+            )
+        })
     }
 
     fn publish(&mut self) {
@@ -148,7 +153,7 @@ impl Teacher {
         }
         let (_, run) = self.run.as_ref()?;
         if run.len() > LONGEST_RUN {
-            let rule = "the run's file is above 64 kB: the class cannot follow it";
+            let rule = "the run's file exceeds 64 kB: the class cannot follow it";
             self.trouble = Some(rule.to_owned());
             return None;
         }
@@ -339,7 +344,9 @@ impl ClassRole for Teacher {
         }
         published?;
         let root = PrintablePath(&self.folder.root);
-        Ok(format!("gyrolab class --resume --folder {root} goes on"))
+        Ok(format!(
+            "to continue the class: gyrolab class --resume --folder {root}"
+        ))
     }
 }
 

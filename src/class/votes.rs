@@ -53,7 +53,7 @@ pub fn present(seats: &[SeatStatus]) -> (usize, String) {
         aside += usize::from(seat.is_here() && seat.is_aside);
     }
     let mut words = format!("{here} here");
-    for (count, how) in [(aside, "of them aside"), (lost, "lost"), (away, "away")] {
+    for (count, how) in [(aside, "not following"), (lost, "lost"), (away, "away")] {
         if count > 0 {
             words += &format!(", {count} {how}");
         }
@@ -118,7 +118,7 @@ impl SeatStatus {
     /// Returns the word of the seat and its standing, as the teacher's lists show them.
     pub fn in_words(&self, standing: SeatStanding) -> String {
         let aside = if self.is_aside && standing.is_here() {
-            ", aside"
+            ", not following"
         } else {
             ""
         };

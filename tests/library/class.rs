@@ -268,7 +268,7 @@ fn answers_that_the_disk_has_not_are_told_at_the_end() {
     let mut student = Student::new(folder, seat.clone(), holds, SeatRecord::default());
     fs::remove_dir_all(&seat.folder).unwrap();
     let told = student.leave().unwrap_err();
-    assert!(told.contains("your answers cannot be kept"), "{told}");
+    assert!(told.contains("your answers cannot be saved"), "{told}");
     assert!(told.contains(&seat.word), "{told}");
 }
 
@@ -388,7 +388,7 @@ fn what_cannot_be_written_leaves_the_old_file() {
     let inside = seat.file("");
     fs::set_permissions(&inside, Permissions::from_mode(0o500)).unwrap();
     let refused = seat.save(&SeatRecord::default()).unwrap_err();
-    assert!(refused.contains("cannot be kept"), "{refused}");
+    assert!(refused.contains("cannot be saved"), "{refused}");
     fs::set_permissions(&inside, Permissions::from_mode(0o700)).unwrap();
     assert!(seat.record().unwrap().is_aside);
 }

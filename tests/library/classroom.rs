@@ -256,7 +256,7 @@ fn a_marked_answer_counts_when_the_teacher_turns_the_page() {
     settle(&mut [&mut teacher, &mut anna, &mut ben]);
     anna.press("3");
     // Who turns the page without the class leaves the answer open.
-    ben.press("1nn").shows("aside, k: back · 3");
+    ben.press("1nn").shows("left, k: rejoin · 3");
     settle(&mut [&mut teacher, &mut anna, &mut ben]);
     assert!(class.votes().is_empty());
     teacher.press("nn");
@@ -323,7 +323,7 @@ fn a_seat_without_a_class_waits_and_shows_nothing_of_a_run() {
     ben.pass()
         .press("\u{1b}")
         .shows("Method 2")
-        .shows("k leads back to the waiting page");
+        .shows("press k to return to the waiting page");
     ben.press("k")
         .shows("The class starts here")
         .press("\n")
@@ -331,15 +331,15 @@ fn a_seat_without_a_class_waits_and_shows_nothing_of_a_run() {
     let mut teacher = class.teach(2);
     settle(&mut [&mut teacher, &mut anna, &mut ben]);
     anna.shows("following · 2 of 4");
-    ben.shows("the class is on: k brings you to its page")
-        .shows("aside, k: back");
+    ben.shows("the class is on: press k to join it")
+        .shows("left, k: rejoin");
     ben.press("k");
     settle(&mut [&mut teacher, &mut anna, &mut ben]);
     ben.shows("following · 2 of 4").shows("What happens next?");
     // Once the class is over, the page stays.
     teacher.role.leave().unwrap();
     settle(&mut [&mut anna, &mut ben]);
-    anna.shows("the class is over: n and N turn pages")
+    anna.shows("the class is over: press n or N to turn pages")
         .shows("class over · 2 of 4");
 }
 
@@ -354,7 +354,7 @@ fn a_free_lab_keeps_saying_that_the_class_is_on() {
     settle(&mut [&mut teacher, &mut anna]);
     anna.stage.now += Duration::from_secs(6);
     settle(&mut [&mut teacher, &mut anna]);
-    anna.shows("the class is on: k brings you to its page");
+    anna.shows("the class is on: press k to join it");
     anna.press("k");
     settle(&mut [&mut teacher, &mut anna]);
     anna.shows("following · 1 of 4");
@@ -365,13 +365,13 @@ fn the_teacher_gathers_who_has_stepped_aside() {
     let class = Class::new();
     let (mut teacher, mut anna, mut ben) = (class.teach(1), class.sit("anna"), class.sit("ben"));
     settle(&mut [&mut teacher, &mut anna, &mut ben]);
-    anna.press("n").shows("aside, k: back · 2");
+    anna.press("n").shows("left, k: rejoin · 2");
     settle(&mut [&mut teacher, &mut anna, &mut ben]);
-    teacher.shows("1 of them aside").press("k5");
+    teacher.shows("1 not following").press("k5");
     settle(&mut [&mut teacher, &mut anna, &mut ben]);
     anna.shows("following · 1 of 4")
         .shows("your teacher has gathered the class");
-    teacher.shows("2 here").shows_no("aside");
+    teacher.shows("2 here").shows_no("not following");
     // Who was aside when the line dropped is gathered on coming back.
     ben.press("n");
     settle(&mut [&mut teacher, &mut anna, &mut ben]);
@@ -392,7 +392,7 @@ fn who_may_go_on_alone_is_told_and_comes_back_with_the_class() {
     settle(&mut [&mut teacher, &mut anna, &mut projector]);
     teacher.press("k3");
     settle(&mut [&mut teacher, &mut anna, &mut projector]);
-    anna.shows("your teacher lets you go on alone: n and N turn pages");
+    anna.shows("you now work on your own: press n or N to turn pages");
     anna.press("n").shows("alone · 2 of 4 · class on 1");
     teacher.press("nn");
     settle(&mut [&mut teacher, &mut anna, &mut projector]);
@@ -551,7 +551,7 @@ fn players_answer_step_aside_and_are_gathered() {
     let mut teacher = class.teach(2);
     let players = Players::start(&class.folder, 4).unwrap();
     let begin = Instant::now();
-    while class.votes().len() < 2 || !teacher.stage.picture().contains("aside") {
+    while class.votes().len() < 2 || !teacher.stage.picture().contains("not following") {
         assert!(
             begin.elapsed() < Duration::from_secs(30),
             "{:?}",
@@ -562,7 +562,7 @@ fn players_answer_step_aside_and_are_gathered() {
     }
     teacher.press("n").shows("have answered; press n again");
     teacher.press("k5");
-    while teacher.stage.picture().contains("aside") {
+    while teacher.stage.picture().contains("not following") {
         assert!(begin.elapsed() < Duration::from_secs(40));
         sleep(Duration::from_millis(100));
         teacher.pass();
@@ -589,6 +589,6 @@ fn the_notes_stay_the_teachers() {
     } = &mut anna.stage;
     assert!(anna.role.intercept(LessonKey::Notes, lab, lessons));
     anna.pass()
-        .shows("the notes are the teacher's")
+        .shows("the notes are only for the teacher")
         .shows_no("This note");
 }

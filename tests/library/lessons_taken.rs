@@ -486,7 +486,7 @@ fn a_page_plays_its_run_and_n_leads_to_its_end() {
     stage.lesson(&name, 1).arrive().press("nn").wait(0.5);
     stage
         .shows("Watch.")
-        .shows("The run plays")
+        .shows("The run is playing")
         .shows_no("It is");
     stage.press("p").wait(0.1).shows("press b to play it again");
     stage.press("n").shows("2 of 4").shows("It is 5.0.");

@@ -68,7 +68,7 @@ fn a_class_follows_votes_and_loses_nothing() {
     has_all(&votes, &[&format!("{LESSON},finer,1,{word},2,false,2,")]);
     // Stepping aside, and the class goes on meanwhile.
     ben.ask("n", "write down a prediction");
-    ben.ask("n", "aside, k: back · 3, class on 2");
+    ben.ask("n", "left, k: rejoin · 3, class on 2");
     teacher.ask("n", "1 of 2 have answered; press n again to go on");
     teacher.press("n");
     ben.wait_for("class on 3");
@@ -90,7 +90,7 @@ fn a_class_follows_votes_and_loses_nothing() {
     vote(&mut again);
     teacher.wait_for("round 2 · 1 of 2");
     teacher.kill();
-    ben.wait_for("the teacher's lab is gone: n and N turn pages");
+    ben.wait_for("the teacher's lab is gone: press n or N to turn pages");
     let mut resumed = teach(&ground, "--resume");
     resumed.wait_for("2 of 10");
     resumed.wait_for("round 2 · 1 of 2");

@@ -28,7 +28,7 @@ fn a_prediction_survives_a_kill_and_is_handed_in() {
     resumed.wait_for("Locked: is more than a hundred times");
     resumed.wait_for("2 of 10");
     resumed.press("n");
-    resumed.wait_for("The run plays");
+    resumed.wait_for("The run is playing");
     resumed.press("n");
     resumed.wait_for("Came out: The tilt now stays within");
     resumed.quit();

@@ -297,7 +297,7 @@ impl Terminal {
 
     /// Ends the class of the teacher's lab, whose seats are here.
     pub fn end_class(&mut self) {
-        self.ask("q", "q again ends the class");
+        self.ask("q", "press q again to end the class");
         self.quit();
     }
 

@@ -13,7 +13,7 @@ use crate::lessons::open_lesson::OpenLesson;
 /// Length of a countdown, ms.
 const COUNTDOWN_MS: u64 = 30_000;
 const CLOSED: &str = "the round is closed";
-const CLOSED_ASK_AGAIN: &str = "the round is closed: k 2 asks again";
+const CLOSED_ASK_AGAIN: &str = "the round is closed: press k 2 to ask again";
 
 /// State of the class menu.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -74,9 +74,9 @@ impl ClassMenu {
     /// Returns the text in the border of the page, one form per line.
     pub(super) fn border(&self) -> &'static str {
         match self {
-            Self::Closed => "k: votes, seats, gather, countdown\nk: the class's menu\nk: class",
+            Self::Closed => "k: votes, seats, gather, countdown\nk: class menu\nk: class",
             Self::Open(_) => "digit or Enter: do it; Esc: back\nEsc: back",
-            Self::Seats(_) => "Enter closes, opens; Esc: back\nEsc: back",
+            Self::Seats(_) => "Enter: close, reopen; Esc: back\nEsc: back",
         }
     }
 }
@@ -170,7 +170,7 @@ impl Teacher {
         let question = asked.map(|(_, question)| question).unwrap_or_default();
         let words = match act {
             ClassAct::Question(QuestionAct::Show) => match question.stage {
-                VoteStage::Counted => "show the votes to you alone",
+                VoteStage::Counted => "show the votes to you only",
                 VoteStage::Teacher if self.state.answered < FEWEST_VOTES_SHOWN => {
                     return format!(
                         "show the votes to all (bars from {FEWEST_VOTES_SHOWN} votes on)"
@@ -188,7 +188,7 @@ impl Teacher {
                 None if question.is_closed => CLOSED,
                 None => return format!("close in {} s", COUNTDOWN_MS / 1000),
             },
-            ClassAct::Follow if self.is_followed => "let the students go on alone",
+            ClassAct::Follow if self.is_followed => "let the students work on their own",
             ClassAct::Follow => "let the class follow you again",
             ClassAct::Seats => "list the seats",
             ClassAct::Gather => "gather everyone on this page",
@@ -205,14 +205,14 @@ impl Teacher {
                 lab.refuse(if self.is_followed {
                     "the class follows you"
                 } else {
-                    "the students go on alone: k 3 lets the class follow you again"
+                    "the students work on their own: press k 3 to let them follow you again"
                 });
             }
             ClassAct::Seats => self.menu = ClassMenu::Seats(None),
             ClassAct::Gather => {
                 self.is_followed = true;
                 self.state.gathered_ms = unix_ms();
-                lab.refuse("everyone is brought to this page");
+                lab.refuse("everyone is now brought to this page");
             }
         }
     }
@@ -221,7 +221,7 @@ impl Teacher {
         let page = open.and_then(OpenLesson::page);
         let asked = page.and_then(|page| votes::question(page, &self.state));
         let Some((predict, _)) = asked else {
-            return lab.refuse("this page asks nothing");
+            return lab.refuse("this page asks no question");
         };
         let is_seen = open.is_some_and(|it| it.place.seen.contains(&predict.name));
         let question = self.state.question_mut(&predict.name);
@@ -230,7 +230,7 @@ impl Teacher {
                 question.ask_again();
                 let round = format!("round {}: the class votes again", question.round());
                 let late = if is_seen {
-                    "; its outcome was seen, so votes count apart, as late"
+                    "; its outcome was seen, so votes count as late"
                 } else {
                     ""
                 };
@@ -243,13 +243,15 @@ impl Teacher {
                 VoteStage::All => question.close(),
             },
             QuestionAct::Countdown if question.closes_at_ms.take().is_some() => {
-                lab.refuse("the countdown is stopped: the round stays open");
+                lab.refuse("the countdown has stopped: the round stays open");
             }
             QuestionAct::Countdown if question.is_closed => lab.refuse(CLOSED_ASK_AGAIN),
             QuestionAct::Countdown => {
                 question.closes_at_ms = Some(unix_ms() + COUNTDOWN_MS);
                 let seconds = COUNTDOWN_MS / 1000;
-                lab.refuse(format!("the round closes in {seconds} s; k 6 stops that"));
+                lab.refuse(format!(
+                    "the round closes in {seconds} s; press k 6 to stop the countdown"
+                ));
             }
         }
     }
@@ -284,7 +286,7 @@ impl Teacher {
         let legend = if self.seats.is_empty() {
             "No seat is taken yet."
         } else {
-            "Enter closes the seat, or opens it again. lost: no sign for 10 s; away: left."
+            "Enter closes or reopens a seat. lost: no sign for 10 s; away: has quit."
         };
         list.push(Paragraph::new(SheetLineKind::Hint, legend));
         list
@@ -303,7 +305,7 @@ impl Teacher {
         if self.state.closed.remove(&word) {
             lab.refuse(format!("{word} is open again"));
         } else {
-            lab.refuse(format!("{word} is closed: Enter opens it again"));
+            lab.refuse(format!("{word} is closed: press Enter to reopen it"));
             self.state.closed.insert(word);
         }
     }
