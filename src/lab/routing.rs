@@ -257,10 +257,10 @@ impl Lab {
     }
 
     /// Closes or stops the first that applies: a popup, the script, the seek, the cursor, full screen, the focus on the
-    /// values, the export.
+    /// values.
     ///
-    /// Next comes the pane in focus, if it is shown on request. If none applies, says how to quit, unless the key has
-    /// already removed a message or a count.
+    /// If none applies and the key has not removed a message or a count, the order continues: the export, the pane in
+    /// focus if it is shown on request, the lesson. In the end, says how to quit.
     fn close(&mut self, cleared: &Cleared) -> Option<LabRequest> {
         // The focus returns from the values to the run even if the key has also removed a message.
         let is_done = self.close_popup()

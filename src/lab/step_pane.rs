@@ -24,7 +24,7 @@ pub struct StepWorkings {
     /// The intermediate results from which the step itself was computed.
     pub workings: Arc<Workings>,
     pub scenario: Arc<Scenario>,
-    /// The running sums of the table on the page, and the page's index; `None` if no rows are added up.
+    /// The running sums of the table on the page, with the index of its phase; `None` if no rows are added up.
     sums: Option<(usize, ColumnSums)>,
     /// The first dip of the run up to this step; `None` if the page does not show it or the axle was upright.
     pub dip: Option<Dip>,

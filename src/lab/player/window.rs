@@ -20,7 +20,7 @@ const FEW_WINDOWS: f64 = 2.0;
 const FEWEST_SWINGS: f64 = 4.0;
 /// Maximum number of times that this axis is halved.
 const MOST_HALVINGS: i32 = 3;
-/// The traced point counts as swinging by itself if it turns at least this many times as often as the tilt.
+/// The traced point counts as swinging by itself if it turns more than this many times as often as the tilt.
 const MORE_TURNS: f64 = 3.0;
 /// Relative change of a period or a height at which another window is chosen.
 const HYSTERESIS: f64 = 0.1;
@@ -49,7 +49,7 @@ pub(super) struct Swing {
     height_m: f64,
 }
 
-/// The swings that were first seen in a run.
+/// The latest swings that were seen in a run, and the time of the run then.
 pub(super) struct SeenSwing {
     scenario: Arc<Scenario>,
     swing: Swing,

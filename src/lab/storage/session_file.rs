@@ -37,7 +37,8 @@ const MOST_SHARED_SESSIONS: usize = 200;
 const LONGEST_SESSION: usize = 64 << 20;
 /// Maximum size of a lock file, bytes. It contains a process ID.
 const LONGEST_LOCK: usize = 100;
-/// Duration of a lock by a process that only inspects the session. A longer lock means that the session is in use.
+/// Maximum duration of a lock by a process that only inspects the session. A longer lock means that the session is in
+/// use.
 const GLANCE: Duration = Duration::from_millis(10);
 /// Time that the system may take to release the lock of a process that has ended. On a busy machine it is longer than
 /// `GLANCE`.
