@@ -39,10 +39,10 @@ fn on_a_full_disk_the_trouble_stays_and_nothing_is_promised() {
     lab.wait_for("shell>");
     let program = env!("CARGO_BIN_EXE_gyrolab");
     lab.press(&format!("ulimit -f 0; {program} --paused --at 30\r"));
-    lab.wait_for("the session cannot be kept");
+    lab.wait_for("the session cannot be saved");
     lab.press(".");
     lab.wait_for_step(31);
-    lab.wait_for("the session cannot be kept");
+    lab.wait_for("the session cannot be saved");
     lab.ask("P", "session not saved · the next push");
     lab.ask(ESC, "session not saved");
     lab.forget();
