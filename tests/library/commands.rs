@@ -659,7 +659,7 @@ fn a_push_begins_at_the_time_that_it_names() {
         .carry_out(&commands(pushed).remove(0))
         .unwrap_err()
         .to_string();
-    has_all(&late, ["begins at 2 s, and it is 3 s", "g and 2 s"]);
+    has_all(&late, ["begins at 2 s, but the run is at 3 s", "g and 2 s"]);
     desk.commands("push = { from_s = 0 }");
     let late_push = desk.scenario().file.push.last().unwrap().clone();
     assert_eq!(late_push.from_s, Some(3.0));

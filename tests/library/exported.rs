@@ -288,7 +288,10 @@ fn an_export_of_every_kind_is_the_same() {
     }
     let good = preset("steady-slow", &["motion.steps=50"]);
     let notes = verified(&csv(&good, whole())).unwrap().notes;
-    assert!(notes[0].starts_with("The numbers hold"), "{notes:?}");
+    assert!(
+        notes[0].starts_with("The numbers are reliable"),
+        "{notes:?}"
+    );
 }
 
 static GOOD: LazyLock<Vec<u8>> = LazyLock::new(|| csv(&edited(), whole()));
@@ -387,7 +390,7 @@ fn what_cannot_be_computed_again_is_refused_with_the_reason() {
         ("hello\n", "is no CSV that gyrolab wrote"),
         ("a,b\n1,2\n", "is no CSV that gyrolab wrote"),
         ("# title = 'x'\n", "ends in its header"),
-        (body, "with no run file in its header"),
+        (body, "without a run file in its header"),
         (
             &text.replace("# [motion]", "# [moton]"),
             "unknown key: did you mean motion?",

@@ -513,7 +513,7 @@ fn a_scheme_that_cannot_be_true_to_the_friction_is_refused_with_the_reason() {
     assert_eq!(
         refused("first-dip", &["motion.scheme=srkn11b"]),
         format!(
-            "motion.scheme (\"srkn11b\") cannot be true to this friction: {reason}; take one of {others}"
+            "motion.scheme (\"srkn11b\") does not support this friction: {reason}; use one of {others}"
         )
     );
     let dry = "friction.spin_dry_Nm=0.1";
@@ -523,7 +523,7 @@ fn a_scheme_that_cannot_be_true_to_the_friction_is_refused_with_the_reason() {
     assert_eq!(
         refused("first-dip", &["motion.scheme=rk4", dry]),
         format!(
-            "motion.scheme (\"rk4\") cannot be true to this friction: {of_dry}; take one of {true_to_dry}"
+            "motion.scheme (\"rk4\") does not support this friction: {of_dry}; use one of {true_to_dry}"
         )
     );
     let edit = "edit=[{step=10,set={\"motion.scheme\"=\"srkn11b\"}}]";

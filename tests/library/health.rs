@@ -70,10 +70,10 @@ fn it_warns_of_the_runs_that_the_time_step_has_made() {
         (
             "method-2",
             &[][..],
-            "the body turns 4.97 times a step, strobing the swing",
+            "the body turns 4.97 times per step, so the swing is under-sampled",
         ),
-        ("wobble-push", &[], "times a step"),
-        ("wobble-push-accumulating", &[], "times a step"),
+        ("wobble-push", &[], "times per step"),
+        ("wobble-push-accumulating", &[], "times per step"),
         ("cusps", &COARSE, "nutation is damped"),
     ] {
         let scenario = preset(name, set);
@@ -84,7 +84,7 @@ fn it_warns_of_the_runs_that_the_time_step_has_made() {
         has(&sentence, words);
         let advised = match name {
             // At another time step, which --time-step refuses, its push would be another.
-            "wobble-push-accumulating" => "; no other scheme mends it",
+            "wobble-push-accumulating" => "; no other scheme corrects it",
             _ => "; --time-step 0.0",
         };
         has(&sentence, advised);
@@ -112,7 +112,7 @@ fn it_does_not_warn_of_the_runs_that_hold() {
             "{}: a preset that shows the fault of a time step stands in `doubtful`",
             preset.name
         );
-        begins(&health.sentence(None), "The numbers hold");
+        begins(&health.sentence(None), "The numbers are reliable");
         assert_eq!(advise(&scenario), Advice::Holds, "{}", preset.name);
     }
 }
@@ -172,7 +172,10 @@ fn advice_is_right(name: &str, scenario: &Scenario) -> Advice {
         let most = strays(other.clone());
         assert!(most <= BELIEVED_WITHIN, "{case}: {most}");
         let verdict = health(other).sentence(None);
-        assert!(verdict.starts_with("The numbers hold"), "{case}: {verdict}");
+        assert!(
+            verdict.starts_with("The numbers are reliable"),
+            "{case}: {verdict}"
+        );
     };
     let is_wrong = |dt, stepper| {
         let verdict = health(resampled(scenario, dt, stepper));
@@ -315,8 +318,8 @@ fn is_believed_rightly(scenario: &Scenario) {
     let begins = |words| sentence.starts_with(words);
     let is_near = most <= BELIEVED_WITHIN;
     match health.is_believed().unwrap() {
-        true => assert!(begins("The numbers hold") && is_near),
-        false if is_near => assert!(begins("The traced point holds, and the nutation does not")),
+        true => assert!(begins("The numbers are reliable") && is_near),
+        false if is_near => assert!(begins("The traced point is right, but not the nutation")),
         false => assert!(begins("Do not believe")),
     }
 }
@@ -603,19 +606,19 @@ fn the_sentence_names_the_right_cause() {
     let of_fast = told("fast-top", &fine);
     begins(
         &of_fast,
-        "The traced point holds, and the nutation does not: from 7.17 to 8.96 s the tilt",
+        "The traced point is right, but not the nutation: from 7.17 to 8.96 s the tilt",
     );
     has_all(
         &of_fast,
         [
             " degrees, not from 30.000 to 30.074: damped by ",
-            "% a step; --scheme srkn11b --time-step",
+            "% per step; --scheme srkn11b --time-step",
         ],
     );
     // Nor is there one in a steady precession whose traced point holds.
     let fewer = ["motion.time_step_s=0.0001", "motion.steps=5000", report];
     let of_steady = told("steady-slow", &fewer);
-    begins(&of_steady, "The numbers hold");
+    begins(&of_steady, "The numbers are reliable");
     has_no(&of_steady, "nutation");
     let is_damped = |name: &str, set: &[&str]| {
         let verdict = Verdict::new(&health(preset(name, set)));
@@ -679,9 +682,9 @@ fn a_nutation_that_the_time_step_makes_larger_is_told() {
         health_at(scenario, steps).sentence(None)
     };
     let told = sentence(0.01);
-    begins(&told, "The traced point holds, and the nutation does not: ");
+    begins(&told, "The traced point is right, but not the nutation: ");
     has(&told, "axle lags L 1.56 times too far");
-    begins(&sentence(0.002), "The numbers hold: ");
+    begins(&sentence(0.002), "The numbers are reliable: ");
 }
 
 /// Runs whose traced point is right. The swing of each is another's: made by the scheme, larger or smaller than it should
@@ -700,7 +703,7 @@ fn a_swing_that_is_not_the_bodys_is_told_under_every_scheme() {
         let steps = (end_s / time_step_s).round() as u64;
         let health = health(Scenario { steps, ..scenario });
         let sentence = health.sentence(None);
-        let begin = "The traced point holds, and the nutation does not";
+        let begin = "The traced point is right, but not the nutation";
         assert!(sentence.starts_with(begin), "{name}: {sentence}");
         assert!(sentence.contains(words), "{name}: {sentence}");
         let verdict = Verdict::new(&health);

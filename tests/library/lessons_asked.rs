@@ -98,9 +98,9 @@ fn a_number_takes_its_unit_and_another_of_its_kind() {
         );
     }
     for (typed, said) in [
-        ("99 kg", "is asked for in N, not in kg"),
-        ("9 about", "is asked for in N, not in about"),
-        ("9..9", "is asked for in N, not in"),
+        ("99 kg", "must be in N, not in kg"),
+        ("9 about", "must be in N, not in about"),
+        ("9..9", "must be in N, not in"),
         ("--", "must be a number"),
     ] {
         let mut stage = asked_for_newtons();

@@ -49,7 +49,7 @@ fn the_verdict_names_a_damped_nutation() {
 fn a_nutation_that_is_lost_does_not_contradict_the_first_words() {
     let health = health("fast-top", &["motion.scheme=report"]);
     let sentence = health.sentence(None);
-    let begin = "The traced point holds, and the nutation does not";
+    let begin = "The traced point is right, but not the nutation";
     assert!(sentence.starts_with(begin), "{sentence}");
 }
 
@@ -177,7 +177,7 @@ fn what_a_broken_scheme_leaves_is_not_shown_as_a_place() {
         .shows("rk4 breaks down at this time step: the body is deformed")
         .shows("tilt °                         –")
         .shows("x m                            –")
-        .shows_no("0.0000 times a step");
+        .shows_no("0.0000 times per step");
     let health = health("wobble-push", &["motion.scheme=rk4"]);
     let short = &Verdict::new(&health).reasons[0].short;
     has(short, "rk4 breaks down");

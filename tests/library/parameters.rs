@@ -187,7 +187,7 @@ fn a_refused_change_is_told_in_one_line() {
     );
     assert_eq!(
         refusal(&file, "trace", "tip"),
-        "trace (\"tip\") is no point of this body: did you mean top?"
+        "trace (\"tip\") is not a point of this body: did you mean top?"
     );
     for (key, value) in [
         ("body.rim.radius_m", Value::from("x")),

@@ -189,7 +189,7 @@ fn the_centre_of_a_part_is_pushed_and_traced_by_its_name() {
     assert_eq!(scenario.arm_m(), 0.5);
     assert_eq!(scenario.pushes.first().unwrap().point, scenario.trace);
     let other = traced.replace("point = 'ball'", "point = 'bal'");
-    let words = "push.0.point (\"bal\") is no point of this body: did you mean ball?";
+    let words = "push.0.point (\"bal\") is not a point of this body: did you mean ball?";
     has(read(&other).unwrap_err().to_string(), words);
 }
 
@@ -412,7 +412,7 @@ fn each_value_of_a_part_can_be_changed_or_says_why_not() {
         refused(file, "body.part.0.radius_m", -1.0),
         "body.part.0.radius_m (-1.0) must be greater than zero"
     );
-    assert!(refused(file, "body.part.1.name", "top").contains("is the name of a point"));
+    assert!(refused(file, "body.part.1.name", "top").contains("is also the name of a point"));
 }
 
 #[test]

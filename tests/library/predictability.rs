@@ -119,7 +119,11 @@ fn before_that_time_a_run_is_judged_as_ever() {
     let health = health_at(&scenario, (0.9 * until_s / 0.05) as u64);
     assert_eq!(health.predictability.until_s, None);
     assert_eq!(health.is_reliable(), Some(true));
-    assert!(health.sentence(None).starts_with("The numbers hold"));
+    assert!(
+        health
+            .sentence(None)
+            .starts_with("The numbers are reliable")
+    );
 }
 
 #[test]
@@ -154,7 +158,7 @@ fn an_upright_top_too_slow_to_sleep_is_neither_blamed_nor_praised() {
         let case = format!("{scheme} at {time_step_s} s: {sentence}");
         has_all(&case, &[BALANCED, UNPREDICTABLE]);
         has_no(&case, "Do not believe");
-        has_no(&case, "The numbers hold");
+        has_no(&case, "The numbers are reliable");
         assert_eq!(health.is_believed(), None, "{case}");
         assert_eq!(health.is_reliable(), Some(false), "{case}");
         let word = Verdict::new(&health).word;

@@ -151,7 +151,10 @@ fn a_push_that_accumulates_moves_only_before_it_begins() {
     }
     let edits = EDITS.replace("'push.1.force_N'", "'push.0.force_N'");
     let edited = read(&text("report", 0.0, UPRIGHT, &format!("{push}{edits}")));
-    has(here(&at(&edited, 13)).unwrap_err(), "another time step");
+    has(
+        here(&at(&edited, 13)).unwrap_err(),
+        "steps of a different length",
+    );
 }
 
 #[test]

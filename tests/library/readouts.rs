@@ -239,7 +239,7 @@ fn a_strobed_nutation_is_named_with_theory_or_without() {
     let strobed = lopsided("1000", "0.1");
     assert_eq!(resolved(&strobed), false);
     let text = summary(readouts(&strobed)).to_string();
-    let words = " in this run: strobed, the steps are too far apart to see it";
+    let words = " in this run: under-sampled, the steps are too far apart to see it";
     has(&text, words);
     assert!(resolved(&lopsided("60", "0.001")).is_null());
     for scheme in SCHEMES {
@@ -337,7 +337,7 @@ fn theory_of_a_top_that_is_pulled_up_is_about_z_as_what_is_measured() {
             assert!(off < 1e-5, "{name}: {predicted}, {measured}");
         }
         let text = summary(readouts).in_full(true).to_string();
-        has(&text, "stands without spin too");
+        has(&text, "stable even without spin");
         has_no(&text, "about");
     }
 }

@@ -150,10 +150,10 @@ const TABLE: &[(usize, &str, usize, &str, &str)] = &[
     (12, "at_m = 3", 12, "body.point.0.at_m (3) must be three numbers in brackets, not a number", ""),
     (12, "at_m = [0, 1]", 12, "body.point.0.at_m ([0, 1]) must be three numbers, not 2", ""),
     (12, "at_m = [0, 0, \"1\"]", 12, "body.point.0.at_m", "each must be a number, not text"),
-    (16, "momentum_Js = nan", 16, "start.momentum_Js (nan) must be three numbers in brackets, and NaN is no finite number", ""),
+    (16, "momentum_Js = nan", 16, "start.momentum_Js (nan) must be three numbers in brackets, and NaN is not finite", ""),
     (17, "roll_deg = inf", 17, "start.roll_deg (inf) must be a finite number", ""),
-    (17, "spin_rpm = 300", 17, "start.spin_rpm (300.0) is given beside momentum_Js", "keep one"),
-    (17, "steady = true", 17, "start.steady (true) goes with a spin", "give spin_rpm"),
+    (17, "spin_rpm = 300", 17, "start.spin_rpm (300.0) is given in addition to momentum_Js", "keep only one"),
+    (17, "steady = true", 17, "start.steady (true) needs a spin", "give spin_rpm"),
     (17, "momentum_frame = \"bdy\"", 17, "start.momentum_frame (\"bdy\") must be one of world, body", "did you mean body?"),
     (20, "scheme = \"reprot\"", 20, "motion.scheme (\"reprot\") must be one of report, ", "did you mean report?"),
     (30, "speed = \"fast\"", 30, "view.speed (\"fast\") must be a number", ""),
@@ -221,19 +221,19 @@ const TABLE: &[(usize, &str, usize, &str, &str)] = &[
     (24, "point = \"top\\u0000\"", 24, "push.0.point", "(here U+0000)"),
     (31, "look_at = \"a\\nb\"", 31, "view.look_at", "(here U+000A)"),
     // rules for more than one value
-    (4, "trace = \"tpo\"", 4, "trace (\"tpo\") is no point of this body: did you mean top?", ""),
-    (4, "trace = \"nose of the ship\"", 4, "trace (\"nose of the ship\") is no point of this body: there is top", ""),
-    (13, "[[body.point]]\nname = \"top\"\nat_m = [0, 0, 2]", 14, "body.point.1.name (\"top\") is the name of another point too", ""),
-    (24, "point = \"Top\"", 24, "push.0.point (\"Top\") is no point of this body: did you mean top?", ""),
-    (24, "point = \"bow of the ship\"", 24, "push.0.point (\"bow of the ship\") is no point of this body: there is top", ""),
+    (4, "trace = \"tpo\"", 4, "trace (\"tpo\") is not a point of this body: did you mean top?", ""),
+    (4, "trace = \"nose of the ship\"", 4, "trace (\"nose of the ship\") is not a point of this body: there is top", ""),
+    (13, "[[body.point]]\nname = \"top\"\nat_m = [0, 0, 2]", 14, "body.point.1.name (\"top\") is also the name of another point", ""),
+    (24, "point = \"Top\"", 24, "push.0.point (\"Top\") is not a point of this body: did you mean top?", ""),
+    (24, "point = \"bow of the ship\"", 24, "push.0.point (\"bow of the ship\") is not a point of this body: there is top", ""),
     (7, "radius_m = 1e-9", 5, "body: singular inertia", "put mass off the axle"),
     (7, "radius_m = 1e200", 5, "body: the inertia about the pivot leaves the range of numbers", ""),
-    (27, "", 23, "push.0: does not say for how long: add steps", ""),
-    (27, "for_s = 3", 23, "push.0: counts in steps and in seconds", "keep first_step and steps, or from_s and for_s"),
+    (27, "", 23, "push.0: has no duration: add steps", ""),
+    (27, "for_s = 3", 23, "push.0: has times in steps and in seconds", "keep first_step and steps, or from_s and for_s"),
     // friction
     (13, "[friction]\nspin_dry_Nm = -1", 14, "friction.spin_dry_Nm (-1) must not be negative", ""),
     (13, "[friction]\nspin_viscous_Nms = nan", 14, "friction.spin_viscous_Nms (nan) must be a finite number", ""),
-    (13, "[friction]\nswing_viscous_Nms = 1e200", 14, "friction.swing_viscous_Nms (", "is too large for this body, whose least moment is"),
+    (13, "[friction]\nswing_viscous_Nms = 1e200", 14, "friction.swing_viscous_Nms (", "is too large for this body, whose smallest moment is"),
     (13, "[friction]\nspin_dry = 1", 14, "friction.spin_dry: unknown key", "spin_dry_Nm"),
     // parts
     (13, "[[body.part]]\nshape = \"egg\"", 14, "body.part.0.shape (\"egg\") must be one of ring, cylinder", ""),
@@ -244,11 +244,11 @@ const TABLE: &[(usize, &str, usize, &str, &str)] = &[
     (13, "[[body.part]]\nouter_radius_m = 0", 14, "body.part.0.outer_radius_m (0) must be greater than zero", ""),
     (13, "[[body.part]]\nradius = 1", 14, "body.part.0.radius: unknown key", "did you mean radius_m?"),
     // starts by an angular velocity, and a rotor
-    (17, "omega_rad_per_s = [0, 0, 1]", 17, "start.omega_rad_per_s ([0.0, 0.0, 1.0]) is given beside momentum_Js", "keep one of the two"),
+    (17, "omega_rad_per_s = [0, 0, 1]", 17, "start.omega_rad_per_s ([0.0, 0.0, 1.0]) is given in addition to momentum_Js", "keep only one"),
     (17, "omega_frame = \"bdy\"", 17, "start.omega_frame (\"bdy\") must be one of world, body", ""),
     (13, "[[body.part]]\nabout = \"pvot\"", 14, "body.part.0.about (\"pvot\") must be one of center, pivot", "did you mean pivot?"),
-    (17, "omega_frame = \"body\"", 17, "start.omega_frame: goes with omega_rad_per_s, and momentum_Js is given", "leave it out"),
-    (17, "rotor = \"top\"", 17, "start.rotor (\"top\") is no part of this body", "there is none"),
+    (17, "omega_frame = \"body\"", 17, "start.omega_frame: belongs to omega_rad_per_s, but momentum_Js is given", "remove it"),
+    (17, "rotor = \"top\"", 17, "start.rotor (\"top\") is not a part of this body", "there is none"),
     // edits
     (38, "step = 41", 41, "edit.1.step (40) comes before the edit above it (step 41)", ""),
     (39, "set = { \"motion.time_step_s\" = 0 }", 39, "edit.0.set.motion.time_step_s (0) must be greater than zero", ""),
@@ -262,9 +262,9 @@ const TABLE: &[(usize, &str, usize, &str, &str)] = &[
     (39, "set = { \"push.1.force_N\" = [0, 0, 1] }", 39, "edit.0.set.push.1.point: is missing", ""),
     (39, "set = { \"push.2.force_N\" = [0, 0, 1] }", 39, "edit.0.set.push.2.force_N: leads past the end", "1 element"),
     (39, "set = { \"push.x.force_N\" = [0, 0, 1] }", 39, "edit.0.set.push.x.force_N", "a number from 0"),
-    (39, "set = { \"push.0.point\" = \"hub\" }", 39, "edit.0.set.push.0.point (\"hub\") is no point of this body", ""),
+    (39, "set = { \"push.0.point\" = \"hub\" }", 39, "edit.0.set.push.0.point (\"hub\") is not a point of this body", ""),
     (39, "set = { \"push.0.first_step\" = 0 }", 39, "edit.0.set.push.0.first_step (0) must be 1 or more", ""),
-    (39, "set = { \"push.0.a.a.a.a.a.a.a.a\" = 0 }", 39, "edit.0.set.push.0.a.a", "deeper than any key"),
+    (39, "set = { \"push.0.a.a.a.a.a.a.a.a\" = 0 }", 39, "edit.0.set.push.0.a.a", "is too deep: a key has"),
 ];
 
 fn check_refusal(text: &str, line: usize, begin: &str, words: &str) -> Result<(), String> {
@@ -324,8 +324,8 @@ fn pushes_in_seconds() {
         (27, "for_s = 0", 27, "push.0.for_s (0) must be greater than zero"),
         (27, "for_s = inf", 27, "push.0.for_s (inf) must be a finite number"),
         (27, "for_s = true", 27, "push.0.for_s (true) must be a number"),
-        (27, "", 23, "push.0: does not say for how long: add for_s"),
-        (27, "for_s = 2\nsteps = 3", 23, "push.0: counts in steps and in seconds"),
+        (27, "", 23, "push.0: has no duration: add for_s"),
+        (27, "for_s = 2\nsteps = 3", 23, "push.0: has times in steps and in seconds"),
         (27, "for_s = 2\naccumulates = true", 23, "push.0: accumulates step by step"),
     ];
     for &(at, new, line, begin) in table {
@@ -495,7 +495,11 @@ fn files_that_are_no_scenarios() {
             b"# title = 'x'\n0,0,0\n",
             &["is not the CSV of a run"],
         ),
-        ("no-header.csv", b"step,t_s,x_m\n0,0,0\n", &["no run file"]),
+        (
+            "no-header.csv",
+            b"step,t_s,x_m\n0,0,0\n",
+            &["without a run file"],
+        ),
         (
             "broken.csv",
             b"# title = 'x'\n# [motion\nstep,t_s,x_m\n",
@@ -518,7 +522,7 @@ fn files_that_are_no_scenarios() {
     has(read_refusal(&none), "there is no such file");
     if Path::new("/dev/zero").exists() {
         let message = read_refusal(Path::new("/dev/zero"));
-        assert!(message.contains("longer than 4 MB"), "{message}");
+        assert!(message.contains("larger than 4 MB"), "{message}");
     }
 }
 
@@ -555,7 +559,7 @@ fn settings_that_are_refused() {
         ("motion.time_step_s=nan", "must be a finite number"),
         ("motion.time_step_s=-1", "must be greater than zero"),
         ("motion.time_step_s=0,05", "must be a number, not text"),
-        ("motion.time_step_s.x=1", "motion.time_step_s (0.1) holds no x"),
+        ("motion.time_step_s.x=1", "motion.time_step_s (0.1) has no x"),
         ("motion.steps=1e3", "must be a whole number"),
         ("motion.steps=5\nscheme=\"rk4\"", "must be a whole number, not text"),
         ("motion=5", "motion (5) must be a table"),
@@ -572,14 +576,14 @@ fn settings_that_are_refused() {
         ("push.1.force_N=[0,0,1]", "push.1.point: is missing"),
         ("push.7.force_N=[0,0,1]", "push.7: leads past the end: the array has 1 element"),
         ("push.x.force_N=[0,0,1]", "push.x: "),
-        ("push.0.point=hub", "push.0.point (\"hub\") is no point of this body"),
-        ("push.0.from_s=3", "push.0: counts in steps and in seconds"),
+        ("push.0.point=hub", "push.0.point (\"hub\") is not a point of this body"),
+        ("push.0.from_s=3", "push.0: has times in steps and in seconds"),
         ("body.point.0.name=a\nb", "(here U+000A)"),
         ("title=\u{202e}", "(here U+202E)"),
         ("title=", "must not be empty"),
         ("body.rim.point_mass_kg=1e308", "range of numbers"),
         ("body.rim.radius_m=1e-9", "singular inertia"),
-        ("a.a.a.a.a.a.a.a.a.a=1", "deeper than any key"),
+        ("a.a.a.a.a.a.a.a.a.a=1", "is too deep: a key has"),
     ];
     let mut wrong = Vec::new();
     for &(argument, words) in table {
@@ -632,15 +636,15 @@ fn every_mistake_is_told_at_once() {
         &told,
         [
             "file.toml:21: motion.time_step_s (-1) must be greater than zero",
-            "file.toml:24: push.0.point (\"topp\") is no point of this body: did you mean top?",
-            "file.toml:4: trace (\"tpo\") is no point of this body",
+            "file.toml:24: push.0.point (\"topp\") is not a point of this body: did you mean top?",
+            "file.toml:4: trace (\"tpo\") is not a point of this body",
         ],
     );
     assert_eq!(told.lines().count(), 3, "{told}");
     // Two names; a name and a push that says no time; a name and a start told twice.
     for (other, words) in [
         ((4, "trace = \"tpo\""), "trace"),
-        ((27, ""), "push.0: does not say for how long"),
+        ((27, ""), "push.0: has no duration"),
         ((15, "spin_rpm = 3"), "start.spin_rpm"),
     ] {
         let both = mistakes(&[(24, "point = \"topp\""), other]);

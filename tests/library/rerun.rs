@@ -127,7 +127,7 @@ fn a_push_that_grows_by_steps_refuses_another_time_step_and_says_why() {
     desk.type_text("0.05");
     desk.press(&[Key::Enter]);
     let complaint = desk.lab.popups().dialog().unwrap().form.complaint.clone();
-    has(complaint.unwrap(), "accumulates step by step");
+    has(complaint.unwrap(), "accumulates per step");
     assert_eq!(desk.scenario().file, before);
     desk.press(&[Key::Tab, Key::Enter]);
     assert_eq!(desk.lab.player().motion().time_step_s, 0.05);

@@ -535,7 +535,7 @@ fn euler_rates_are_a_start_of_their_own() {
     }
     has(
         refusal("psi_dot_rad_per_s = 2\nsteady = true"),
-        "goes with a spin",
+        "needs a spin",
     );
     has(
         refusal("psi_dot_rad_per_s = 2\nomega_frame = 'body'"),
@@ -564,7 +564,7 @@ fn set_takes_euler_rates_for_a_start_and_never_loses_a_spin() {
     document.set("start.precession_rad_per_s=0.5").unwrap();
     has(
         document.scenario().unwrap_err().to_string(),
-        "give psi_dot_rad_per_s in the place of momentum_Js",
+        "give psi_dot_rad_per_s instead of momentum_Js",
     );
     let ways = [rates[0], rates[1], "start.spin_rpm=300"];
     let file = preset("cusps", &ways).file.start;

@@ -299,8 +299,8 @@ fn where_the_theory_does_not_hold_it_says_nothing_or_lopsided() {
     has_all(
         &text,
         [
-            "precession    none by theory, which is of symmetric bodies, ",
-            "nutation      none by theory, which is of symmetric bodies",
+            "precession    none by theory, which covers symmetric bodies only, ",
+            "nutation      none by theory, which covers symmetric bodies only",
         ],
     );
 
@@ -321,9 +321,12 @@ fn where_the_theory_does_not_hold_it_says_nothing_or_lopsided() {
         summary(&Arc::new(document.scenario().unwrap())).to_string()
     };
     let beats = told(include_str!("../reference/lopsided/beats.toml"), 1000);
-    has(&beats, "not stated in this run: too few were seen");
+    has(&beats, "not measured in this run: too few were seen");
     let uneven = told(include_str!("../reference/lopsided/uneven.toml"), 3999);
-    has(&uneven, "not stated in this run: its swings are too uneven");
+    has(
+        &uneven,
+        "not measured in this run: its swings are too uneven",
+    );
 
     let free = summary(&preset("torque-free", &[])).to_string();
     has(&free, "nutation      none by theory, none in this run");
@@ -507,7 +510,7 @@ fn a_nearly_symmetric_body_has_the_theory_of_its_mean_moment() {
         close("highest tilt", extremes.highest_deg, high, within);
     }
     let text = summary(&ball([4.0, 4.01, 3.75])).to_string();
-    has(&text, "0.24 %; theory is that of the mean moment across");
+    has(&text, "0.24 %; theory uses the mean moment across the axle");
     has_no(&text, "none by theory");
 }
 

@@ -99,9 +99,9 @@ fn wrong_settings_and_values_are_named_without_a_file_that_nobody_named() {
         ),
         (
             "--set 'push=[{point=\"top\", force_N=[0,50,0], from_s=10s}]'",
-            "is no TOML: at \"10s}]\"",
+            "is not valid TOML at \"10s}]\"",
         ),
-        ("--set body.rim.points=1", "the rim has 1 point"),
+        ("--set body.rim.points=1", "a rim with 1 point"),
         (
             "--vary motion.steps=10,x",
             "motion.steps (\"x\") must be a whole number",
@@ -161,7 +161,7 @@ fn mistakes_in_files_of_commands_are_told_with_the_remedy() {
     for (text, words) in [
         (
             "[do]\nopen = 'cusps'\n[do]\nopen = 'loops'\n",
-            "x.toml:3: [do] stands here again: write [[do]]",
+            "x.toml:3: [do] occurs a second time: write [[do]]",
         ),
         ("[[do]]\nrun_until = 't_s => 20'\n", "write >= for =>"),
         ("[[do]]\nrun_until = 't_s =< 20'\n", "write <= for =<"),
@@ -287,7 +287,7 @@ fn a_scenario_given_as_measured_data_is_told_once() {
         "figure method-2 --measured own.toml -o f.svg",
     ] {
         let output = ground.run(args);
-        failed(&output, &["own.toml: is a scenario, and no measured data"]);
+        failed(&output, &["own.toml: is a scenario, not measured data"]);
         assert_eq!(stderr(&output).lines().count(), 1, "{args}");
     }
     // A table of numbers that is no scenario is told its rows as before.

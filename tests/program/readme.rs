@@ -142,7 +142,7 @@ fn the_steady_start_is_steady() {
         assert!((tilt - 30.0).abs() < 1e-6, "{name}: {tilt}");
     }
     let health = json["health"].as_str().unwrap();
-    assert!(health.starts_with("The numbers hold"), "{health}");
+    assert!(health.starts_with("The numbers are reliable"), "{health}");
 }
 
 #[test]

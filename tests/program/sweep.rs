@@ -395,7 +395,7 @@ fn what_is_wrong_in_a_sweep_file_is_told_with_its_line() {
             r#""t\u001b]0;P\u0007""#,
             &[
                 "s.toml:1: title (",
-                "no control, direction or invisible characters (here U+001B)",
+                "control, direction or invisible characters (here U+001B)",
             ],
         ),
         (

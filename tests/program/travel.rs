@@ -198,7 +198,7 @@ fn what_holds_no_run_says_so() {
     let pdf = fs::read(ground.file("a.pdf")).unwrap();
     fs::write(ground.file("after.pdf"), [&pdf[..], b"more"].concat()).unwrap();
     for (file, words) in [
-        ("stripped.svg", "holds no run"),
+        ("stripped.svg", "contains no run"),
         ("twice.svg", "metadata of two figures"),
         ("run.svg", "its run was changed"),
     ] {

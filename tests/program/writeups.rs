@@ -270,7 +270,7 @@ fn a_run_of_the_exact_motion_is_said_to_be_it() {
     has_all(
         &page,
         [
-            "The numbers hold: the run is the exact motion itself.",
+            "The numbers are reliable: the run is the exact motion itself.",
             "x, y and z of the traced point over time; the run is the exact motion itself",
             "where the two differ it is by rounding",
         ],

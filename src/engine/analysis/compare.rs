@@ -304,7 +304,7 @@ impl ComparisonTable<'_> {
             writeln!(f, "\nThe motion is {limits}.")?;
         }
         if limits.until_s.is_some() {
-            writeln!(f, "Errors and drifts of L are those up to then.")?;
+            writeln!(f, "Errors and drifts of L cover the time up to then.")?;
         }
         let energy = match self.energy_unit {
             Some(unit) => format!("in units of {unit}"),
@@ -313,21 +313,21 @@ impl ComparisonTable<'_> {
         writeln!(f)?;
         writeln!(
             f,
-            "order   from the row above; it means something once the error falls evenly. -: first row, or rounding."
+            "order   measured from the row above; meaningful once the error falls steadily. -: first row, or rounding."
         )?;
         writeln!(
             f,
-            "energy  {energy}; L.axle and L_z in units of |L|: how far off each was at most."
+            "energy  {energy}; L.axle and L_z in units of |L|. Each is the maximum error."
         )?;
         if self.rows.iter().any(|row| row.error_m.is_none()) {
             writeln!(
                 f,
-                "{NOT_AVAILABLE} of an error: the run broke down, after so many steps as are told: its numbers were no longer finite."
+                "{NOT_AVAILABLE} for an error: the numbers were no longer finite after the steps shown."
             )?;
         }
         writeln!(
             f,
-            "ns/step with every core at work: to be compared within the table only."
+            "ns/step measured with all cores busy: compare it only within this table."
         )
     }
 }

@@ -9,16 +9,16 @@ use std::f64::consts::{PI, TAU};
 use std::fmt;
 
 /// Problem of a run whose scheme has broken down.
-const NO_ROTATION: &str = "its orientation is no rotation any more";
+const NO_ROTATION: &str = "its orientation is no longer a rotation";
 
 impl fmt::Display for WheelPicture {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Right => "it shows as it is",
-            Self::Strobed => "strobed, its points are taken for one another",
-            Self::TooSlow => "strobed, it seems to turn too slowly",
-            Self::Backwards => "strobed, it seems to turn backwards",
-            Self::Unknown => "further than numbers reach",
+            Self::Right => "it appears correctly",
+            Self::Strobed => "under-sampled, its points are mistaken for one another",
+            Self::TooSlow => "under-sampled, it appears to turn too slowly",
+            Self::Backwards => "under-sampled, it appears to turn backwards",
+            Self::Unknown => "beyond the range of numbers",
         })
     }
 }
@@ -105,7 +105,7 @@ pub fn step_in_full(health: &Health) -> String {
     let turns = match health.turns_per_step {
         _ if !health.is_a_rotation => format!("turns the body {NOT_AVAILABLE}: {NO_ROTATION}"),
         turns if turns.is_finite() => format!("turns the body {} times", fixed(turns, 4)),
-        _ => format!("turns the body {NOT_AVAILABLE}: further than numbers reach"),
+        _ => format!("turns the body {NOT_AVAILABLE}: beyond the range of numbers"),
     };
     match health.nutation {
         Some(Nutation { multiplier, .. }) => {
@@ -158,10 +158,11 @@ impl Health {
     /// fix it. If the run continues beyond the time that can be predicted, one more sentence says so.
     pub fn sentence(&self, advice: Option<&Advice>) -> String {
         let Some(most) = self.most_distance_m else {
-            return "Not held against the exact motion, which would take too long or leaves the range of numbers.".to_owned();
+            return "Not compared with the exact motion, which would take too long or leaves the range of numbers.".to_owned();
         };
         if self.arm_m == 0.0 {
-            return "Nothing can be said: the traced point is the pivot, which stands still in every run.".to_owned();
+            return "Not judged: the traced point is the pivot, which does not move in any run."
+                .to_owned();
         }
         let is_exact = self.scheme.order.is_none() && most == 0.0;
         let far = format!(
@@ -176,33 +177,33 @@ impl Health {
         let limit = limits
             .until_s
             .map_or(String::new(), |_| format!(" The motion is {limits}."));
-        let mend = advice.map_or(String::new(), |advice| how_to_mend(self, advice));
+        let fix = advice.map_or(String::new(), |advice| fix_words(self, advice));
         if self.point_holds() == Some(false) {
             return format!(
-                "Do not believe this run: {}, and the traced point is up to {far} off the exact motion{mend}.{limit}",
+                "Do not believe this run: {}, and the traced point is up to {far} from the exact motion{fix}.{limit}",
                 cause(self)
             );
         }
         if let Some(swing) = self.swing.filter(|swing| !swing.is_right()) {
             let cause = cause_of_swing(self).map_or(String::new(), |cause| format!(": {cause}"));
             return format!(
-                "The traced point holds, and the nutation does not: {swing}{cause}{mend}.{limit}"
+                "The traced point is right, but not the nutation: {swing}{cause}{fix}.{limit}"
             );
         }
         if limits.until_s.is_some() {
             // Two exact motions differ only by rounding, which is of no interest.
             let within = match self.scheme.order {
-                Some(_) => format!(": the traced point has kept within {far} of the exact motion"),
+                Some(_) => format!(": the traced point stayed within {far} of the exact motion"),
                 None => String::new(),
             };
-            return format!("The motion is {limits}. Until then the numbers hold{within}.");
+            return format!("The motion is {limits}. Until then the numbers are reliable{within}.");
         }
-        let strobed = picture(self);
+        let warning = picture(self);
         if is_exact {
-            format!("The numbers hold: the run is the exact motion itself{strobed}.")
+            format!("The numbers are reliable: the run is the exact motion itself{warning}.")
         } else {
             format!(
-                "The numbers hold: the traced point has kept within {far} of the exact motion{strobed}."
+                "The numbers are reliable: the traced point stayed within {far} of the exact motion{warning}."
             )
         }
     }
@@ -212,7 +213,7 @@ impl Health {
 fn picture(health: &Health) -> String {
     match health.picture {
         WheelPicture::Right => String::new(),
-        picture => format!("; only a picture of the turning body would mislead: {picture}"),
+        picture => format!("; only a picture of the turning body is misleading: {picture}"),
     }
 }
 
@@ -230,15 +231,15 @@ fn cause_of_swing(health: &Health) -> Option<String> {
     } else {
         let turns = health.turns_per_step;
         let is_far = TAU * turns >= TOO_FAR_RAD;
-        is_far.then(|| format!("the body turns {} times a step", short(turns)))
+        is_far.then(|| format!("the body turns {} times per step", short(turns)))
     }
 }
 
-/// Describes the change of a nutation: "damped by 0.1 % a step".
+/// Describes the change of a nutation: "damped by 0.1 % per step".
 fn changed(nutation: &Nutation) -> String {
     let change = nutation.multiplier - 1.0;
-    let verb = if change < 0.0 { "damped" } else { "fed" };
-    format!("{verb} by {} % a step", short(100.0 * change.abs()))
+    let verb = if change < 0.0 { "damped" } else { "amplified" };
+    format!("{verb} by {} % per step", short(100.0 * change.abs()))
 }
 
 fn cause(health: &Health) -> String {
@@ -246,28 +247,30 @@ fn cause(health: &Health) -> String {
     let (turns, name) = (short(health.turns_per_step), health.scheme.name);
     match health.nutation {
         _ if !health.is_a_rotation => {
-            format!("the scheme {name} breaks down, its orientation is no rotation")
+            format!("the scheme {name} breaks down (its orientation is not a rotation)")
         }
-        Some(_) if psi >= PI => format!("the body turns {turns} times a step, strobing the swing"),
+        Some(_) if psi >= PI => {
+            format!("the body turns {turns} times per step, so the swing is under-sampled")
+        }
         Some(nutation) if health.nutation_is_the_cause() => {
             format!("the nutation is {}", changed(&nutation))
         }
-        _ if !psi.is_finite() => "the body turns further in a step than numbers reach".to_owned(),
+        _ if !psi.is_finite() => "the turn per step is beyond the range of numbers".to_owned(),
         _ if psi >= TOO_FAR_RAD => {
-            format!("at {turns} turns a step the scheme {name} cannot follow")
+            format!("at {turns} turns per step, the scheme {name} cannot follow the motion")
         }
         _ if health.scheme.order.is_none() => {
-            "what another scheme did before the edit is carried on exactly".to_owned()
+            "the error of another scheme before the edit remains".to_owned()
         }
         _ => format!("the errors of the scheme {name} have added up"),
     }
 }
 
-fn how_to_mend(health: &Health, advice: &Advice) -> String {
+fn fix_words(health: &Health, advice: &Advice) -> String {
     match advice {
         Advice::Holds => String::new(),
-        Advice::Nothing => "; nothing that was tried mends it".to_owned(),
-        Advice::BoundToItsTimeStep => "; no other scheme mends it".to_owned(),
-        _ => remedy(health, advice).map_or(String::new(), |it| format!("; {it} mends it")),
+        Advice::Nothing => "; no fix was found".to_owned(),
+        Advice::BoundToItsTimeStep => "; no other scheme corrects it".to_owned(),
+        _ => remedy(health, advice).map_or(String::new(), |it| format!("; {it} corrects it")),
     }
 }

@@ -79,7 +79,7 @@ impl fmt::Display for FrictionEffect {
             let seconds = short(seconds);
             write!(
                 f,
-                "; on the swing: a nutation falls to 1/e in {seconds} s, and what precesses sinks"
+                "; on the swing: a nutation falls to 1/e in {seconds} s, and a precessing axle sinks"
             )?;
         }
         Ok(())

@@ -288,13 +288,13 @@ impl SwingComparison {
         [a, b, c, d].map(|tilt| fixed(tilt, digits.max(0.0) as usize))
     }
 
-    /// Describes the error in few words: "tilt 29.690..30.000, truly 30.000..30.074".
+    /// Describes the error in few words: "tilt 29.690..30.000, exact 30.000..30.074".
     pub fn in_short(&self) -> String {
         if !self.tilts_differ {
-            return format!("swings add up to {} times", short(self.way));
+            return format!("total swing {} times the exact one", short(self.way));
         }
         let [a, b, c, d] = self.tilts();
-        format!("tilt {a}..{b}, truly {c}..{d}")
+        format!("tilt {a}..{b}, exact {c}..{d}")
     }
 }
 
@@ -315,7 +315,7 @@ impl fmt::Display for SwingComparison {
             );
             return write!(
                 f,
-                "the swings of the tilt add up to {way} times what they should, too {are}"
+                "the swings of the tilt add up to {way} times the exact ones, too {are}"
             );
         }
         let [a, b, c, d] = self.tilts();

@@ -219,7 +219,7 @@ impl Theory {
     pub fn of_mean_moment(&self) -> Option<String> {
         let percent = significant(100.0 * self.asymmetry, 2);
         (self.asymmetry > 0.0)
-            .then(|| format!("{percent} %; theory is that of the mean moment across"))
+            .then(|| format!("{percent} %; theory uses the mean moment across the axle"))
     }
 
     /// Returns the time of one turn of the mean precession, s. `None` if there is no precession or its rate is 0.

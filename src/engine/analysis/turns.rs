@@ -67,8 +67,8 @@ impl WithoutNutation {
         match self {
             Self::Steady => "",
             Self::TooFew => "too few were seen",
-            Self::Uneven => "its swings are too uneven to be counted",
-            Self::BeatUnseen => "they change over more time than this run",
+            Self::Uneven => "its swings are too uneven to count",
+            Self::BeatUnseen => "they vary over a longer time than this run",
             Self::RowsTooFarApart => "the steps are too far apart to see each",
         }
     }

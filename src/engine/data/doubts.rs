@@ -67,7 +67,7 @@ fn point_beyond_arm(series: &TimeSeries, arm_m: f64) -> Option<String> {
         }
     };
     Some(format!(
-        "{}: the point was measured up to {} m from the pivot, and it is {} m from it: {cure}",
+        "{}: the point was measured up to {} m from the pivot, but its distance is {} m: {cure}",
         names.join(", "),
         significant(farthest_m, 3),
         significant(arm_m, 3)

@@ -161,7 +161,7 @@ pub struct MeasuredPoint {
     pub sigma: Option<f64>,
 }
 
-const IS_RUN_TABLE: &str = "is a table of runs: each of its rows is a run of its own, so it cannot stand beside a single one. gyrolab fit holds such a table against a scenario; what stands beside a run has a column t_s";
+const IS_RUN_TABLE: &str = "is a table of runs, with one run per row, and cannot be shown next to a single run: use gyrolab fit, or a file with a column t_s";
 
 impl MeasuredData {
     /// Returns the data as a time series of one run.
@@ -178,14 +178,14 @@ impl MeasuredData {
     /// Describes the columns and rows that are not read, and how columns with names of other programs are read.
     pub fn notes(&self) -> Vec<String> {
         let names = listed(self.left_out.iter().map(String::as_str));
-        let columns = format!("columns left out, which gyrolab does not know: {names}");
+        let columns = format!("unknown columns ignored: {names}");
         let [before, outside] = [
             (self.rows_before, "before t = 0"),
             (self.rows_outside, "outside --from and --to"),
         ]
         .map(|(count, place)| {
             let rows = counted(count as u64, "row");
-            (count > 0).then(|| format!("{rows} {place} left out"))
+            (count > 0).then(|| format!("{rows} {place} ignored"))
         });
         let notes = [
             self.read_as.clone(),

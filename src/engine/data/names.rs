@@ -90,7 +90,7 @@ pub(super) fn named(cells: &Csv) -> Result<Columns, Vec<Problem>> {
         match uncertainty_of(name) {
             Some(stem) if stem == TIME_COLUMN && !is_mapped => {
                 let rule = format!(
-                    "is not read: make what was measured more uncertain, by its change in that time ({TIME_COLUMN} has no uncertainty)"
+                    "is not read, because {TIME_COLUMN} has no uncertainty: add the change of the measured values in that time to their uncertainties"
                 );
                 problems.push(Problem::at(own.shown(), rule));
             }
@@ -155,12 +155,12 @@ fn of_series(name: &str) -> Result<ColumnRole, String> {
     }
     if name.contains('.') && keys::find(name).is_ok() {
         return Err(format!(
-            "is a key of the scenario, and a file with the time {TIME_COLUMN} has what was measured on one run: set the key in the scenario, or by --set"
+            "is a key of the scenario, but a file with the time {TIME_COLUMN} belongs to a single run: set the key in the scenario or with --set"
         ));
     }
     if readouts::find(name).is_some_and(|readout| !readout.is_text && name.contains('_')) {
         return Err(format!(
-            "is a number of a whole run, not of one time: a table of such numbers has no column {TIME_COLUMN}, and a run in every row"
+            "is a number of a whole run, not of one time: put it into a table without {TIME_COLUMN}, with one run per row"
         ));
     }
     Ok(ColumnRole::Foreign)
@@ -170,9 +170,9 @@ fn of_table(name: &str) -> Result<ColumnRole, String> {
     if let Some(readout) = readouts::find(name) {
         let rule = match readout.source {
             _ if COUNTS.contains(&name) || name == "steps" => return Ok(ColumnRole::Count),
-            _ if readout.is_text => "is a text of the run, and cannot be measured",
-            ReadoutSource::Clock => "is told by the clock, and says nothing of the motion",
-            ReadoutSource::Scenario => "follows from the scenario alone: nothing is measured by it",
+            _ if readout.is_text => "is a text, and cannot be measured",
+            ReadoutSource::Clock => "comes from the clock, and is not part of the motion",
+            ReadoutSource::Scenario => "follows from the scenario alone, and cannot be measured",
             _ => return Ok(ColumnRole::Readout(readout)),
         };
         return Err(rule.to_owned());
@@ -181,7 +181,7 @@ fn of_table(name: &str) -> Result<ColumnRole, String> {
         return Ok(ColumnRole::Foreign);
     };
     if ["expected", "edit", "view"].contains(&first) {
-        return Err("is a key that no number of a run depends on".to_owned());
+        return Err("is a key that does not affect any number of a run".to_owned());
     }
     if !["body", "start", "motion", "push", "friction"].contains(&first) {
         return Ok(ColumnRole::Foreign);
@@ -199,7 +199,7 @@ fn kind_is_whole(columns: &[NamedColumn], is_series: bool) -> Option<Problem> {
     let has = |is: fn(&ColumnRole) -> bool| columns.iter().any(|column| is(&column.is));
     if is_series {
         let rule = format!(
-            "has no column that a run has too: beside {TIME_COLUMN} one is needed, such as tilt_deg, azimuth_deg, x_m or spin_rpm"
+            "has only the time {TIME_COLUMN}: add a column that a run has too, such as tilt_deg, azimuth_deg, x_m or spin_rpm"
         );
         return (!has(|is| matches!(is, ColumnRole::Quantity(_)))).then(|| Problem::at("", rule));
     }
@@ -210,10 +210,10 @@ fn kind_is_whole(columns: &[NamedColumn], is_series: bool) -> Option<Problem> {
         matches!(column.is, ColumnRole::Readout(_)) && RunQuantity::find(&column.name).is_none()
     }) => return None,
         false if has_key => {
-            "has no column that was measured: beside the keys of the scenario a table of runs needs a readout (gyrolab readouts lists them)".to_owned()
+            "has no measured column: besides keys of the scenario, a table of runs needs a readout (gyrolab readouts lists them)".to_owned()
         }
         _ => format!(
-            "has neither a column known as the time {TIME_COLUMN} (a time series), nor one named by a key of the scenario, such as start.spin_rpm, or by a number of a whole run (a table of runs)"
+            "is neither a time series, which needs the time {TIME_COLUMN}, nor a table of runs, which needs a key of the scenario, such as start.spin_rpm, or a number of a whole run"
         ),
     };
     Some(Problem::at("", rule))

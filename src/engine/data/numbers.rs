@@ -82,7 +82,7 @@ impl<'a> CellParser<'a> {
             }
             if let Some((above, earlier)) = before.filter(|(_, earlier)| time_s < *earlier) {
                 let rule = format!(
-                    "is before the time {} in line {above}: sort the rows by time, and put another run's into a file of their own",
+                    "is before the time {} in line {above}: sort the rows by time, and put another run into its own file",
                     shortest(earlier)
                 );
                 self.refuse(*line, &column.name, text, rule);
@@ -153,7 +153,7 @@ impl<'a> CellParser<'a> {
         if sigma > 0.0 {
             return Some(sigma);
         }
-        let rule = "must be greater than zero: where there is no uncertainty the place is empty";
+        let rule = "must be greater than zero: leave the cell empty if there is no uncertainty";
         self.refuse(line, &name, &texts[place], rule);
         None
     }
@@ -172,12 +172,12 @@ impl<'a> CellParser<'a> {
         };
         let rule = match written.parse::<f64>() {
             Ok(number) if number.is_finite() => Ok(number),
-            Ok(_) => Err("must be a finite number: a value that is missing is an empty place"),
-            Err(_) if has_comma => Err(
-                "must be a number with one decimal sign, a point (1.5), and nothing between its thousands",
-            ),
+            Ok(_) => Err("must be a finite number: leave the cell empty if the value is missing"),
+            Err(_) if has_comma => {
+                Err("must be a number with a decimal point (1.5) and no thousands separator")
+            }
             Err(_) => {
-                Err("must be a number, without its unit; a value that is missing is an empty place")
+                Err("must be a number without a unit: leave the cell empty if the value is missing")
             }
         };
         let read = rule.map_err(|rule| self.refuse(line, name, text, rule));
@@ -185,7 +185,7 @@ impl<'a> CellParser<'a> {
         self.uses_commas |= has_comma;
         self.uses_points |= text.contains('.');
         if self.uses_commas && self.uses_points {
-            let mixed = "has another decimal sign than the numbers before it: write all of them with a point, or all with a comma";
+            let mixed = "has a different decimal sign from the numbers before it: use only points, or only commas";
             self.refuse(line, name, text, mixed);
             // Report it once. Otherwise each later number would be an error for one of the two.
             (self.uses_commas, self.uses_points) = (false, false);

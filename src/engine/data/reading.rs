@@ -48,7 +48,7 @@ pub fn text(name: &str) -> Result<Cow<'static, str>, Problems> {
     if !name.contains('/') && !name.contains('.') && !path.exists() {
         let near = nearest(name, SHIPPED.iter().map(|data| data.name));
         let rule = format!(
-            "no measured data of that name: {near} (a file's name holds a / or ends in .csv)"
+            "no measured data of that name: {near} (a file's name contains a / or ends in .csv)"
         );
         return Err(Problems::one(name, Problem::at("", rule)));
     }
@@ -60,7 +60,7 @@ pub fn text(name: &str) -> Result<Cow<'static, str>, Problems> {
 fn scenario_instead(origin: &str, text: &str) -> Option<Problems> {
     const OF_SCENARIOS: [&str; 3] = ["body", "start", "motion"];
     let document = Document::parse_header(origin, text).ok()?;
-    let rule = "is a scenario, and no measured data: it stands where SCENARIO does (gyrolab SCENARIO --measured FILE.csv, gyrolab fit FILE.csv --in SCENARIO); measured data are a CSV, which gyrolab man fit describes";
+    let rule = "is a scenario, not measured data: give it as SCENARIO (gyrolab SCENARIO --measured FILE.csv, gyrolab fit FILE.csv --in SCENARIO); measured data are a CSV, see gyrolab man fit";
     let is_scenario = OF_SCENARIOS
         .into_iter()
         .any(|name| document.table().get(name).is_some_and(Value::is_table));
@@ -106,12 +106,12 @@ pub fn read_with(
         found.add(|| {
             Problem::at(
                 "",
-                "holds no measured value: every place of its measured columns is empty",
+                "has no measured value: all cells of its measured columns are empty",
             )
         });
     }
     if found.list.is_empty() && !measured.leave_out_rows_before_0() {
-        let rule = "has no value measured at t = 0 or later: a run begins at t = 0, count the time from there";
+        let rule = "has no value measured at t = 0 or later: a run begins at t = 0, so count the time from there";
         found.add(|| Problem::at("", rule));
     }
     if found.list.is_empty() {

@@ -76,7 +76,7 @@ pub(super) fn set_sigmas(
             let mut problem = Problem::at(
                 "",
                 format!(
-                    "is no measured column: there is {}",
+                    "is not a measured column: there is {}",
                     listed(known.iter().map(String::as_str))
                 ),
             );

@@ -168,7 +168,7 @@ fn several(cells: &Csv, name: &str, places: &[usize]) -> Problem {
         format!(", of the tracks {}", tracks.join(" and "))
     };
     let rule = format!(
-        "names columns {numbers}{of_tracks}, which would both be {name}: leave one of them out, or choose one by its number"
+        "names columns {numbers}{of_tracks}, which would both be {name}: leave one out, or choose one by its number"
     );
     Problem::at(cells.own[places[0]].shown(), rule)
 }

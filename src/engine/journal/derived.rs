@@ -163,7 +163,7 @@ impl DerivedValue {
     }
 }
 
-const NO_PUSH: &str = "no push of this run can be set here: P sets the next push, p gives it";
+const NO_PUSH: &str = "this run has no push to set here: P sets the next push, p gives it";
 
 fn not_negative(number: f64) -> Result<(), String> {
     if number >= 0.0 {

@@ -36,7 +36,7 @@ impl Expression {
         if expression.is_condition() {
             return Ok(expression);
         }
-        let rule = "must compare, such as t_s >= 60".to_owned();
+        let rule = "must be a comparison, such as t_s >= 60".to_owned();
         Err(Fault { column: 1, rule })
     }
 
@@ -209,14 +209,14 @@ mod tests {
             ("t_s >= 60 x", 11, "cannot follow"),
             ("t_s = 60", 5, "=="),
             ("(t_s > 1", 9, "column 1 is not closed"),
-            ("t_s + 1", 1, "must compare"),
+            ("t_s + 1", 1, "must be a comparison"),
             ("1 < t_s < 3", 9, "and"),
             ("t_s and t_s > 1", 1, "joins comparisons"),
             ("t_s > 1 and 3", 13, "joins comparisons"),
             ("abs t_s > 1", 5, "abs(...)"),
             ("* 3 > 1", 1, "before it"),
-            ("t_s > 1.2.3", 7, "no number"),
-            ("t_s > 1e999", 7, "no number"),
+            ("t_s > 1.2.3", 7, "not a number"),
+            ("t_s > 1e999", 7, "not a number"),
             ("t_s > ü", 7, "no meaning"),
         ] {
             let (at, rule) = fault(text);

@@ -54,7 +54,7 @@ impl PushField {
                 "down, up, out or in (from the vertical), around or back, +x, -x, +y, -y, or three numbers"
             }
             Self::Length => {
-                "how long, in s, or steps: 20 steps; 0.3 from 2: for 0.3 s, from the time 2 s of the run on"
+                "duration in s, or in steps (20 steps); 0.3 from 2 lasts 0.3 s and begins at 2 s"
             }
         }
     }
@@ -201,7 +201,9 @@ impl NextPush {
     pub fn checked(self) -> Result<Self, String> {
         let is_valid = |number: f64| number > 0.0 && number.is_finite();
         if !is_valid(self.size_N) {
-            return Err("force must be greater than zero: the direction says where to".to_owned());
+            return Err(
+                "force must be greater than zero: reverse it with the direction".to_owned(),
+            );
         }
         if self.from_s != 0.0 && !is_valid(self.from_s) {
             return Err("must begin at a time of the run, 0 s or later, or now".to_owned());
@@ -224,7 +226,7 @@ impl NextPush {
         if 0.0 < from_s && from_s < now_s {
             let [from, now] = [from_s, now_s].map(shortest);
             return Err(format!(
-                "it begins at {from} s, and it is {now} s: r, or g and {from} s, goes there first"
+                "the push begins at {from} s, but the run is at {now} s: first go there with r, or with g and {from} s"
             ));
         }
         let force = self.size_N * self.toward.direction(&at)?;
@@ -328,7 +330,10 @@ impl Toward {
             Self::Up => Vector3::z(),
             Self::Along(direction) => Vector3::from(direction),
             _ if out.norm() <= ON_VERTICAL * at.norm() => {
-                return Err("the point stands on the vertical, from where all ways lead out: push along x or y".to_owned());
+                return Err(
+                    "the point is on the vertical, where out has no direction: push along x or y"
+                        .to_owned(),
+                );
             }
             Self::Out => out,
             Self::In => -out,

@@ -161,10 +161,10 @@ impl RestartPoint<'_> {
     fn first_step(&self, first: u64, accumulates: bool) -> Result<u64, &'static str> {
         match first.checked_sub(self.step).filter(|&first| first > 0) {
             _ if accumulates && !self.counts_steps() => Err(
-                "accumulates by the steps of another time step: it cannot be moved to a new start; take the push out first",
+                "accumulates in steps of a different length, and cannot be moved to a new start: remove the push first",
             ),
             None => Err(
-                "accumulates and has begun: it cannot be moved to a new start; go back to before it, or take the push out first",
+                "accumulates and has begun, so it cannot be moved to a new start: go back to a time before it, or remove the push first",
             ),
             Some(first) => Ok(first),
         }
@@ -216,7 +216,7 @@ pub fn rerun_with(scenario: &Scenario, set: &Table, end_s: f64) -> Result<Scenar
         kept.retain(|key, _| !set.keys().any(|new| is_inside(key, new)));
         let counted = kept.iter().find(|(key, value)| counts(key, value));
         if let Some((key, _)) = counted.filter(|_| is_other) {
-            let rule = "is counted in steps, which are others at another time step";
+            let rule = "is counted in steps, whose length changes with the time step";
             return Err(refused(Problem::at(key.clone(), rule)));
         }
         if !kept.is_empty() {

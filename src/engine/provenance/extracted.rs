@@ -6,8 +6,9 @@ use std::ops::Range;
 pub const LONGEST_TEXT: usize = 64 << 20;
 
 pub const NO_RUN_TEXT: &str =
-    "holds no run: another program drew or rewrote it, or its metadata was stripped";
-pub const TWO: &str = "holds the metadata of two figures: nothing says which one is its own";
+    "contains no run: another program drew or rewrote it, or its metadata was stripped";
+pub const TWO: &str =
+    "contains the metadata of two figures, and it is unknown which one belongs to it";
 pub const BROKEN: &str = "its metadata is damaged";
 
 /// An embedded text, and the bytes of the file in which it is embedded. The other bytes are the picture.

@@ -114,9 +114,7 @@ impl Origin {
         let rest = text.strip_prefix(FIGURE_MARK).ok_or(BROKEN)?;
         let (sum, rest) = rest.split_at_checked(64).ok_or(BROKEN)?;
         if sum != sha256(rest.as_bytes()) {
-            return Err(
-                "its run was changed after it was drawn: the SHA-256 is another".to_owned(),
-            );
+            return Err("its run was changed after it was drawn: the SHA-256 differs".to_owned());
         }
         let (first_line, head_and_files) = rest.split_once('\n').ok_or(BROKEN)?;
         let (head, mut files) = first_line
@@ -228,9 +226,9 @@ impl FigureFile {
         // Another version may have compressed the text differently.
         let is_own = origin.gyrolab == env!("CARGO_PKG_VERSION");
         let changed = if origin.picture_sha256 != sha256(&file) {
-            Some("its picture was changed after it was drawn: the SHA-256 is another")
+            Some("its picture was changed after it was drawn: the SHA-256 differs")
         } else if is_own && !is_as_written {
-            Some("its file was changed after it was drawn, though not its picture and not its run")
+            Some("its file was changed after it was drawn, but not its picture or its run")
         } else {
             None
         };
@@ -261,7 +259,7 @@ impl FigureFile {
         let read = reader.take(LONGEST_FIGURE + 1).read_to_end(&mut file);
         read.map_err(|error| unread(&error))?;
         if file.len() as u64 > LONGEST_FIGURE {
-            return Err("is longer than 128 MiB, the most that is read of a figure".to_owned());
+            return Err("is larger than 128 MiB, the limit for a figure".to_owned());
         }
         Self::parse(file).map(Some)
     }

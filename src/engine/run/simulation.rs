@@ -36,7 +36,7 @@ pub struct Simulation {
 /// Error: the numbers of a run are no longer finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "{} at step {step}: the run ends at step {}; a shorter time step or another scheme may mend it",
+    "{} at step {step}: the run ends at step {}; try a shorter time step or another scheme",
     self.fact(),
     step - 1
 )]

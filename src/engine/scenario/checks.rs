@@ -152,9 +152,8 @@ fn read_edits(
     let (mut edits, mut last) = (Vec::with_capacity(file.edit.len()), 0);
     for (index, entry) in file.edit.iter().enumerate() {
         if entry.step < last {
-            let rule = format!(
-                "comes before the edit above it (step {last}): edits stand in the order of their steps"
-            );
+            let rule =
+                format!("comes before the edit above it (step {last}): sort the edits by step");
             let step = Value::Integer(i64::try_from(entry.step).unwrap_or(i64::MAX));
             let key = format!("edit.{index}.step");
             return Err(Problem::with_value(key, &step, rule).into());

@@ -13,7 +13,7 @@ use std::io::Read;
 use std::path::Path;
 
 const LONGEST_CSV: u64 = 32 << 20;
-const CSV_TOO_LONG: &str = "is longer than 32 MiB, the most that is read: leave rows out";
+const CSV_TOO_LONG: &str = "is larger than 32 MiB, the limit: remove rows";
 
 /// Maximum number of columns in a file. More would take minutes.
 const MOST_CSV_COLUMNS: usize = 10_000;
@@ -96,7 +96,7 @@ pub fn text(path: &Path) -> Result<String, Problem> {
 pub fn text_from(file: impl Read) -> Result<String, Problem> {
     let bytes = bytes_of(file, LONGEST_CSV, CSV_TOO_LONG)?;
     if bytes.starts_with(ZIP) {
-        let rule = "is a zip archive: unpack it and name the file in it (of phyphox \"Raw Data.csv\"); a spreadsheet is saved as CSV";
+        let rule = "is a zip archive: unpack it and name the file in it (for phyphox \"Raw Data.csv\"), or save the spreadsheet as CSV";
         return Err(Problem::at("", rule));
     }
     if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
@@ -226,7 +226,7 @@ impl Csv {
             let line = self.line_of_names + reader.position().line() - 2;
             if record.len() > MOST_CSV_COLUMNS {
                 return Err(one(format!(
-                    "has more than {MOST_CSV_COLUMNS} columns: leave columns out"
+                    "has more than {MOST_CSV_COLUMNS} columns: remove some"
                 )));
             }
             let mut ends = (1..=record.len()).rev();
@@ -243,7 +243,7 @@ impl Csv {
             }
             if self.rows.len() * self.names.len() > most {
                 return Err(one(format!(
-                    "has more than {most} values (rows times columns): leave rows or columns out"
+                    "has more than {most} values (rows times columns): remove rows or columns"
                 )));
             }
         }
@@ -273,13 +273,13 @@ impl Csv {
     fn ragged(&self, count: usize) -> Problem {
         let names = self.names.len();
         let advice = if self.separator == ',' && count > names {
-            "numbers have a decimal point (1.5, not 1,5); a file with decimal commas parts its columns by ;"
+            "write numbers with a decimal point (1.5, not 1,5), or separate columns by ; if you use decimal commas"
         } else {
-            "leave no column out; a value that is missing is an empty place between two separators"
+            "leave no column out; write a missing value as an empty cell between two separators"
         };
         Problem::at(
             "this row",
-            format!("number of cells: {count}, of columns: {names}; {advice}"),
+            format!("cells: {count}, columns: {names}; {advice}"),
         )
     }
 
@@ -314,7 +314,7 @@ impl Csv {
                 continue;
             }
             let Some((ours, factor)) = in_known_unit(name, &may_be) else {
-                let rule = "is no column that is read here".to_owned();
+                let rule = "is not a known column name".to_owned();
                 found.add(|| in_map(column, name, rule));
                 continue;
             };
@@ -323,8 +323,10 @@ impl Csv {
                 others.filter(|(at, (other, _))| *at != place && **other == ours)
             {
                 if own.is_mapped {
-                    let rule =
-                        format!("column {} is mapped to {ours} too: map one of them", at + 1);
+                    let rule = format!(
+                        "column {} is also mapped to {ours}: map only one of them",
+                        at + 1
+                    );
                     found.add(|| in_map(column, name, rule));
                 }
                 other.insert_str(0, "(the file's own) ");
@@ -356,7 +358,7 @@ impl Csv {
                 _ => {
                     let near = nearest(column, self.own.iter().map(|own| own.name.as_str()));
                     Err(format!(
-                        "is no column of the file, by name or by number: {near}"
+                        "is not a name or number of a column in the file: {near}"
                     ))
                 }
             },

@@ -212,7 +212,7 @@ impl Document {
 
     pub fn scenario(&self) -> Result<Scenario, Problems> {
         if self.is_sweep() {
-            let rule = "is a sweep of many runs, not a scenario: gyrolab sweep runs it";
+            let rule = "is a sweep of many runs, not a scenario: run it with gyrolab sweep";
             return Err(Problems::one(self.origin.as_str(), Problem::at("", rule)));
         }
         self.check()?;
@@ -331,9 +331,9 @@ fn set_place(argument: &str) -> String {
 fn no_preset(name: &str) -> Problems {
     let near = nearest(name, presets::PRESETS.iter().map(|preset| preset.name));
     let hint = if Path::new(name).exists() {
-        format!("for the file of that name write ./{}", printable(name))
+        format!("to open the file of that name, write ./{}", printable(name))
     } else {
-        "a file's name holds a / or ends in .toml or .csv".to_owned()
+        "a file's name contains a / or ends in .toml or .csv".to_owned()
     };
     let rule = format!("no preset of that name: {near} ({hint})");
     Problems::one(name, Problem::at("", rule))
@@ -366,7 +366,9 @@ fn repeated_table(text: &str, offset: usize) -> Option<String> {
     let line = text.lines().nth(line_at(text, offset) - 1)?.trim();
     let name = line.strip_prefix('[')?.strip_suffix(']')?.trim();
     REPEATED.contains(&name).then(|| {
-        format!("[{name}] stands here again: write [[{name}]], in two brackets, for each of them")
+        format!(
+            "[{name}] occurs a second time: write [[{name}]], in double brackets, for each of them"
+        )
     })
 }
 
@@ -416,5 +418,5 @@ fn why_no_toml(value: &str, error: &toml::de::Error) -> Option<String> {
         rest => format!("\"{}\"", brief(rest, 24)),
     };
     let message = brief(error.message(), 120);
-    Some(format!("is no TOML: at {place}: {message}"))
+    Some(format!("is not valid TOML at {place}: {message}"))
 }

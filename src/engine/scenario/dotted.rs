@@ -13,7 +13,7 @@ const DEEPEST_KEY: usize = 5;
 pub fn set_key(table: &mut Table, key: &str, value: Value) -> Result<(), Problem> {
     let names: Vec<&str> = key.split('.').collect();
     if names.len() > DEEPEST_KEY {
-        let rule = format!("leads deeper than any key: at most {DEEPEST_KEY} names and numbers");
+        let rule = format!("is too deep: a key has at most {DEEPEST_KEY} names and numbers");
         return Err(Problem::at(key, rule));
     }
     if names.contains(&"") {
@@ -29,7 +29,7 @@ pub fn set_key(table: &mut Table, key: &str, value: Value) -> Result<(), Problem
             Value::Table(outer) => outer.entry(*name).or_insert(empty(&names[index + 1..])),
             Value::Array(array) => place(array, name, &path, empty(&names[index + 1..]))?,
             other => {
-                let rule = format!("holds no {name}");
+                let rule = format!("has no {name}");
                 return Err(Problem::with_value(above, other, rule));
             }
         };
@@ -55,7 +55,7 @@ fn place<'a>(
     empty: Value,
 ) -> Result<&'a mut Value, Problem> {
     let Ok(index) = name.parse::<usize>() else {
-        let rule = "must lead to a place in an array: a number from 0";
+        let rule = "must be a position in an array: a number from 0";
         return Err(Problem::at(path, rule));
     };
     let length = array.len();

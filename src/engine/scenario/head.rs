@@ -78,7 +78,7 @@ impl Head {
     /// Returns the run file of a CSV: the lines above the line of names, without their `# `.
     pub fn run_file(&self) -> Result<String, Problem> {
         if self.comments().trim_ascii().is_empty() {
-            let rule = "is a CSV with no run file in its header, the \"# \" lines that gyrolab writes, and other programs drop: name the file as gyrolab wrote it";
+            let rule = "is a CSV without a run file in its header (\"# \" lines, which other programs drop): use the file as gyrolab wrote it";
             return Err(Problem::at("", rule));
         }
         self.header()
@@ -152,7 +152,7 @@ fn run_of_figure(figure: &FigureFile) -> Result<String, Problem> {
     match figure.origin.files.first() {
         Some(file) if file.sha256.is_some() => {
             let rule = format!(
-                "shows a table that did not travel with it: name {}",
+                "shows a table that is not embedded in it: name {}",
                 file.name
             );
             Err(Problem::at("", rule))

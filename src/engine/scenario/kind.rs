@@ -118,7 +118,7 @@ fn not(wanted: &str, value: &Value) -> String {
     let found = match value {
         Value::String(_) => "text",
         Value::Float(number) if !number.is_finite() => {
-            return format!("must be {wanted}, and {number} is no finite number");
+            return format!("must be {wanted}, and {number} is not finite");
         }
         Value::Integer(_) | Value::Float(_) => "a number",
         Value::Boolean(_) => "true or false",
@@ -172,7 +172,7 @@ fn check_text(text: &str, most: usize, allowed: &str) -> Result<(), String> {
     steering.next().map_or(Ok(()), |c| {
         let code = c as u32;
         Err(format!(
-            "must hold no control, direction or invisible characters (here U+{code:04X})"
+            "must not contain control, direction or invisible characters (here U+{code:04X})"
         ))
     })
 }

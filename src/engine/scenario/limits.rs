@@ -7,7 +7,8 @@ use toml::{Table, Value};
 /// Maximum length of a scenario or run file, bytes.
 pub const LONGEST_SCENARIO_FILE: u64 = 4_000_000;
 
-pub const SCENARIO_TOO_LONG: &str = "is longer than 4 MB (4000000 bytes), the most that a scenario or run file may have: leave some of it out";
+pub const SCENARIO_TOO_LONG: &str =
+    "is larger than 4 MB (4000000 bytes), the limit for a scenario or run file: shorten it";
 
 /// Maximum length of a CSV's header, bytes. Its run file is longer than the scenario, because it writes every number in
 /// full and begins each line with "# ".
@@ -50,7 +51,7 @@ pub fn check_toml_size(text: &str, times: usize) -> Result<(), Problem> {
         return Ok(());
     }
     let rule = format!(
-        "asks for more than {most_tables} tables (a dot in a key is one, too) or {most_values} values: leave some out"
+        "has more than {most_tables} tables (a dot in a key counts as one) or {most_values} values: remove some"
     );
     Err(Problem::at("", rule))
 }
@@ -85,13 +86,13 @@ pub(super) fn too_many(edits: usize, bodies: usize, pushes: usize) -> Option<Pro
     ] {
         if count > most {
             let rule =
-                format!("{count} {name} are too many: at most {most} are allowed; leave some out");
+                format!("{count} {name} are too many: at most {most} are allowed; remove some");
             return Some(Problem::at(key, rule));
         }
     }
     let others = bodies.saturating_add(pushes);
     let rule = format!(
-        "{edits} edits of {others} points, parts and pushes are too many: {edits} times {others} may be at most {MOST_PRODUCT}; leave some out"
+        "{edits} edits of {others} points, parts and pushes are too many: {edits} times {others} may be at most {MOST_PRODUCT}; remove some"
     );
     (edits.saturating_mul(others) > MOST_PRODUCT).then(|| Problem::at("edit", rule))
 }

@@ -127,7 +127,7 @@ impl NamedBody {
     pub(super) fn no_point(&self, key: &str, name: &str) -> Problem {
         let near = nearest(name, self.names().into_iter());
         let value = toml::Value::String(name.to_owned());
-        Problem::with_value(key, &value, format!("is no point of this body: {near}"))
+        Problem::with_value(key, &value, format!("is not a point of this body: {near}"))
     }
 }
 

@@ -71,7 +71,7 @@ pub fn typed(text: &str, unit: &str) -> Result<f64, String> {
         return Ok(number);
     }
     if rest.starts_with(',') {
-        return Err("must be a number with a point: 0.5, not 0,5".to_owned());
+        return Err("must have a decimal point: 0.5, not 0,5".to_owned());
     }
     match unit {
         "" => Err(wrong()),

@@ -49,7 +49,7 @@ pub(super) fn read_body(file: &BodyFile) -> Result<NamedBody, Problems> {
     let mechanics = physics::Body::new(points).map_err(|error| {
         let few = match (&error, &file.rim) {
             (BodyError::Singular { .. }, Some(rim)) if rim.points == 1 => {
-                "; the rim has 1 point, which leaves all mass on a line: 2 points or more"
+                "; a rim with 1 point leaves all mass on a line: use 2 points or more"
             }
             _ => "",
         };
@@ -88,8 +88,8 @@ impl PointNames {
                 let value = Value::String(name.to_owned());
                 let key = format!("body.{kind}.{index}.name");
                 let rule = match kind {
-                    "point" => "is the name of another point too: each needs its own",
-                    _ => "is the name of a point, or of another part, too: each needs its own",
+                    "point" => "is also the name of another point: give each its own name",
+                    _ => "is also the name of a point or of another part: give each its own name",
                 };
                 Problem::with_value(key, &value, rule)
             });
@@ -171,10 +171,10 @@ fn read_window(file: &PushFile, key: &str) -> Result<Window, Problem> {
         (None, None, _, Some(_)) => {
             "accumulates step by step: give first_step and steps instead of seconds"
         }
-        (None, None, Some(_), None) => "does not say for how long: add for_s",
-        (Some(_), None, None, None) => "does not say for how long: add steps",
-        (None, None, None, None) => "does not say for how long: add steps, or for_s",
-        _ => "counts in steps and in seconds: keep first_step and steps, or from_s and for_s",
+        (None, None, Some(_), None) => "has no duration: add for_s",
+        (Some(_), None, None, None) => "has no duration: add steps",
+        (None, None, None, None) => "has no duration: add steps, or for_s",
+        _ => "has times in steps and in seconds: keep first_step and steps, or from_s and for_s",
     };
     Err(Problem::at(key, rule))
 }
@@ -208,7 +208,7 @@ pub(super) fn read_friction(
         return Ok(friction);
     };
     let rule = format!(
-        "is too large for this body, whose least moment is {least:e} kg m^2: at most {:e}",
+        "is too large for this body, whose smallest moment is {least:e} kg m^2: at most {:e}",
         MOST_RATE * least
     );
     let key = format!("friction.{name}");
@@ -225,7 +225,7 @@ pub(super) fn check_scheme(
     };
     let able = listed(scheme::true_to(*friction).map(|able| able.name));
     let value = Value::String(scheme.name.to_owned());
-    let rule = format!("cannot be true to this friction: it {why}; take one of {able}");
+    let rule = format!("does not support this friction: it {why}; use one of {able}");
     Err(Problem::with_value("motion.scheme", &value, rule))
 }
 
@@ -257,11 +257,11 @@ fn with_rotor(name: &str, body: &NamedBody, parts: &[PartFile]) -> Result<physic
     let whole = &body.mechanics;
     let Some(index) = parts.iter().position(|part| part.name == *name) else {
         let near = nearest(name, parts.iter().map(|part| part.name.as_str()));
-        return Err(format!("is no part of this body: {near}"));
+        return Err(format!("is not a part of this body: {near}"));
     };
     if SymmetricTop::from_body(whole).is_none() {
         let rule =
-            "needs a body that is symmetric about its axle, and this one is lopsided: leave it out";
+            "needs a body that is symmetric about its axle, but this one is lopsided: remove it";
         return Err(rule.to_owned());
     }
     let moment = moment_alone(&body.parts[index])?;
@@ -279,13 +279,13 @@ fn moment_alone(part: &PlacedSolid) -> Result<f64, &'static str> {
     let is_along = axis.x.abs().max(axis.y.abs()) <= AXLE_TOLERANCE;
     let is_round = (moments.x - moments.y).abs() <= AXLE_TOLERANCE * moments.amax();
     match (is_on_axle, is_along, is_round) {
-        (false, ..) => Err("must have its centre on the axle, x and y of at_m 0"),
+        (false, ..) => Err("must have its center on the axle: x and y of at_m must be 0"),
         (_, false, _) => Err("must have its axis along the axle, [0, 0, 1]"),
-        (.., false) => Err(
-            "must be symmetric about its axis: of any other the moments would change as it spins",
-        ),
+        (.., false) => {
+            Err("must be symmetric about its axis: otherwise its moments would change as it spins")
+        }
         _ if moments.z <= AXLE_TOLERANCE * moments.amax() => {
-            Err("has no moment about the axle: no spin of it gives a momentum")
+            Err("has no moment about the axle, so its spin gives no momentum")
         }
         _ => Ok(moments.z),
     }

@@ -55,7 +55,7 @@ fn hold_seconds(push: &mut PushFile, written_for_s: f64) -> Result<(), &'static 
         return Ok(());
     };
     if push.accumulates == Some(true) {
-        return Err("accumulates step by step: its force is another at another time step");
+        return Err("accumulates per step, so another time step would change its force");
     }
     let first = push.first_step.unwrap_or(1);
     push.from_s = Some((first - 1) as f64 * written_for_s);

@@ -110,7 +110,7 @@ pub(super) fn read_part(file: &PartFile) -> Result<PlacedSolid, Problems> {
     check_dimensions(form, file)?;
     let axis = Vector3::from(file.axis.unwrap_or([0.0, 0.0, 1.0]));
     if axis == Vector3::zeros() {
-        let rule = "must not be of length 0: it is a direction";
+        let rule = "must not have length 0: it is a direction";
         return Err(Problem::with_value("axis", &vector(&axis), rule).into());
     }
     let centre = Vector3::from(file.at_m);
@@ -147,7 +147,7 @@ fn moves_alike(file: &PartFile, nearer: f64) -> String {
     let [x, y, z] = file.at_m.map(|at| significant(factor * at, 12));
     let mass = significant(mass, 12);
     format!(
-        ". The motion depends on M d, not on M: mass_kg = {mass} with at_m = [{x}, {y}, {z}] moves alike"
+        ". The motion depends on M d, not on M: mass_kg = {mass} with at_m = [{x}, {y}, {z}] moves in the same way"
     )
 }
 
@@ -164,7 +164,7 @@ fn wrong_dimensions(form: &SolidShape, file: &PartFile) -> Vec<Problem> {
                 problems.push(Problem::at(name, rule));
             }
             Some(value) if !has_dimension(shape, name) => {
-                let rule = format!("does not go with shape {shape}, which has {all}: leave it out");
+                let rule = format!("does not belong to shape {shape}, which has {all}: remove it");
                 problems.push(Problem::with_value(name, value, rule));
             }
             _ => {}
@@ -197,7 +197,7 @@ fn check_dimensions(form: &SolidShape, file: &PartFile) -> Result<(), Problem> {
     ] {
         let numbers = Vector3::from(numbers.unwrap_or_default());
         if numbers.min() < 0.0 {
-            return refused(name, vector(&numbers), "must hold no negative number");
+            return refused(name, vector(&numbers), "must not contain a negative number");
         }
     }
     Ok(())

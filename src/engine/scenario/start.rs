@@ -149,10 +149,10 @@ fn is_told_once(file: &StartFile) -> Result<(), Problem> {
     if let Some(other) = told.find(|name| others.contains(name)) {
         let rule = if EULER.contains(&other) {
             format!(
-                "cannot be combined with {way}: remove it, or give psi_dot_rad_per_s in the place of {way}"
+                "cannot be combined with {way}: remove it, or give psi_dot_rad_per_s instead of {way}"
             )
         } else {
-            format!("is given beside {way}: keep one of the two")
+            format!("is given in addition to {way}: keep only one")
         };
         return Err(refused(other, written[other].clone(), rule));
     }
@@ -161,12 +161,12 @@ fn is_told_once(file: &StartFile) -> Result<(), Problem> {
         ("omega_frame", "omega_rad_per_s"),
     ] {
         if written.contains_key(frame) && way != own {
-            let rule = format!("goes with {own}, and {way} is given: leave it out");
+            let rule = format!("belongs to {own}, but {way} is given: remove it");
             return Err(Problem::at(format!("start.{frame}"), rule));
         }
     }
     if file.steady == Some(true) && !SPIN.contains(&way) {
-        let rule = format!("goes with a spin: give spin_rpm or spin_rad_per_s instead of {way}");
+        let rule = format!("needs a spin: give spin_rpm or spin_rad_per_s instead of {way}");
         return Err(refused("steady", true, rule));
     }
     Ok(())
@@ -181,7 +181,7 @@ fn steady(
     gravity: f64,
 ) -> Result<Vector3<f64>, String> {
     let top = SymmetricTop::from_body(body).ok_or(
-        "needs a body that is symmetric about its axle, and this one is lopsided: leave it out",
+        "needs a body that is symmetric about its axle, but this one is lopsided: remove it",
     )?;
     let up = orientation.row(2).transpose();
     let across = Vector3::new(up.x, up.y, 0.0);

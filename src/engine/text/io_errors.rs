@@ -6,10 +6,11 @@ use std::io::{Error, ErrorKind};
 pub fn unread(error: &Error) -> String {
     match error.kind() {
         ErrorKind::NotFound => {
-            "there is no such file: check the name, and the folder you are in".to_owned()
+            "there is no such file: check the name and the current folder".to_owned()
         }
         ErrorKind::PermissionDenied => {
-            "may not be read by you: change its permissions, or ask its owner".to_owned()
+            "cannot be read, because you lack permission: change its permissions, or ask its owner"
+                .to_owned()
         }
         _ => format!("cannot be read: {error}"),
     }

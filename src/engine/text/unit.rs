@@ -269,7 +269,7 @@ pub fn number_in(unit: &str, typed: &str) -> Result<f64, String> {
     }
     Err(match unit {
         "" => format!("must be a number alone, without {stated}"),
-        unit => format!("is asked for in {unit}, not in {stated}"),
+        unit => format!("must be in {unit}, not in {stated}"),
     })
 }
 

@@ -85,21 +85,21 @@ fn files_that_are_no_text_are_refused() {
     );
     assert_eq!(
         of("./nothing.csv"),
-        "./nothing.csv: there is no such file: check the name, and the folder you are in"
+        "./nothing.csv: there is no such file: check the name and the current folder"
     );
     assert_eq!(
         of("heidelberg-nutatoin"),
-        "heidelberg-nutatoin: no measured data of that name: did you mean heidelberg-nutation? (a file's name holds a / or ends in .csv)"
+        "heidelberg-nutatoin: no measured data of that name: did you mean heidelberg-nutation? (a file's name contains a / or ends in .csv)"
     );
     let file = fs::File::create(&path).unwrap();
     file.set_len(100 << 20).unwrap();
-    assert!(of(name).contains("is longer than 32 MiB"), "{}", of(name));
+    assert!(of(name).contains("is larger than 32 MiB"), "{}", of(name));
     fs::write(
         &path,
         "t_s,tilt_deg\n".to_owned() + &"0,1\n".repeat(500_001),
     )
     .unwrap();
-    let told = "has more than 1000000 values (rows times columns): leave rows or columns out";
+    let told = "has more than 1000000 values (rows times columns): remove rows or columns";
     assert!(of(name).ends_with(told), "{}", of(name));
 }
 

@@ -162,7 +162,7 @@ fn a_map_takes_units_and_leaves_columns_out() {
     ));
     assert_eq!((time_of_row_s, of_gyroscope[0].1), (0.5, 1.745329252));
     let twice = refusal("lab.csv", euler, "theta=tilt_rad,phi=tilt_deg");
-    assert!(twice.contains("is mapped to tilt_deg too"), "{twice}");
+    assert!(twice.contains("is also mapped to tilt_deg"), "{twice}");
     let wrong = refusal("lab.csv", euler, "theta=tilt_kg");
     assert!(wrong.contains("--map theta=tilt_kg"), "{wrong}");
 }
@@ -217,7 +217,7 @@ fn a_file_without_uncertainties_gets_them() {
     assert!(
         wrong
             .to_string()
-            .contains("--sigma y_m=1: is no measured column"),
+            .contains("--sigma y_m=1: is not a measured column"),
         "{wrong}"
     );
     for bad in ["x_m", "x_m=0", "x_m=-1", "x_m=nan", "x_m=a"] {
@@ -239,7 +239,7 @@ fn rows_before_the_start_are_left_out_and_counted() {
     assert!(measured.keep_between(0.01, 1.0));
     assert_eq!(measured.rows_outside, 1);
     let notes = measured.notes().concat();
-    assert!(notes.contains("1 row before t = 0 left out"), "{notes}");
+    assert!(notes.contains("1 row before t = 0 ignored"), "{notes}");
     let none = refusal("lab.csv", "t_s,tilt_deg\n-2,1\n-1,1\n", "");
     assert!(none.contains("begins at t = 0"), "{none}");
 }

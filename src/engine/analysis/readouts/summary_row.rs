@@ -83,7 +83,7 @@ pub(super) fn precession(readouts: &Readouts) -> Option<String> {
     let path = readouts.theory.as_ref().map(|any| any.path);
     let (unmeasured, why) = match (predicted, path) {
         (None, Some(AxlePath::ThroughVertical)) => ("", ": the axle passes through the vertical"),
-        _ => ("too little of it was seen to state it", ""),
+        _ => ("not enough of it was seen", ""),
     };
     let measured = readouts.precession;
     let text = compared(readouts, "rad/s", predicted, measured, false, unmeasured);
@@ -92,11 +92,16 @@ pub(super) fn precession(readouts: &Readouts) -> Option<String> {
 
 pub(super) fn nutation(readouts: &Readouts) -> Option<String> {
     let period = lasting_theory(readouts).and_then(|theory| theory.nutation_period_s);
-    let is_strobed = readouts.nutation_is_resolved() == Some(false);
+    let is_under_sampled = readouts.nutation_is_resolved() == Some(false);
     let unmeasured = readouts.without_nutation.map_or("", WithoutNutation::words);
     let measured = readouts.nutation;
     Some(compared(
-        readouts, "s", period, measured, is_strobed, unmeasured,
+        readouts,
+        "s",
+        period,
+        measured,
+        is_under_sampled,
+        unmeasured,
     ))
 }
 
@@ -144,14 +149,14 @@ pub(super) fn foot_force(readouts: &Readouts) -> Option<String> {
 /// Describes a value by theory and by measurement: "0.886033 rad/s by theory, 0.886033 +- 2.4e-9 rad/s in this run".
 /// The axis is named if theory refers to another axis than +z.
 ///
-/// `is_strobed` is true if the steps are too far apart to show the value. `unmeasured` is the reason why the run has no
+/// `is_under_sampled` is true if the steps are too far apart to show the value. `unmeasured` is the reason why the run has no
 /// number although the motion may have one. It is empty if the motion has none.
 fn compared(
     readouts: &Readouts,
     unit: &str,
     predicted: Option<f64>,
     measured: Option<MeasuredNumber>,
-    is_strobed: bool,
+    is_under_sampled: bool,
     unmeasured: &str,
 ) -> String {
     let axis = readouts.theory.as_ref().map(|theory| theory.axis);
@@ -160,18 +165,18 @@ fn compared(
     let theory = match predicted {
         Some(value) => format!("{} {unit} by theory{about}", fixed(value, 6)),
         None if readouts.health.slowing.is_some() => {
-            "none by theory, as friction changes it".to_owned()
+            "none by theory, because friction changes it".to_owned()
         }
         None if readouts.kappa.is_none() => {
-            "none by theory, which is of symmetric bodies".to_owned()
+            "none by theory, which covers symmetric bodies only".to_owned()
         }
         None => format!("none by theory{about}"),
     };
     let finite = measured.filter(|it| it.value.is_finite() && it.uncertainty.is_finite());
     let in_run = match finite {
-        Some(MeasuredNumber { value, .. }) if is_strobed => {
+        Some(MeasuredNumber { value, .. }) if is_under_sampled => {
             let shown = significant(value, 3);
-            format!("strobed: {FAR_APART}, and show {shown} {unit}{about_z}")
+            format!("under-sampled: {FAR_APART}, and show {shown} {unit}{about_z}")
         }
         Some(MeasuredNumber {
             value, uncertainty, ..
@@ -179,10 +184,12 @@ fn compared(
             let (value, uncertainty) = (fixed(value, 6), exponent(uncertainty, 1));
             format!("{value} +- {uncertainty} {unit} in this run{about_z}")
         }
-        None if is_strobed => format!("none in this run{about_z}: strobed, {FAR_APART}"),
-        None if readouts.health.slowing.is_some() => "not stated in this run".to_owned(),
+        None if is_under_sampled => {
+            format!("none in this run{about_z}: under-sampled, {FAR_APART}")
+        }
+        None if readouts.health.slowing.is_some() => "not measured in this run".to_owned(),
         None if unmeasured.is_empty() => format!("none in this run{about_z}"),
-        None => format!("not stated in this run{about_z}: {unmeasured}"),
+        None => format!("not measured in this run{about_z}: {unmeasured}"),
     };
     format!("{theory}, {in_run}")
 }
@@ -256,9 +263,7 @@ pub(super) fn steady_precession(readouts: &Readouts) -> Option<String> {
     readouts.kappa?;
     let theory = readouts.theory.as_ref()?;
     Some(match theory.axis {
-        TheoryAxis::Momentum => {
-            "without a load the axle goes round L, and no spin is too small to stand".to_owned()
-        }
+        TheoryAxis::Momentum => "without a load, the axle goes round L at any spin".to_owned(),
         _ => steady(theory),
     })
 }
@@ -274,7 +279,7 @@ pub(super) fn upright(readouts: &Readouts) -> Option<String> {
     let Some(limit) = theory.sleeping_limit else {
         let about = on(" about", &theory.axis);
         return Some(format!(
-            "stands{about} without spin too: the forces pull the axle up"
+            "stable{about} even without spin: the forces pull the axle up"
         ));
     };
     let sleeps = if spin.abs() > limit {
@@ -288,7 +293,7 @@ pub(super) fn upright(readouts: &Readouts) -> Option<String> {
     };
     let [limit, spin] = [limit, spin].map(|momentum| fixed(momentum, 3));
     Some(format!(
-        "{along} with L.axle above {limit} J s; with {spin} {sleeps}"
+        "{along} if L.axle exceeds {limit} J s; at {spin} {sleeps}"
     ))
 }
 

@@ -61,7 +61,7 @@ fn no_meaning(c: char, next: Option<char>) -> String {
     match (c, next) {
         ('=', Some('>')) => "write >= for =>".to_owned(),
         ('=', Some('<')) => "write <= for =<".to_owned(),
-        ('=', _) => "a comparison is written ==".to_owned(),
+        ('=', _) => "write == for a comparison".to_owned(),
         ('&', _) => "write and".to_owned(),
         ('|', _) => "write or, or abs(...)".to_owned(),
         _ => format!("{} has no meaning here", c.escape_debug()),
@@ -116,7 +116,7 @@ impl<'a> Parser<'a> {
         let begin = self.column();
         self.depth += 1;
         if self.depth > DEEPEST_NESTING {
-            return Self::fault(begin, "it is nested too deep");
+            return Self::fault(begin, "the expression is nested too deeply");
         }
         let mut left = self.operand()?;
         while let Some(operator) = self.operator().filter(|it| it.power >= least) {
@@ -175,7 +175,7 @@ impl<'a> Parser<'a> {
                 self.at += read.len();
                 match read.parse::<f64>() {
                     Ok(number) if number.is_finite() => Ok(ExpressionNode::Number(number)),
-                    _ => Self::fault(column, format!("{read} is no number")),
+                    _ => Self::fault(column, format!("{read} is not a number")),
                 }
             }
             (None, Some(_)) if !read.is_empty() => {
