@@ -68,7 +68,7 @@ pub struct ClassState {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct QuestionState {
-    /// Number of rounds before the present one.
+    /// Number of rounds before the current one.
     pub earlier_rounds: u32,
     pub stage: VoteStage,
     /// True if the teacher has closed the round. Votes after that are late.
@@ -81,7 +81,7 @@ pub struct QuestionState {
     pub bars: Vec<(String, usize)>,
 }
 
-/// Who can see the votes of a round, in the order of the key that shows more.
+/// Visibility of the votes of a round, in the order of the key that shows more.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum VoteStage {
@@ -253,7 +253,7 @@ fn make(path: &Path, mode: u32) -> Result<(), String> {
 }
 
 impl QuestionState {
-    /// Returns the present round, from 1.
+    /// Returns the current round, from 1.
     pub fn round(&self) -> u32 {
         self.earlier_rounds.saturating_add(1)
     }

@@ -214,7 +214,7 @@ fn expected_step(run: &PresentedRun, player: &Player, time_step_s: f64) -> (u64,
     (step.min(player.end_step()), off)
 }
 
-/// Brings the run of `lab` to the present state of `run`. Returns true once it has arrived. If a command is refused,
+/// Brings the run of `lab` to the current state of `run`. Returns true once it has arrived. If a command is refused,
 /// the run stays where it is.
 fn sync_to_presenter(run: &PresentedRun, lab: &mut Lab) -> bool {
     let player = lab.player();

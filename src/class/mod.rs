@@ -4,11 +4,11 @@
 //! belongs here.
 //!
 //! ```text
-//! DIR/.gyrolab/teacher/state                what the teacher's lab shows, and the rounds of votes
+//! DIR/.gyrolab/teacher/state                state of the teacher's lab, with the rounds of votes
 //! DIR/.gyrolab/seats/anna-471108/           a seat: its exports
-//! DIR/.gyrolab/seats/anna-471108/.gyrolab/  seat (place and votes), open (who has it open, heartbeat), its session
-//! DIR/.gyrolab/wrong/anna-471108            wrong codes that count for that seat, and when the last was typed
-//! DIR/.gyrolab/earlier/DATE/.gyrolab/       the same of an earlier group: DIR/.gyrolab/earlier/DATE is the folder of its class
+//! DIR/.gyrolab/seats/anna-471108/.gyrolab/  seat (progress and votes), open (token, heartbeat), session
+//! DIR/.gyrolab/wrong/anna-471108            count of wrong codes for that seat, and time of the last one
+//! DIR/.gyrolab/earlier/DATE/.gyrolab/       the same for an earlier group; DIR/.gyrolab/earlier/DATE is its class folder
 //! ```
 //!
 //! Each file is written whole by one account and read by the other, three times per second. A run is deterministic, so
@@ -50,7 +50,7 @@ const LEAST_WAIT: Duration = Duration::from_millis(10);
 
 /// The role of a lab in a class.
 pub trait ClassRole {
-    /// Returns the state of the lessons at the begin of the lab. `kept` is the state in the lab's session.
+    /// Returns the state of the lessons when the lab opens. `kept` is the state in the lab's session.
     fn lessons(&self, kept: Table) -> Table {
         kept
     }

@@ -70,8 +70,7 @@ pub(super) fn is_name(name: &str) -> bool {
 
 /// Returns the name in a seat's `word`, or `None` if it is not a word of a seat.
 ///
-/// A word whose code lacks a digit counts as a word, not as a new name, so that nobody who mistypes a word gets a new
-/// seat.
+/// A word whose code lacks a digit counts as a word, not as a name. Thus nobody who mistypes a word gets a new seat.
 pub(super) fn name_of(word: &str) -> Option<&str> {
     let (name, code) = word.rsplit_once('-')?;
     let is_code = code.len() >= OLD_DIGITS && code.bytes().all(|digit| digit.is_ascii_digit());

@@ -95,8 +95,9 @@ impl OpenRounds {
     }
 }
 
-/// State of the playback that a key may change, away from the class's run or page: number of acts, step, steps to go,
-/// true if playing, speed, page.
+/// State of the playback that a key may change. A change leads away from the class's run or page.
+///
+/// Number of acts, step, steps to go, true if playing, speed, page.
 type PlaybackSnapshot = (
     usize,
     u64,

@@ -44,11 +44,11 @@ struct Totals {
     tasks_shown: usize,
 }
 
-/// Returns the table of `seats` as CSV: a row for each seat, a column for each round of each answered question, and one
-/// for each task that anyone tried.
+/// Returns the table of `seats` as CSV.
 ///
-/// A choice is written as its number, from 1. A late answer counts only in `answers_late`, and its cell is empty. A
-/// question is right if the answer of its last round is.
+/// It has a row for each seat, a column for each round of each answered question, and one for each task that anyone
+/// tried. A choice is written as its number, from 1. A late answer counts only in `answers_late`, and its cell is
+/// empty. A question is right if the answer of its last round is.
 pub fn csv(folder: &ClassFolder, seats: &[SeatStatus]) -> Result<String, csv::Error> {
     let names: BTreeSet<_> = seats.iter().flat_map(|seat| seat.lessons.keys()).collect();
     let lessons: BTreeMap<_, _> = names

@@ -43,7 +43,7 @@ pub struct Teacher {
 /// Texts for the teacher of a rehearsal.
 #[derive(Clone, Debug)]
 pub struct Rehearsal {
-    /// Text at the begin and in the menu.
+    /// Text at the start and in the menu.
     pub about: String,
     /// Text at the end.
     pub at_end: String,
@@ -54,7 +54,7 @@ pub struct Rehearsal {
 enum NextPageQuestion {
     #[default]
     NotAsked,
-    /// The present key has asked.
+    /// The current key press has asked.
     JustAsked,
     Asked,
 }
@@ -199,7 +199,7 @@ impl Teacher {
         }
     }
 
-    /// Returns the name of the present question, and the votes as far as they are shown.
+    /// Returns the name of the current question, and the votes as far as they are shown.
     fn votes(&self, page: &LessonPage) -> Option<(String, Vec<Paragraph>)> {
         let (predict, question) = votes::question(page, &self.state)?;
         let (round, answered, here) = (question.round(), self.state.answered, self.state.here);

@@ -93,7 +93,7 @@ impl SeatStatus {
         place.predictions.in_round(of, round)
     }
 
-    /// Returns the standing of the seat in the class, whose present question is `asked`.
+    /// Returns the standing of the seat in the class, whose current question is `asked`.
     pub fn standing(
         &self,
         state: &ClassState,
@@ -276,7 +276,7 @@ pub fn drawn(bars: &[(String, usize)]) -> Paragraph {
     Paragraph::new(SheetLineKind::Code, text)
 }
 
-/// Returns the present question on `page`: the first that is not closed, or else the first.
+/// Returns the current question on `page`: the first that is not closed, or else the first.
 pub fn question<'a>(
     page: &'a LessonPage,
     state: &ClassState,

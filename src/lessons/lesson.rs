@@ -30,7 +30,7 @@ pub struct Lesson {
     pub pages: Vec<LessonPage>,
 }
 
-/// Information for the teacher who chooses and holds the lesson. Fields are empty if the file does not state them.
+/// Information for the teacher who chooses and gives the lesson. Fields are empty if the file does not state them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LessonGuide {
     pub level: Option<LessonLevel>,
@@ -316,7 +316,7 @@ impl LessonPage {
         self.lab().is_some_and(Setup::plays)
     }
 
-    /// Returns true if the page states numbers of the present run. Numbers in `kept` do not depend on the present run.
+    /// Returns true if the page states numbers of the current run. Numbers in `kept` do not depend on the current run.
     pub fn states_numbers(&self, kept: &KeptNumbers) -> bool {
         self.blocks
             .iter()

@@ -29,9 +29,9 @@ struct MarkdownReader<'a> {
     emphasis: Emphasis,
     /// Open lists, each with the number of its next entry if it is numbered.
     lists: Vec<Option<u64>>,
-    /// Mark of the present entry; a blank after its first paragraph.
+    /// Mark of the current entry; a blank after its first paragraph.
     mark: String,
-    /// Kind of the present paragraph if it is code or a heading.
+    /// Kind of the current paragraph if it is code or a heading.
     block: Option<SheetLineKind>,
 }
 
@@ -84,7 +84,7 @@ impl MarkdownReader<'_> {
         }
     }
 
-    /// Ends the present paragraph and begins one of this kind, or a plain one.
+    /// Ends the current paragraph and begins one of this kind, or a plain one.
     fn begin(&mut self, block: Option<SheetLineKind>) {
         self.end();
         self.block = block;
@@ -100,7 +100,7 @@ impl MarkdownReader<'_> {
         }
     }
 
-    /// Ends the present paragraph.
+    /// Ends the current paragraph.
     fn end(&mut self) {
         let words = std::mem::take(&mut self.words);
         if words.iter().all(|words| words.text.trim().is_empty()) {

@@ -45,7 +45,7 @@ pub struct OpenLesson {
     under_way: Option<PendingBlock>,
     /// Set while a class is followed: true if the class's run has arrived at the state of the page.
     pub(super) follows: Option<bool>,
-    /// Present rounds of the class's questions by name, each with true if it is closed.
+    /// Current rounds of the class's questions by name, each with a flag that it is closed.
     pub(super) rounds: BTreeMap<String, (u32, bool)>,
     /// Set after the first `n` on a page with an open prediction.
     pub(super) was_asked: bool,
@@ -57,8 +57,9 @@ pub struct OpenLesson {
     gone_before: Duration,
 }
 
-/// The state of a lesson in a followed class: its name, the page, the kept numbers, and true if the class's run has
-/// arrived at the state of the page.
+/// The state of a lesson in a followed class.
+///
+/// `has_arrived` is true if the class's run has arrived at the state of the page.
 #[derive(Clone, Copy, Debug)]
 pub struct ClassPage<'a> {
     pub lesson: &'a str,
@@ -127,7 +128,7 @@ impl OpenLesson {
         asked.is_some_and(|it| self.chosen.contains_key(&it.name))
     }
 
-    /// Returns true if `predict` needs an answer: it has none, or none in the present round of the class.
+    /// Returns true if `predict` needs an answer: it has none, or none in the current round of the class.
     pub fn is_open(&self, predict: &Predict) -> bool {
         let predictions = &self.place.predictions;
         match self.rounds.get(&predict.name) {
@@ -200,7 +201,7 @@ impl OpenLesson {
             .then(|| clock::shown(since, self.lesson.minutes))
     }
 
-    /// Turns to the page `page` (from 1), or stays on the present page, and brings the lab to its state.
+    /// Turns to the page `page` (from 1), or stays on the current page, and brings the lab to its state.
     ///
     /// # Errors
     ///

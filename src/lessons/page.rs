@@ -32,7 +32,7 @@ pub struct ClassOverlay {
     pub asks_digit: bool,
     /// True if the class is followed.
     pub is_followed: bool,
-    /// Present rounds of the class's questions by name, each with true if it is closed.
+    /// Current rounds of the class's questions by name, each with a flag that it is closed.
     pub rounds: BTreeMap<String, (u32, bool)>,
     /// Paragraphs below the question with this name.
     pub votes: Option<(String, Vec<Paragraph>)>,
@@ -259,7 +259,7 @@ impl Writer<'_> {
         false
     }
 
-    /// Writes the goals of a check: each part, marked if it holds now, with its present number. The first line states
+    /// Writes the goals of a check: each part, marked if it holds now, with its current number. The first line states
     /// if all of it holds, or held before.
     fn goals(&mut self, check: &Check) {
         let first = self.sheet.paragraphs.len();

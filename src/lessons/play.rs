@@ -14,7 +14,7 @@ use crate::lab::command::Command;
 use indicatif::HumanCount;
 use std::ops::ControlFlow;
 
-/// Callback that is called several times per second with the run's present and last step. It decides if the run
+/// Callback that is called several times per second with the run's current and last step. It decides if the run
 /// continues.
 pub type LessonProgressCallback<'a> = &'a mut dyn FnMut(u64, u64) -> ControlFlow<()>;
 
@@ -104,7 +104,7 @@ impl<'a> LessonWalk<'a> {
         self.is_open && value.is_some_and(|value| value != 0.0)
     }
 
-    /// Returns the present numbers in `expression`, such as `steps is 10, z_m is 0.8`.
+    /// Returns the current numbers in `expression`, such as `steps is 10, z_m is 0.8`.
     fn numbers_of(&self, expression: &Expression) -> String {
         let mut all = Vec::new();
         for name in expression.names() {
@@ -174,7 +174,7 @@ pub fn check(
 }
 
 impl<'a> LessonWalk<'a> {
-    /// Refuses a page that states numbers of a run opened earlier, if that run is too long to be replayed whenever the
+    /// Reports a page that states numbers of a run opened earlier, if that run is too long to be replayed whenever the
     /// page is turned to.
     fn refuse_far(&self, page: &LessonPage, found: &mut Problems) {
         let steps = self.lab.player().step_number();
@@ -189,7 +189,7 @@ impl<'a> LessonWalk<'a> {
         }
     }
 
-    /// Returns for each check of `page` true if it holds now, with its numbers.
+    /// Returns the state of each check of `page`: true if it holds now, and its numbers.
     fn states_of_checks(&self, page: &LessonPage) -> Vec<(bool, String)> {
         let checks = page.checks();
         checks

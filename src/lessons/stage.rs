@@ -106,7 +106,7 @@ impl LessonStage<'_> {
         names.any(|keep| !kept.contains_key(&keep.name))
     }
 
-    /// Returns the commands for `lab` in its present state.
+    /// Returns the commands for `lab` in its current state.
     ///
     /// If the block opens a run, changes of the view are undone first, so that the page looks the same whatever was
     /// done before.
@@ -142,7 +142,7 @@ impl LessonStage<'_> {
 
     /// Carries the block out to its end at once, without a clock, and keeps its numbers.
     ///
-    /// `go_on` is called several times per second with the run's present and last step. If it breaks, the rest is
+    /// `go_on` is called several times per second with the run's current and last step. If it breaks, the rest is
     /// dropped.
     ///
     /// # Errors

@@ -74,7 +74,9 @@ pub fn run(
     }
 }
 
-/// Advances run, class and lessons. Returns (true if the run has just reached its target, true if the lab must end).
+/// Advances run, class and lessons.
+///
+/// The first result is true if the run has just reached its target, the second if the lab must end.
 pub(super) fn advance_all(
     lab: &mut Lab,
     lessons: &mut Lessons,

@@ -28,7 +28,7 @@ const BELL: u8 = 0x07;
 const CTRL_C: u8 = 0x03;
 const END_OF_PASTE: &[u8] = b"\x1b[201~";
 
-///  A decoded input.
+/// A decoded input.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Typed {
     Key(Key),

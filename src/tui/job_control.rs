@@ -1,4 +1,4 @@
-//! Detects if a shell could resume this process after it stops.
+//! Detects whether a shell could resume this process after it stops.
 
 use nix::unistd::{Pid, getpgid, getpgrp, getppid, getsid};
 use std::fs;

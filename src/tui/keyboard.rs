@@ -75,7 +75,9 @@ impl Keyboard {
         Ok(())
     }
 
-    /// Waits at most `wait`. Returns (true if there is input, true if a signal or [`wake`] ended the wait).
+    /// Waits at most `wait`.
+    ///
+    /// The first result is true if there is input, the second if a signal or [`wake`] ended the wait.
     fn poll(&mut self, wait: Duration) -> io::Result<(bool, bool)> {
         let stdin = io::stdin();
         let mut both = [

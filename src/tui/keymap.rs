@@ -1,5 +1,5 @@
-//! The one table of keys: the modes in which a key works, the commands or the action that it means, and its text in the
-//! footer and the help.
+//! The one table of keys. A row has the modes of a key, its commands or action, and its text in the footer and the
+//! help.
 
 pub use crate::lab::Mode;
 use crate::lab::action::{Action, Ask, Direction, FieldEdit, LessonKey, SHIFT_FACTOR, repeated};

@@ -1,4 +1,4 @@
-//! Where each part of the screen is, at every size.
+//! Layout of the screen at every size.
 //!
 //! There are three arrangements. Narrow screens (80x24) have three columns: the traces, a view of the path, and the
 //! values. If the panes have 27 rows or more, the path is shown from above and, below that, in 3-D. Large screens
@@ -26,7 +26,7 @@ pub const NOTE_COLUMNS: (u16, u16) = (60, 120);
 
 /// Minimum and maximum columns of the traces.
 const TRACES_COLUMNS: (u16, u16) = (28, 96);
-///  Share of the screen for the traces at 80 and at 120 columns, per mille.
+/// Share of the screen for the traces at 80 and at 120 columns, per mille.
 const TRACES_SHARE: (u32, u32) = (350, 420);
 /// Columns of the values: on narrow screens, and on screens of at least [`WIDE_VALUES_FROM`] columns.
 const VALUES_COLUMNS: (u16, u16) = (24, 30);
@@ -182,7 +182,7 @@ fn cut_bottom(rest: &mut Rect, rows: u16) -> Rect {
     bottom
 }
 
-/// Splits `area` after `width` columns, with a blank column between the halves.
+/// Splits `area` after `width` columns, with a blank column between the two parts.
 fn apart(area: Rect, width: u16) -> [Rect; 2] {
     let [left, rest] = split_columns(area, width);
     let [_, right] = split_columns(rest, 1);
@@ -194,7 +194,7 @@ fn halves(area: Rect) -> [Rect; 2] {
     apart(area, area.width.saturating_sub(1) / 2)
 }
 
-/// Splits `area` after `height` rows, with a blank row between the halves.
+/// Splits `area` after `height` rows, with a blank row between the two parts.
 fn stacked(area: Rect, height: u16) -> [Rect; 2] {
     let [above, rest] = split_rows(area, height);
     let [_, below] = split_rows(rest, 1);

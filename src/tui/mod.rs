@@ -22,7 +22,7 @@
 //!   cross, [`points`] draws measured points, and [`labels`] places labels.
 //! - [`plane`] converts meters to dots and cells, and [`split`] splits an area in two.
 //! - [`board`] shows lines of text without a lab, and [`projector`](mod@projector) shows a lab that no key changes.
-//!   [`job_control`] finds out if Ctrl-Z may stop the program.
+//!   [`job_control`] detects whether Ctrl-Z may stop the program.
 
 pub mod app;
 pub mod board;

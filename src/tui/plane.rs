@@ -11,7 +11,7 @@ use ratatui::layout::Rect;
 pub struct Plane {
     /// Point in the middle of the area, m.
     pub middle: (f64, f64),
-    /// Dots per metre, across and down.
+    /// Dots per meter, across and down.
     pub scale: (f64, f64),
     /// Dots of the area, across and down.
     pub size: (usize, usize),

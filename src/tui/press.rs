@@ -50,7 +50,7 @@ fn asks_number(lab: &Lab) -> bool {
     lab.view().asked() == Some(AskedAnswer::Number) && is_of_sheet(lab)
 }
 
-/// Returns true if the key turns pages, closes, quits or helps.
+/// Returns true if the key turns pages, closes, quits or opens the help.
 fn is_of_page(does: KeyEffect) -> bool {
     matches!(
         does,

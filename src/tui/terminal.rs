@@ -56,7 +56,7 @@ const NEITHER: usize = 0;
 const SUSPEND: usize = 1;
 /// The shell has resumed the process.
 const RESUMED: usize = 2;
-/// True if the size of the screen has changed since the last look.
+/// True if the size of the screen has changed since the last check.
 static RESIZED: AtomicBool = AtomicBool::new(false);
 
 /// Signals that have handlers, until a thread receives them.

@@ -164,7 +164,7 @@ impl Teacher {
         lines
     }
 
-    /// Returns the present effect of `act` in words.
+    /// Returns the current effect of `act` in words.
     fn act_words(&self, act: ClassAct, page: Option<&LessonPage>) -> String {
         let asked = page.and_then(|page| votes::question(page, &self.state));
         let question = asked.map(|(_, question)| question).unwrap_or_default();

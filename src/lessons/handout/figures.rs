@@ -180,7 +180,7 @@ impl AxisRanges {
                     .or_else(|| natural_range(column, value, scenario))?;
                 let time = quantity::axis("t_s").within((0.0, end_s));
                 let value_axis = quantity::axis(column).within(range);
-                // A force at the start would reveal the begin of the motion.
+                // A force at the start would reveal how the motion begins.
                 let is_given = !column.ends_with("_N");
                 empty(time, value_axis, is_given.then_some([0.0, value]))
             }
@@ -213,7 +213,7 @@ fn chosen_range(column: &str, lab: &Lab) -> Option<(f64, f64)> {
     chosen.map(|[low, high]| (low, high))
 }
 
-/// Returns the figure of this kind for the run of `lab` up to its present step. Returns `None` at step 0, or if it
+/// Returns the figure of this kind for the run of `lab` up to its current step. Returns `None` at step 0, or if it
 /// cannot be drawn.
 fn of_run(
     lab: &Lab,

@@ -78,7 +78,7 @@ impl OpenLesson {
         }
     }
 
-    /// If the student has done the task of the page, keeps the numbers of the student's run.
+    /// Keeps the numbers of the student's run, if the student has done the task of the page.
     fn keep_own_task(&mut self, lab: &Lab) {
         let lesson = Arc::clone(&self.lesson);
         let number = self.place.page;
@@ -199,7 +199,7 @@ impl OpenLesson {
         }
     }
 
-    /// Locks `answer` as the vote of the present round.
+    /// Locks `answer` as the vote of the current round.
     fn lock(&mut self, predict: &Predict, answer: PredictionAnswer, lab: &mut Lab) {
         let class_round = self.rounds.get(&predict.name).copied();
         let (round, is_closed) = class_round.unwrap_or((1, false));

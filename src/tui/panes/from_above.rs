@@ -311,8 +311,9 @@ impl<'a> AbovePicture<'a> {
         (column / across as f64, row / down as f64)
     }
 
-    /// Returns for each acting push the pushed point, the tip of its arrow (none if it is straight up or down) and the
-    /// vertical force, N.
+    /// Returns the acting pushes.
+    ///
+    /// Each has the pushed point, the tip of its arrow (none if it is straight up or down) and the vertical force, N.
     fn acting_pushes(&self) -> Vec<(Vector2<f64>, Option<Vector2<f64>>, f64)> {
         let simulation = self.seen.run.simulation();
         let points = self.seen.run.scenario().body.mechanics.points();
@@ -464,7 +465,7 @@ fn tick_text(value: f64, step: f64) -> String {
 
 /// Returns the displayed sample, and the exact position at its time if the exact curves are shown.
 ///
-/// Usually the sample is the present one. If the traces are held because swings are too fast to follow, it is the
+/// Usually the sample is the current one. If the traces are held because swings are too fast to follow, it is the
 /// sample of the latest reading. If the scheme has broken down, it is the last sample before that.
 fn shown_moment(seen: &PlotInputs<'_>) -> (RecordedSample, Option<Vector2<f64>>) {
     let is_shown = seen.overlay().is_some();

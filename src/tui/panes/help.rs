@@ -1,5 +1,5 @@
-//! The help: keys and words of the glossary, searched by typing. Enter does the effect of the selected key. Keys are
-//! grouped by purpose.
+//! The help: keys and words of the glossary, searched by typing. Enter carries out the selected key. Keys are grouped
+//! by purpose.
 
 use super::{SELECTED_MARK, below_rule, carry_out, popup_rule, rows, write};
 use crate::engine::text::wrap::{columns, wrapped};
@@ -32,7 +32,7 @@ pub fn limit(lab: &mut Lab) {
     }
 }
 
-/// Closes the help and does the effect of the selected key.
+/// Closes the help and carries out the selected key.
 ///
 /// For a key of a pane, it moves the focus to that pane first. If the entry has no effect here, a message says why.
 pub fn do_entry(lab: &mut Lab) -> Option<LabRequest> {
@@ -226,7 +226,7 @@ fn below(entry: &HelpEntry, text: &str, width: usize) -> Vec<HelpPieces> {
 /// screen.
 const GLOSSARY: &str = include_str!("help/glossary.txt");
 
-/// Help on a key (or several keys with the same effect), or on a word of the glossary.
+/// Help on a key (or on several keys with the same effect), or on a word of the glossary.
 #[derive(Clone, Copy, Debug)]
 pub struct HelpEntry {
     /// Heading of the group.

@@ -56,7 +56,7 @@ pub struct PaneRow {
     pub arrows: Option<Arrows>,
 }
 
-///  Returns the commands for an arrow or page key that is pressed this number of times.
+/// Returns the commands for an arrow or page key that is pressed this number of times.
 pub type Arrows = fn(&Lab, Direction, i32) -> KeyCommands;
 
 pub fn row(pane: Pane) -> &'static PaneRow {
@@ -119,7 +119,7 @@ pub struct PlotInputs<'a> {
     pub run: &'a LiveRun,
     /// Previous run.
     pub ghost: Option<&'a Ghost>,
-    /// Run pinned as the reference, unless it is the present run.
+    /// Run pinned as the reference, unless it is the current run.
     pub pinned: Option<&'a Ghost>,
     pub measured: Option<&'a DataComparison>,
     /// Column of the CSV that a strip shows.
@@ -164,8 +164,9 @@ impl<'a> PlotInputs<'a> {
         overlay.filter(|_| !self.view.hides(HideablePart::Predicted))
     }
 
-    /// Returns the time from which the path is bright, s: the begin of the traces' window, or of the last turn if that
-    /// window is the whole run.
+    /// Returns the time from which the path is bright, s.
+    ///
+    /// This is the start of the traces' window or, if that window is the whole run, the start of the last turn.
     fn bright_since_s(&self, now_s: f64) -> f64 {
         let window = &self.view.window;
         if window.has_overview {
@@ -221,7 +222,7 @@ pub(super) fn below_rule(area: Rect) -> Rect {
     split_rows(area, 1)[1]
 }
 
-/// Returns the longest title of a round pane that fits in `width` columns.
+/// Returns the longest title of a view of the path that fits in `width` columns.
 ///
 /// It has the `name`, the magnification and, if the scheme has broken down since, the displayed step.
 fn round_title(name: &str, zoom: f64, reading: Option<&Reading>, width: u16) -> String {

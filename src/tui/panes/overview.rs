@@ -34,7 +34,7 @@ const WINDOW_EDGES: [&str; 2] = ["▕", "▏"];
 const REACHED: &str = "━";
 /// Part of the scrub line ahead of the run.
 const AHEAD: &str = "─";
-/// Present time on the scrub line.
+/// Current time on the scrub line.
 const NOW_MARK: &str = "┃";
 /// End of the scenario, or the cursor, on the scrub line.
 const END_MARK: &str = "│";

@@ -33,7 +33,7 @@ const SAME_HEIGHT: f64 = 1e-12;
 
 /// Rank of less important numbers while the rows of a table are added up.
 const ASIDE: u8 = 10;
-/// Number from which a point of the rim has no other name than its number, because the column is too narrow.
+/// Number from which a point of the rim is named by its number alone, because the column is too narrow for more.
 const SHORT_NAMES_FROM: usize = 1000;
 
 pub const STEP_ROW: PaneRow = PaneRow {
@@ -153,9 +153,9 @@ impl PhasePage<'_> {
         sections
     }
 
-    /// Returns all phases in one row: the finished ones, the present one, and those to come.
+    /// Returns all phases in one row: the finished ones, the current one, and those to come.
     ///
-    /// If there is no room for all names, only the present phase has a name, and the others have numbers.
+    /// If there is no room for all names, only the current phase has a name, and the others have numbers.
     fn list(&self) -> StepPageSection {
         let phases: Vec<_> = self.explained.workings.phases().zip(1..).collect();
         let named = |phase: &Phase, number: usize| format!("{number} {}", short_name(phase.name));
@@ -171,14 +171,14 @@ impl PhasePage<'_> {
                 _ => (number.to_string(), role_beside(number, self.number)),
             })
             .collect();
-        // The first ones are dropped until the present one is visible.
+        // The first ones are dropped until the current one is visible.
         while columns_until_present(&items) > self.width && items.len() > 1 {
             items.remove(0);
         }
         let mut line = StepPageLine::default();
         let mut at = 0;
         for (text, role) in items {
-            // The blanks around the present one are part of the gap.
+            // The blanks around the current one are part of the gap.
             let blank = usize::from(role == Role::Selected);
             let begin = at - blank.min(at);
             at = begin + columns(&text) + PHASE_GAP - blank;
@@ -367,7 +367,7 @@ const fn role_beside(number: usize, present: usize) -> Role {
     }
 }
 
-/// Returns the columns of the phases up to the present one.
+/// Returns the columns of the phases up to the current one.
 fn columns_until_present(items: &[(String, Role)]) -> usize {
     let shown = items.iter().take_while(|(_, role)| *role != Role::Label);
     shown.map(|(text, _)| columns(text) + PHASE_GAP).sum()

@@ -1,8 +1,9 @@
-//! The 3-D view: a wheel with masses on an axle whose foot is on a floor, the path of the axle's top, and the arrows of
-//! L, angular velocity and torque.
+//! The 3-D view: a wheel with masses on an axle, the path of the axle's top, and the arrows of L, angular velocity and
+//! torque.
 //!
-//! L and the angular velocity begin at the pivot and are drawn next to the axle, so that they do not cover it. The
-//! torque begins at the tip of L and shows where L moves. The lengths of arrows have no meaning.
+//! The foot of the axle is on a floor. L and the angular velocity begin at the pivot and are drawn next to the axle, so
+//! that they do not cover it. The torque begins at the tip of L and shows where L moves. The lengths of arrows have no
+//! meaning.
 
 mod arrows;
 mod body;
@@ -239,7 +240,7 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// Returns true if the pivot carries a weight off the pivot, so that a post is drawn under it.
+    /// Returns true if the pivot carries an off-center weight, so that a post is drawn under it.
     fn stands(&self) -> bool {
         let body = &self.seen.run.scenario().body.mechanics;
         let weight = self.seen.run.simulation().loads().gravity.abs() * body.first_moment().norm();

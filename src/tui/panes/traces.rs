@@ -65,7 +65,7 @@ pub struct Traces<'a>(pub PlotInputs<'a>);
 /// A strip with its area.
 struct Plot {
     content: StripContent,
-    /// True if it shows measured values minus those of the run.
+    /// True if it shows residuals: measured values minus the values of the run.
     is_residual: bool,
     strip: Strip,
     scale: StripScale,

@@ -34,7 +34,7 @@ pub(super) struct Editor<'p, 'a> {
 enum EditorRow<'a> {
     Blank,
     Heading(&'a str),
-    /// A value, its number in the list, and true if it is selected.
+    /// A value, its number in the list, and a flag for the selection.
     Value(&'a ListedValue, usize, bool),
     /// Message that no value matches the search.
     Nothing,

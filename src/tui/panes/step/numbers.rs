@@ -20,8 +20,9 @@ const UNIT_WIDTH: usize = 6;
 const COLUMNS_BESIDE_DIGITS: usize = 4;
 /// Minimum and maximum digits of a number.
 const CELL_DIGITS: std::ops::RangeInclusive<usize> = 3..=9;
-/// Fraction of the largest number of a group below which a number counts as the rounding error of a zero: a few units
-/// in the last place of its terms.
+/// Fraction of a group's largest number below which a number counts as the rounding error of a zero.
+///
+/// It is a few units in the last place of the number's terms.
 const CELL_ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// Text for such a number, which is not exactly zero.
 const ALMOST_ZERO: &str = "~0";
@@ -171,7 +172,7 @@ const MASS_DIGITS: usize = 3;
 const LEAST_CELL: usize = 9;
 /// Numbers side by side if there is no room for all.
 const FEW: usize = 3;
-/// Maximum rows of a table in which points without mass are looked for.
+/// Maximum rows of a table that is searched for points without mass.
 const MOST_SEARCHED: usize = 1000;
 /// Minimum rows of a table.
 const LEAST_ROWS: usize = 4;
@@ -233,7 +234,7 @@ impl TableView<'_> {
         lines
     }
 
-    /// Returns the index of the first of the last rows, all of points without mass, that share a row.
+    /// Returns the index of the first of the last rows whose points have no mass. These points share one row.
     ///
     /// Returns the number of rows if there are fewer than two such points or one of them is chosen.
     fn massless(&self) -> usize {

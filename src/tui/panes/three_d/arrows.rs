@@ -234,10 +234,10 @@ impl Scene<'_> {
         observables::pivot_force_z(body, self.state, simulation.loads())
     }
 
-    /// Returns the weight at the center of mass, the force of the floor, and the acting pushes, each with its origin
-    /// (m) and its vector in lengths of the axle.
+    /// Returns the weight, the force of the floor, and the acting pushes.
     ///
-    /// If the force of the floor is drawn, lengths are proportional to forces.
+    /// Each has its origin (m) and its vector in lengths of the axle. If the force of the floor is drawn, lengths are
+    /// proportional to forces.
     fn forces(&self) -> Vec<(ArrowKind, Vector3<f64>, Vector3<f64>)> {
         let loads = self.seen.run.simulation().loads();
         let body = &self.seen.run.scenario().body.mechanics;

@@ -1,5 +1,7 @@
-//! The parts of the 3-D view that belong to the phase on the page of the step pane: its arrows, the axis of its
-//! rotation, the body before the step, and the point that is added to a sum.
+//! The parts of the 3-D view that belong to the page of the step pane.
+//!
+//! These are the arrows of its phase, the axis of its rotation, the body before the step, and the point that is added
+//! to a sum.
 
 use super::super::step::name_of;
 use super::arrows::{ArrowKind, MOMENTUM_ARROW_LENGTH, SpaceLabel, TORQUE_ARROW_LENGTH};

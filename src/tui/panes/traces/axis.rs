@@ -32,7 +32,7 @@ const TICK_LABEL_COLUMNS: usize = 2;
 /// Unit after the first label, or after the last of two.
 const SECONDS_SUFFIX: &str = " s";
 
-///  First column and text of a label.
+/// First column and text of a label.
 pub type PlacedTick = (usize, String);
 
 /// Returns the labels of the time axis of `strip` on `width` cells, in order: round times, each centered under its

@@ -33,8 +33,9 @@ pub(super) enum StripContent {
 }
 
 impl Traces<'_> {
-    /// Returns the strips that fit into `height` rows, from the top, each with true if it shows residuals. If there are
-    /// measured quantities, only these are shown.
+    /// Returns the strips that fit into `height` rows, from the top, each with a flag for residuals.
+    ///
+    /// If there are measured quantities, only these are shown.
     pub(super) fn contents(&self, height: u16) -> Vec<(StripContent, bool)> {
         let measured = self.measured_contents();
         let mut contents: Vec<_> = if measured.is_empty() {
@@ -139,7 +140,7 @@ impl Traces<'_> {
         }
     }
 
-    /// Returns the range of values of a strip, magnified about the value at the cursor or else about the run's present
+    /// Returns the range of values of a strip, magnified about the value at the cursor or else about the run's current
     /// value.
     pub(super) fn scale(&self, content: StripContent, is_residual: bool) -> StripScale {
         let magnified = self.0.view.magnified;

@@ -54,7 +54,7 @@ impl Traces<'_> {
             .bins(recording)
             .columns(curve, self.cuts(owner, marks));
         if owner == CurveOwner::Run {
-            // The run may have been ahead of its present time; that part is not drawn.
+            // The run may have been ahead of its current time; that part is not drawn.
             let now_s = self.0.run.now().time_s;
             let shown = plot.strip.shown(plot.strip.begin_s, now_s);
             extents[shown.end..].fill(None);
