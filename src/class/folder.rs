@@ -122,8 +122,8 @@ impl ClassFolder {
     /// Returns an error if a folder cannot be created.
     pub fn open(dir: &Path) -> Result<Self, String> {
         let folder = Self::at(dir)?;
-        for path in [folder.own(), folder.seats(), folder.wrong()] {
-            make(&path, OF_ALL)?;
+        for path in [folder.private_folder(), folder.seats(), folder.wrong()] {
+            create_folder(&path, OF_ALL)?;
         }
         Ok(folder)
     }
@@ -134,19 +134,19 @@ impl ClassFolder {
     ///
     /// Returns an error if the folder cannot be created.
     pub fn make_teacher(&self) -> Result<(), String> {
-        make(&self.teacher(), OF_TEACHER)
+        create_folder(&self.teacher(), OF_TEACHER)
     }
 
-    fn own(&self) -> PathBuf {
+    fn private_folder(&self) -> PathBuf {
         self.root.join(SESSIONS)
     }
 
     pub fn seats(&self) -> PathBuf {
-        self.own().join("seats")
+        self.private_folder().join("seats")
     }
 
     pub(super) fn wrong(&self) -> PathBuf {
-        self.own().join("wrong")
+        self.private_folder().join("wrong")
     }
 
     /// Resets the count of wrong codes for the seat `word`.
@@ -167,11 +167,11 @@ impl ClassFolder {
         if !has_seats && !self.state_file().exists() {
             return Ok(None);
         }
-        let earlier = self.own().join("earlier");
+        let earlier = self.private_folder().join("earlier");
         let group = earlier.join(name);
         let inside = group.join(SESSIONS);
         for path in [&earlier, &group, &inside] {
-            make(path, OF_TEACHER)?;
+            create_folder(path, OF_TEACHER)?;
         }
         for moved in [self.seats(), self.wrong(), self.teacher()] {
             let to = inside.join(moved.file_name().unwrap_or_default());
@@ -183,7 +183,7 @@ impl ClassFolder {
 
     /// Returns the teacher's folder, for the state and the sessions.
     pub fn teacher(&self) -> PathBuf {
-        self.own().join("teacher")
+        self.private_folder().join("teacher")
     }
 
     pub(super) fn state_file(&self) -> PathBuf {
@@ -237,7 +237,7 @@ impl ClassFolder {
 
     /// Returns true if the disk is full.
     pub fn is_full(&self) -> bool {
-        rustix::fs::statvfs(self.own()).is_ok_and(|there| there.f_bavail == 0)
+        rustix::fs::statvfs(self.private_folder()).is_ok_and(|there| there.f_bavail == 0)
     }
 
     /// Returns `lesson` without the folder's path.
@@ -247,7 +247,7 @@ impl ClassFolder {
     }
 }
 
-fn make(path: &Path, mode: u32) -> Result<(), String> {
+fn create_folder(path: &Path, mode: u32) -> Result<(), String> {
     let made = shared::make_folder(path, mode).map(drop);
     made.map_err(|error| format!("{}: {error}", PrintablePath(path)))
 }

@@ -93,8 +93,8 @@ impl WrongCodes {
 pub fn claim(folder: &ClassFolder, typed: &str, now_unix_s: u64) -> Result<(Seat, bool), String> {
     let word = typed.trim().to_lowercase();
     match name_of(&word) {
-        Some(name) => come_back(folder, &word, name, now_unix_s).map(|seat| (seat, false)),
-        None if is_name(&word) => begin(folder, &word).map(|seat| (seat, true)),
+        Some(name) => return_to_seat(folder, &word, name, now_unix_s).map(|seat| (seat, false)),
+        None if is_name(&word) => create_seat(folder, &word).map(|seat| (seat, true)),
         None => {
             let shown: String = word.chars().take(2 * LONGEST_SEAT_NAME).collect();
             Err(format!("{}: {RULE}", printable(&shown)))
@@ -110,12 +110,12 @@ pub fn claim(folder: &ClassFolder, typed: &str, now_unix_s: u64) -> Result<(Seat
 pub fn find(folder: &ClassFolder, typed: &str, now_unix_s: u64) -> Result<Seat, String> {
     let word = typed.trim().to_lowercase();
     match name_of(&word) {
-        Some(name) => come_back(folder, &word, name, now_unix_s),
+        Some(name) => return_to_seat(folder, &word, name, now_unix_s),
         None => Err("type the word of your seat, such as anna-471108".to_owned()),
     }
 }
 
-fn begin(folder: &ClassFolder, name: &str) -> Result<Seat, String> {
+fn create_seat(folder: &ClassFolder, name: &str) -> Result<Seat, String> {
     if all_seats(folder)?.len() >= MOST_SEATS {
         return Err(format!(
             "this class is full with {MOST_SEATS} seats: ask your teacher"
@@ -137,7 +137,7 @@ fn begin(folder: &ClassFolder, name: &str) -> Result<Seat, String> {
 ///
 /// While a seat with that name must wait, its right code gets the same answer as a wrong one, so that an attempt
 /// reveals nothing. Other seats with that name can be taken meanwhile.
-fn come_back(
+fn return_to_seat(
     folder: &ClassFolder,
     word: &str,
     name: &str,

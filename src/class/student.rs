@@ -141,7 +141,7 @@ impl Student {
     }
 
     /// Records the progress in the lessons, with the answers.
-    fn note(&mut self, lessons: &Lessons) {
+    fn record_progress(&mut self, lessons: &Lessons) {
         let kept = lessons.kept();
         if !kept.is_empty() && *kept != self.record.lessons {
             self.record.lessons.clone_from(kept);
@@ -179,10 +179,10 @@ impl Student {
             ClassChange::Gone => lab.tell("the teacher's lab is gone: press n or N to turn pages"),
         }
         self.end_rounds(lab, lessons);
-        self.note_whether_alone(lab);
+        self.detect_working_alone(lab);
         let gathered_ms = self.follower.class().map(|class| class.gathered_ms);
         if self.record.is_aside && gathered_ms > Some(self.record.aside_since_ms) {
-            self.come_back("your teacher has gathered the class", lab);
+            self.rejoin("your teacher has gathered the class", lab);
         }
     }
 
@@ -204,7 +204,7 @@ impl Student {
     }
 
     /// Detects when the teacher lets the students work on their own, or ends that, and reports it.
-    fn note_whether_alone(&mut self, lab: &mut Lab) {
+    fn detect_working_alone(&mut self, lab: &mut Lab) {
         let class = self.follower.class();
         let is_alone = class.is_some_and(|state| !state.is_followed);
         let was_alone = std::mem::replace(&mut self.is_alone, is_alone);
@@ -212,7 +212,7 @@ impl Student {
             self.follower.forget_shown();
             lab.tell(GO_ON_ALONE);
         } else if was_alone && self.follows() {
-            self.come_back("your teacher continues the class", lab);
+            self.rejoin("your teacher continues the class", lab);
         }
     }
 
@@ -357,7 +357,7 @@ impl Student {
     }
 
     /// Rejoins the class for the reason `why`. A run that the student has played meanwhile is pinned.
-    fn come_back(&mut self, why: &str, lab: &mut Lab) {
+    fn rejoin(&mut self, why: &str, lab: &mut Lab) {
         self.set_aside(false);
         self.follower.forget_shown();
         let player = lab.player();
@@ -397,7 +397,7 @@ impl ClassRole for Student {
 
     fn advance(&mut self, now: Duration, lab: &mut Lab, lessons: &mut Lessons) -> ControlFlow<()> {
         let was_new = self.is_new;
-        self.note(lessons);
+        self.record_progress(lessons);
         if now >= self.next_look || self.is_new && !was_new {
             self.next_look = now + CLASS_POLL_INTERVAL;
             if self.waiting != WaitingPage::Unseen && self.follower.class().is_none() {
@@ -416,7 +416,7 @@ impl ClassRole for Student {
             }
             lab.files_mut().note = self.note_for_exports(lessons);
             lessons.set_overlay(self.overlay(lessons), lab);
-            self.note(lessons); // a chosen answer may be locked now
+            self.record_progress(lessons); // a chosen answer may be locked now
             if self.is_new && self.ended.is_none() {
                 self.trouble = self.seat.save(&self.record).err();
                 self.is_new = self.trouble.is_some();
@@ -433,7 +433,7 @@ impl ClassRole for Student {
         if self.follower.class().is_none() {
             lessons.on_key(LessonKey::List, lab);
         } else if self.record.is_aside {
-            self.come_back("you have rejoined the class", lab);
+            self.rejoin("you have rejoined the class", lab);
         } else if self.follows() {
             self.step_aside(lab);
         } else {

@@ -122,7 +122,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_a_lesson_uses_of_markdown_is_kept() {
+    fn converts_the_markdown_that_lessons_use() {
         let source =
             "The **fast** top\nturns `p`.\n\n1. one\n2. two\n   - deep\n\n```text\na  b\n```\n";
         let read = paragraphs(source, &SheetLineKind::Text);

@@ -163,13 +163,13 @@ impl Compare {
         });
         match predicted {
             Some(_) => text,
-            None => without(NOTHING, &text),
+            None => without_sentences(NOTHING, &text),
         }
     }
 }
 
 /// Returns `text` without the sentences that contain `part`, or the whole text if nothing else would remain.
-fn without(part: &str, text: &str) -> String {
+fn without_sentences(part: &str, text: &str) -> String {
     let mut rest = text;
     let mut kept = String::new();
     while !rest.is_empty() {

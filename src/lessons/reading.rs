@@ -41,7 +41,7 @@ pub fn read(origin: &str, text: &str) -> Result<Lesson, Problems> {
 /// Returns the pages and blocks of a lesson's `text`.
 fn elements(text: &str) -> Result<Vec<Element<'_>>, Problem> {
     let lines = Lines::index(text);
-    plain(text, &lines)?;
+    check_text(text, &lines)?;
     let elements = structure(text, &lines, &BlockKind::words())?;
     if elements.len() > MOST_LESSON_BLOCKS {
         let rule = format!(
@@ -53,7 +53,7 @@ fn elements(text: &str) -> Result<Vec<Element<'_>>, Problem> {
 }
 
 /// Checks that `text` is short enough and contains no character that could control a terminal.
-fn plain(text: &str, lines: &Lines) -> Result<(), Problem> {
+fn check_text(text: &str, lines: &Lines) -> Result<(), Problem> {
     let count = text.matches('\n').count();
     if count > MOST_LESSON_LINES {
         let rule = format!("has {count} lines: a lesson has at most {MOST_LESSON_LINES}");
@@ -157,7 +157,7 @@ impl Assembly {
             PieceKind::Text(text) => {
                 self.need_title(line);
                 if let Some(text) = self.text(text, line) {
-                    self.place(LessonBlock::Text(text));
+                    self.push_block(LessonBlock::Text(text));
                 }
             }
             PieceKind::Fenced(word, inside) => self.add_fenced(word, inside, line),
@@ -192,7 +192,7 @@ impl Assembly {
         read.map_err(|problems| self.refuse_all(problems)).ok()
     }
 
-    fn place(&mut self, block: LessonBlock) {
+    fn push_block(&mut self, block: LessonBlock) {
         match self.lesson.pages.last_mut() {
             Some(page) => page.blocks.push(block),
             None => self.lesson.introduction.push(block),
@@ -202,7 +202,7 @@ impl Assembly {
     fn add_fenced(&mut self, word: &str, inside: &str, line: usize) {
         self.need_title(line);
         if word.is_empty() || LANGUAGES.contains(&word) {
-            return self.place(LessonBlock::Shown(CodeBlock {
+            return self.push_block(LessonBlock::Shown(CodeBlock {
                 language: word.to_owned(),
                 text: inside.to_owned(),
             }));
@@ -251,7 +251,7 @@ impl Assembly {
             LessonBlock::Compare(compare) => self.compares.push(compare.clone()),
             _ => {}
         }
-        self.place(block);
+        self.push_block(block);
     }
 
     fn add_head(&mut self, reader: &BlockReader<'_>) {
@@ -289,13 +289,13 @@ impl Assembly {
         }
         let mut setups = self.setups.iter();
         if let Some(setup) = setups.find(|setup| setup.line == reader.line) {
-            self.place(make(setup.clone()));
+            self.push_block(make(setup.clone()));
         }
     }
 
     fn add_notes(&mut self, reader: &BlockReader<'_>) {
         if let Some(text) = self.text(reader.inside.trim_end(), reader.line + 1) {
-            self.place(LessonBlock::Notes(text));
+            self.push_block(LessonBlock::Notes(text));
         }
     }
 

@@ -114,7 +114,7 @@ impl LessonStage<'_> {
         let mut list = Vec::new();
         if self.setup.opens() {
             let line = Some(self.setup.line);
-            let before = put_back(lab).into_iter();
+            let before = reset_view(lab).into_iter();
             list.extend(before.map(|command| LocatedCommand { command, line }));
         }
         for placed in &self.setup.commands {
@@ -164,7 +164,7 @@ impl LessonStage<'_> {
 }
 
 /// Returns the commands that reset those parts of the view that differ from their defaults.
-fn put_back(lab: &Lab) -> Vec<Command> {
+fn reset_view(lab: &Lab) -> Vec<Command> {
     let view = lab.view();
     let shows_exact = lab.player().run().shows_exact();
     let all = [

@@ -88,7 +88,7 @@ pub fn files_in(folder: &Path) -> Vec<String> {
 }
 
 /// Shows the first line of the reason why a lesson could not be opened.
-fn tell(opened: Result<(), String>, lab: &mut Lab) {
+fn report_error(opened: Result<(), String>, lab: &mut Lab) {
     if let Err(reason) = opened {
         lab.refuse(reason.lines().next().unwrap_or_default());
     }
@@ -211,7 +211,7 @@ impl Lessons {
             }
             (LessonDialog::List { selected, .. }, LessonKey::Take) => {
                 let name = names.get(*selected).cloned();
-                tell(name.map_or(Ok(()), |name| self.open(&name, None, lab)), lab);
+                report_error(name.map_or(Ok(()), |name| self.open(&name, None, lab)), lab);
             }
             (LessonDialog::List { .. }, _) => {
                 lab.refuse("Enter opens the selected lesson, Esc closes the list");

@@ -161,7 +161,7 @@ impl<'a> FileWalk<'a, '_> {
         let block = &text[range.clone()];
         let inside = between_fences(block).ok_or_else(|| {
             let rule = format!("is not closed: end it with a line {}", fence_of(block));
-            on_line(line, Problem::at(named(word), rule))
+            on_line(line, Problem::at(name_in_messages(word), rule))
         })?;
         if let Some(extra) = words.next().filter(|_| is_of_lessons) {
             let rule = format!("must be the only word after its fence: remove {extra}");
@@ -173,7 +173,7 @@ impl<'a> FileWalk<'a, '_> {
                 "is not closed before line {begin}, where another block begins: end it with a line {}",
                 fence_of(block)
             );
-            return Err(on_line(line, Problem::at(named(word), rule)));
+            return Err(on_line(line, Problem::at(name_in_messages(word), rule)));
         }
         let at = block.find(word).unwrap_or_default();
         let fenced = PieceKind::Fenced(&block[at..at + word.len()], inside);
@@ -183,7 +183,7 @@ impl<'a> FileWalk<'a, '_> {
 }
 
 /// Returns the name in messages of a block with this word after its fence.
-fn named(word: &str) -> &str {
+fn name_in_messages(word: &str) -> &str {
     match word {
         "" => "```",
         word => word,

@@ -47,7 +47,7 @@ pub struct Decoder {
     pending: Vec<u8>,
     paste: Option<Paste>,
     /// Arrival times of the first and the last byte of the unfinished sequence or paste.
-    came: Option<(Instant, Instant)>,
+    arrivals: Option<(Instant, Instant)>,
 }
 
 /// A paste whose end has not arrived.
@@ -55,7 +55,7 @@ pub struct Decoder {
 struct Paste {
     bytes: Vec<u8>,
     /// Number of bytes at the end that match the beginning of [`END_OF_PASTE`].
-    of_end: usize,
+    matched_of_end: usize,
 }
 
 /// Result of decoding the bytes of a sequence or a character.
@@ -75,12 +75,12 @@ impl Decoder {
         self.expire(now);
         for &byte in bytes {
             if !self.is_waiting() {
-                self.came = Some((now, now));
+                self.arrivals = Some((now, now));
             }
             self.take(byte);
         }
-        let first = self.came.map_or(now, |(first, _)| first);
-        self.came = self.is_waiting().then_some((first, now));
+        let first = self.arrivals.map_or(now, |(first, _)| first);
+        self.arrivals = self.is_waiting().then_some((first, now));
     }
 
     pub fn take_typed(&mut self) -> Option<Typed> {
@@ -93,7 +93,7 @@ impl Decoder {
 
     /// Returns the time at which the unfinished sequence or paste will be dropped, if any.
     pub fn deadline(&self) -> Option<Instant> {
-        let (first, last) = self.came?;
+        let (first, last) = self.arrivals?;
         match self.paste {
             Some(_) => Some(last + GAP_IN_PASTE),
             None => Some((last + BYTE_GAP).min(first + WHOLE_SEQUENCE_LIMIT)),
@@ -105,10 +105,10 @@ impl Decoder {
         if self.deadline().is_none_or(|deadline| now < deadline) {
             return;
         }
-        self.came = None;
+        self.arrivals = None;
         match self.paste.take() {
             Some(paste) => self.end_paste(&paste),
-            None => self.give_up(),
+            None => self.drop_pending(),
         }
     }
 
@@ -124,7 +124,7 @@ impl Decoder {
             return;
         }
         self.pending.push(byte);
-        match found(&self.pending) {
+        match decode(&self.pending) {
             Decoded::Unfinished => return,
             Decoded::Typed(typed) => self.typed.push_back(typed),
             Decoded::Nothing => {}
@@ -134,7 +134,7 @@ impl Decoder {
                 if self.pending.is_empty() {
                     return; // no sequence begins with this byte
                 }
-                self.give_up();
+                self.drop_pending();
                 return self.take(byte);
             }
         }
@@ -144,7 +144,7 @@ impl Decoder {
     /// Drops the unfinished sequence.
     ///
     /// Esc, or Esc and one more key, count as typed. A longer sequence cannot have been typed so fast and is ignored.
-    fn give_up(&mut self) {
+    fn drop_pending(&mut self) {
         let count = match self.pending.as_slice() {
             [ESC] => 1,
             [ESC, other] if other.is_ascii_graphic() => 2,
@@ -162,17 +162,17 @@ impl Decoder {
             // No terminal sends Ctrl-C within a paste: the end of the paste was lost, and this is a key.
             return self.typed.push_back(Typed::Key(key_of(byte)));
         }
-        if byte == END_OF_PASTE[paste.of_end] {
-            paste.of_end += 1;
-            if paste.of_end == END_OF_PASTE.len() {
+        if byte == END_OF_PASTE[paste.matched_of_end] {
+            paste.matched_of_end += 1;
+            if paste.matched_of_end == END_OF_PASTE.len() {
                 return self.end_paste(&paste);
             }
         } else {
-            let no_end = &END_OF_PASTE[..paste.of_end];
+            let no_end = &END_OF_PASTE[..paste.matched_of_end];
             if paste.bytes.len() < LONGEST_PASTE {
                 paste.bytes.extend_from_slice(no_end);
             }
-            paste.of_end = usize::from(byte == ESC);
+            paste.matched_of_end = usize::from(byte == ESC);
             if byte != ESC && paste.bytes.len() < LONGEST_PASTE {
                 paste.bytes.push(byte);
             }
@@ -195,10 +195,10 @@ fn is_body(pending: &[u8], byte: u8) -> bool {
     }
 }
 
-fn found(bytes: &[u8]) -> Decoded {
+fn decode(bytes: &[u8]) -> Decoded {
     match bytes {
         [ESC, rest @ ..] => after_escape(rest),
-        [byte @ 0..0x80] => known(Some(key_of(*byte))),
+        [byte @ 0..0x80] => key_or_nothing(Some(key_of(*byte))),
         bytes => character(bytes),
     }
 }
@@ -212,7 +212,7 @@ fn character(bytes: &[u8]) -> Decoded {
         _ => return Decoded::Broken,
     };
     match std::str::from_utf8(bytes) {
-        Ok(text) => known(text.chars().next().map(Key::Char)),
+        Ok(text) => key_or_nothing(text.chars().next().map(Key::Char)),
         Err(error) if error.error_len().is_none() && bytes.len() < length => Decoded::Unfinished,
         Err(_) => Decoded::Broken,
     }
@@ -234,7 +234,7 @@ fn key_of(byte: u8) -> Key {
 fn after_escape(rest: &[u8]) -> Decoded {
     match rest {
         [] | [b'O' | b'['] => Decoded::Unfinished,
-        [b'O', letter @ 0x20..0x7f] => known(lettered(*letter, 1)),
+        [b'O', letter @ 0x20..0x7f] => key_or_nothing(key_of_letter(*letter, 1)),
         [b'[', rest @ ..] => control_sequence(rest),
         [b']', rest @ ..] => match (string(rest), background(rest)) {
             (Decoded::Nothing, Some(background)) => Decoded::Typed(Typed::Background(background)),
@@ -245,7 +245,7 @@ fn after_escape(rest: &[u8]) -> Decoded {
     }
 }
 
-fn known(key: Option<Key>) -> Decoded {
+fn key_or_nothing(key: Option<Key>) -> Decoded {
     key.map_or(Decoded::Nothing, |key| Decoded::Typed(Typed::Key(key)))
 }
 
@@ -335,10 +335,10 @@ fn meaning(parameters: &[u8], last: u8) -> Decoded {
     let modifiers = numbers.next().flatten().unwrap_or(1);
     match (first, last) {
         (Some(200), b'~') => Decoded::Paste,
-        (Some(number), b'~') => known(numbered(number)),
-        (Some(code), b'u') => known(coded(code, modifiers)),
+        (Some(number), b'~') => key_or_nothing(key_of_number(number)),
+        (Some(code), b'u') => key_or_nothing(key_of_code(code, modifiers)),
         (None, _) if !text.is_empty() => Decoded::Nothing, // the mouse, and other reports
-        (_, letter) => known(lettered(letter, modifiers)),
+        (_, letter) => key_or_nothing(key_of_letter(letter, modifiers)),
     }
 }
 
@@ -350,7 +350,7 @@ fn has_control(modifiers: u32) -> bool {
     modifiers.saturating_sub(1) & 4 != 0
 }
 
-fn lettered(letter: u8, modifiers: u32) -> Option<Key> {
+fn key_of_letter(letter: u8, modifiers: u32) -> Option<Key> {
     Some(match (letter, has_shift(modifiers)) {
         // rxvt sends small letters with Shift.
         (b'A', true) | (b'a', _) => Key::ShiftUp,
@@ -368,7 +368,7 @@ fn lettered(letter: u8, modifiers: u32) -> Option<Key> {
     })
 }
 
-fn numbered(number: u32) -> Option<Key> {
+fn key_of_number(number: u32) -> Option<Key> {
     Some(match number {
         1 | 7 => Key::Home,
         4 | 8 => Key::End,
@@ -380,7 +380,7 @@ fn numbered(number: u32) -> Option<Key> {
 }
 
 /// Returns the key with this code point. Some terminals send keys with modifiers in this form.
-fn coded(code: u32, modifiers: u32) -> Option<Key> {
+fn key_of_code(code: u32, modifiers: u32) -> Option<Key> {
     let c = char::from_u32(code)?;
     Some(match c {
         '\t' if has_shift(modifiers) => Key::BackTab,

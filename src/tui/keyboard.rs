@@ -95,7 +95,7 @@ impl Keyboard {
         }
         let [terminal, bell] = both.map(|one| one.revents());
         if !terminal.is_empty() && !terminal.contains(PollFlags::IN) {
-            return Err(gone()); // hung up, and all earlier input has been read
+            return Err(closed_error()); // hung up, and all earlier input has been read
         }
         let woken = !bell.is_empty();
         if woken {
@@ -109,7 +109,7 @@ impl Keyboard {
         let mut bytes = [0; CHUNK];
         match read(io::stdin(), &mut bytes) {
             // A terminal in raw mode reports the end of input only when it is closed.
-            Ok(0) | Err(Errno::IO) => Err(gone()),
+            Ok(0) | Err(Errno::IO) => Err(closed_error()),
             Ok(length) => {
                 self.decoder.feed(&bytes[..length], Instant::now());
                 Ok(())
@@ -120,6 +120,6 @@ impl Keyboard {
     }
 }
 
-fn gone() -> io::Error {
+fn closed_error() -> io::Error {
     io::Error::new(io::ErrorKind::UnexpectedEof, "it has been closed")
 }

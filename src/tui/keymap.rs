@@ -420,7 +420,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_row_is_whole_and_no_key_is_bound_twice_in_a_mode() {
+    fn rows_are_complete_and_keys_are_unique_per_mode() {
         for row in BINDINGS {
             let is_bound = !row.keys.is_empty() && !row.modes.is_empty();
             assert!(is_bound && !row.help.is_empty(), "{row:?}");

@@ -473,7 +473,7 @@ mod tests {
     }
 
     #[test]
-    fn the_three_arrangements_are_as_designed() {
+    fn the_three_arrangements_have_the_designed_sizes() {
         use Pane::{Above, Parameters, ThreeD, Traces};
         let view = view();
         let small = shown(80, 24, true, &view);
@@ -505,7 +505,7 @@ mod tests {
     }
 
     #[test]
-    fn parts_do_not_overlap_and_the_verdict_and_the_keys_stay_to_the_last() {
+    fn parts_never_overlap_and_verdict_and_keys_remain() {
         let view = view();
         for width in (10..=220).step_by(3) {
             for height in 6..=60 {
@@ -526,7 +526,7 @@ mod tests {
     }
 
     #[test]
-    fn a_view_of_the_path_comes_with_the_focus_where_there_is_room_for_one() {
+    fn the_last_view_in_focus_is_shown_if_only_one_fits() {
         let mut view = view();
         view.turn_to(Pane::ThreeD);
         assert!(shown(80, 24, true, &view).place_of(Pane::ThreeD).is_some());

@@ -111,7 +111,7 @@ impl Pointer {
             return self.press_in_lessons(place, at, is_double, lab);
         } else if pane == Pane::Traces {
             self.held = Some(Held::Cursor);
-            read_off(place, at, lab);
+            move_cursor(place, at, lab);
         } else if pane == Pane::ThreeD {
             self.held = Some(Held::Camera(at));
         }
@@ -180,7 +180,7 @@ impl Pointer {
             None => {}
             Some(Held::Cursor) => {
                 if let Some(place) = layout.place_of(Pane::Traces) {
-                    read_off(place, at, lab);
+                    move_cursor(place, at, lab);
                 }
             }
             Some(Held::Place) => {
@@ -212,7 +212,7 @@ fn pane_at(layout: &ScreenLayout, at: Position) -> Option<(Pane, Rect)> {
 }
 
 /// Moves the cursor on the traces to the time at `at`, if there is one.
-fn read_off(place: Rect, at: Position, lab: &mut Lab) {
+fn move_cursor(place: Rect, at: Position, lab: &mut Lab) {
     if let Some(time_s) = Traces(PlotInputs::from_lab(lab)).time_s(place, at) {
         let to = CursorTo::Place(SeekTarget::Time(time_s));
         lab.carry_out_now(&Command::Cursor(to));

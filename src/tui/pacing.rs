@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn frames_that_send_much_are_drawn_less_often() {
+    fn large_frames_are_drawn_less_often() {
         assert_eq!(rate(10, 100, SMALL_SCREEN_CELLS), 1000.0);
         for bytes in [300, 700, 1500] {
             let sent = rate(10, bytes, SMALL_SCREEN_CELLS);
@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn no_frame_makes_the_next_wait_long() {
+    fn the_gap_between_frames_is_limited() {
         let mut pacing = Pacing::new(10);
         pacing.drawn(Duration::ZERO, 1_000_000, SMALL_SCREEN_CELLS);
         assert_eq!(pacing.wait(Duration::ZERO), LONGEST_FRAME_GAP);

@@ -137,7 +137,7 @@ impl Screen {
 
     /// Draws a frame and sends only the cells that differ from the previous frame. Returns the number of bytes sent.
     pub fn draw(&mut self, picture: impl FnOnce(Rect, &mut Buffer)) -> io::Result<usize> {
-        let _pen = pen();
+        let _lock = lock_screen();
         let before = self.sent.get();
         if self.terminal.get_frame().area() != self.size()? {
             self.forget()?;
@@ -152,14 +152,14 @@ impl Screen {
         if MOUSE.load(Ordering::SeqCst) == listens {
             return Ok(());
         }
-        let _pen = pen();
+        let _lock = lock_screen();
         MOUSE.store(listens, Ordering::SeqCst);
         stdout()?.write_all(if listens { MOUSE_ON } else { MOUSE_OFF })
     }
 
     /// Asks the terminal for its background color. The answer, if any, arrives as [`Typed::Background`].
     pub fn ask_background(&mut self) -> io::Result<()> {
-        let _pen = pen();
+        let _lock = lock_screen();
         stdout()?.write_all(b"\x1b]11;?\x1b\\")
     }
 
@@ -260,7 +260,7 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 /// Waits for the lock on the terminal.
 ///
 /// Waits for ever if a signal is ending the process, because nothing may be drawn after the terminal is restored.
-fn pen() -> MutexGuard<'static, ()> {
+fn lock_screen() -> MutexGuard<'static, ()> {
     let pen = locked(&WRITING);
     while ENDING.load(Ordering::SeqCst) {
         thread::park();
@@ -391,7 +391,7 @@ fn handle(signal: i32) {
         end => {
             at_exit::run_hooks(Release::Exit);
             ENDING.store(true, Ordering::SeqCst);
-            let _pen = take_pen();
+            let _lock = try_lock_screen();
             leave_in_time();
             std::process::exit(128 + end);
         }
@@ -399,7 +399,7 @@ fn handle(signal: i32) {
 }
 
 /// Waits until no frame is being drawn. Returns `None` if a frame hangs in a terminal that accepts no bytes.
-fn take_pen() -> Option<MutexGuard<'static, ()>> {
+fn try_lock_screen() -> Option<MutexGuard<'static, ()>> {
     let begin = Instant::now();
     while begin.elapsed() < TERMINAL_EXIT_LIMIT {
         match WRITING.try_lock() {

@@ -331,7 +331,7 @@ mod tests {
     }
 
     #[test]
-    fn no_two_kinds_of_data_in_a_pane_share_a_color() {
+    fn kinds_of_data_in_a_pane_have_distinct_colors() {
         for palette in [Palette::Xterm256, Palette::TrueColor] {
             for background in Background::ALL {
                 for roles in [TRACES, VIEWS] {
@@ -348,7 +348,7 @@ mod tests {
 
     /// With 16 colors, the gray parts may share a color, and so may the earlier run and its envelope.
     #[test]
-    fn sixteen_colors_tell_the_curves_and_the_arrows_apart() {
+    fn sixteen_colors_distinguish_curves_and_arrows() {
         let roles = [
             Role::Run,
             Role::RunEarlier,
@@ -404,7 +404,7 @@ mod tests {
     }
 
     #[test]
-    fn a_plain_theme_has_no_color() {
+    fn the_plain_theme_has_no_color() {
         for role in TRACES.iter().chain(VIEWS).chain(&[Role::Badge, Role::Off]) {
             let style = Theme::PLAIN.style(*role);
             assert_eq!((style.fg, style.bg), (None, None), "{role:?}");
@@ -414,7 +414,7 @@ mod tests {
     }
 
     #[test]
-    fn the_palette_is_what_the_terminal_says() {
+    fn the_palette_follows_the_terminal() {
         for (variables, palette) in [
             (&[("TERM", "xterm-256color")][..], Palette::Xterm256),
             (

@@ -22,7 +22,7 @@ fn fed(bytes: &[u8]) -> (Decoder, Instant) {
 }
 
 /// Asserts that `text` decodes to `wanted` as a whole, cut anywhere, byte by byte, and twice before another key.
-fn is_known(text: &str, wanted: &Typed) {
+fn assert_decodes_to(text: &str, wanted: &Typed) {
     let (bytes, once) = (text.as_bytes(), [wanted.clone()]);
     for cut in 0..bytes.len() {
         let (begin, end) = bytes.split_at(cut);
@@ -40,7 +40,7 @@ fn keys(keys: &[Key]) -> Vec<Typed> {
 }
 
 #[test]
-fn every_key_is_known_however_its_sequence_comes_apart() {
+fn decodes_every_key_however_its_bytes_are_split() {
     use Key::*;
     let cases: &[(Key, &[&str])] = &[
         (Char('a'), &["a"]),
@@ -74,13 +74,13 @@ fn every_key_is_known_however_its_sequence_comes_apart() {
     ];
     for (key, texts) in cases {
         for text in *texts {
-            is_known(text, &Typed::Key(*key));
+            assert_decodes_to(text, &Typed::Key(*key));
         }
     }
 }
 
 #[test]
-fn what_is_no_key_is_passed_over_as_a_whole() {
+fn ignores_sequences_that_are_no_keys() {
     for text in [
         "\u{1b}[<35;10;20M",
         "\u{1b}[<1;10;20M",
@@ -124,7 +124,7 @@ fn what_is_no_key_is_passed_over_as_a_whole() {
 }
 
 #[test]
-fn escape_is_a_key_after_a_moment_and_loses_none_that_follows() {
+fn escape_is_a_key_after_a_timeout_or_before_another_key() {
     let (mut decoder, begin) = fed(b"\x1b");
     assert_eq!(decoder.ready(), 0);
     assert_eq!(decoder.deadline(), Some(begin + BYTE_GAP));
@@ -156,7 +156,7 @@ fn escape_is_a_key_after_a_moment_and_loses_none_that_follows() {
 }
 
 #[test]
-fn a_sequence_without_an_end_is_given_up() {
+fn drops_unfinished_sequences() {
     for begun in [
         "\u{1b}[",
         "\u{1b}[<",
@@ -182,7 +182,7 @@ fn a_sequence_without_an_end_is_given_up() {
 }
 
 #[test]
-fn the_time_of_a_sequence_is_its_own() {
+fn each_sequence_has_its_own_timeout() {
     // Every piece ends within a sequence, but no sequence waits longer than a moment.
     let (mut decoder, begin) = fed(b"\x1b[");
     for number in 1..=100 {
@@ -192,7 +192,7 @@ fn the_time_of_a_sequence_is_its_own() {
 }
 
 #[test]
-fn a_long_sequence_takes_no_room() {
+fn long_sequences_use_bounded_memory() {
     let (mut decoder, begin) = (Decoder::default(), Instant::now());
     for long in ["\u{1b}[<", "\u{1b}]0;"] {
         decoder.feed(long.as_bytes(), begin);
@@ -204,10 +204,10 @@ fn a_long_sequence_takes_no_room() {
 }
 
 #[test]
-fn a_paste_comes_as_one() {
+fn decodes_a_paste_as_one_input() {
     let paste = |text: &str| Typed::Paste(text.to_owned());
     let text = "\u{1b}[200~a ü\u{1b}[20q\u{1b}\u{1b}[201~";
-    is_known(text, &paste("a ü\u{1b}[20q\u{1b}"));
+    assert_decodes_to(text, &paste("a ü\u{1b}[20q\u{1b}"));
     let unfinished = b"\x1b[200~a\x03";
     assert_eq!(typed(&[unfinished]), keys(&[Key::Ctrl('c')]));
     let (mut decoder, begin) = fed(b"\x1b[200~");
@@ -220,7 +220,7 @@ fn a_paste_comes_as_one() {
 
 proptest! {
     #[test]
-    fn no_bytes_break_it_and_it_always_comes_back(
+    fn recovers_from_any_bytes(
         pieces in prop::collection::vec(prop::collection::vec(
             prop_oneof![any::<u8>(), prop::sample::select(b"\x1b[O<MP]~;0123".to_vec())], 0..40), 0..20)
     ) {
@@ -239,7 +239,7 @@ proptest! {
 }
 
 #[test]
-fn the_mouse_is_known_however_its_report_comes_apart() {
+fn decodes_mouse_reports_however_they_are_split() {
     let cases = [
         ("\u{1b}[<0;10;20M", Did::Press, 9, 19),
         ("\u{1b}[<16;1;1M", Did::Press, 0, 0),
@@ -249,12 +249,12 @@ fn the_mouse_is_known_however_its_report_comes_apart() {
         ("\u{1b}[<65;65535;65535M", Did::WheelDown, 65534, 65534),
     ];
     for (report, did, x, y) in cases {
-        is_known(report, &Typed::Mouse(Mouse { did, x, y }));
+        assert_decodes_to(report, &Typed::Mouse(Mouse { did, x, y }));
     }
 }
 
 #[test]
-fn the_background_is_known_from_its_color() {
+fn decodes_the_background_color() {
     for (report, background) in [
         (
             "\u{1b}]11;rgb:ffff/ffff/ffff\u{1b}\\",

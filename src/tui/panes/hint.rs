@@ -50,7 +50,7 @@ fn lines_of(text: &str, width: u16) -> u16 {
 pub fn place(lab: &Lab, layout: &ScreenLayout) -> Rect {
     let place = layout.note;
     let needed = if has_message(lab) {
-        lines_of(&said(lab, place.width).0, place.width)
+        lines_of(&note_text(lab, place.width).0, place.width)
     } else {
         0
     };
@@ -76,7 +76,7 @@ pub fn place(lab: &Lab, layout: &ScreenLayout) -> Rect {
 
 /// Draws the message, or else the note. On a small screen it adds, if there is room, that a larger screen shows more.
 pub fn draw(lab: &Lab, is_cramped: bool, area: Rect, buf: &mut Buffer) {
-    let (text, role) = said(lab, area.width);
+    let (text, role) = note_text(lab, area.width);
     let theme = &lab.view().theme;
     let width = area.width.saturating_sub(2) as usize;
     let lines = if columns(&text) <= width {
@@ -111,9 +111,9 @@ pub fn has_message(lab: &Lab) -> bool {
 const NOT_KEPT: &str = "session not saved";
 
 /// Returns the text of the note on a screen of this width. It mentions an unsaved session as long as saving fails.
-fn said(lab: &Lab, width: u16) -> (String, Role) {
+fn note_text(lab: &Lab, width: u16) -> (String, Role) {
     let (popups, messages) = (lab.popups(), lab.messages());
-    if let Some(typed) = popups.dialog().and_then(value_typed) {
+    if let Some(typed) = popups.dialog().and_then(typed_value) {
         return typed;
     }
     let message = match popups.count {
@@ -139,7 +139,7 @@ fn said(lab: &Lab, width: u16) -> (String, Role) {
 }
 
 /// Returns the value being typed with its keys, or its error message. Returns `None` in other dialogs.
-fn value_typed(dialog: &Dialog) -> Option<(String, Role)> {
+fn typed_value(dialog: &Dialog) -> Option<(String, Role)> {
     let form = &dialog.form;
     let field = form.fields.first().filter(|_| dialog.is_of_value())?;
     Some(match &form.complaint {

@@ -238,7 +238,7 @@ fn are_apart(before: &SheetLineKind, after: &SheetLineKind) -> bool {
 }
 
 /// Returns the mark before a paragraph's first line, its indent in columns, and the role of its words.
-fn dressed(kind: &SheetLineKind) -> (String, u16, Role) {
+fn paragraph_style(kind: &SheetLineKind) -> (String, u16, Role) {
     fn plain(mark: &str, role: Role) -> (String, u16, Role) {
         (mark.to_owned(), 0, role)
     }
@@ -267,13 +267,16 @@ fn dressed(kind: &SheetLineKind) -> (String, u16, Role) {
 }
 
 fn lines_of(paragraph: &Paragraph, width: u16, theme: &Theme) -> Vec<LessonLine> {
-    let (lead, indent, role) = dressed(&paragraph.kind);
+    let (lead, indent, role) = paragraph_style(&paragraph.kind);
     let style = theme.style(role);
     let hanging = indent + columns(&lead) as u16;
     let room = width.saturating_sub(hanging).max(1) as usize;
     let text = paragraph.text();
     let texts: Vec<String> = match paragraph.kind {
-        SheetLineKind::Code => text.lines().flat_map(|line| in_room(line, room)).collect(),
+        SheetLineKind::Code => text
+            .lines()
+            .flat_map(|line| code_lines(line, room))
+            .collect(),
         _ => wrapped_with_units(&text, room),
     };
     let mut letters = letters_of(paragraph).peekable();
@@ -386,7 +389,7 @@ fn styled_pieces(
 }
 
 /// Returns a line of code unchanged, or wrapped if it is longer than `room`.
-fn in_room(line: &str, room: usize) -> Vec<String> {
+fn code_lines(line: &str, room: usize) -> Vec<String> {
     if columns(line) <= room {
         vec![line.to_owned()]
     } else {
@@ -425,7 +428,7 @@ mod tests {
     }
 
     #[test]
-    fn paragraphs_hang_on_their_marks() {
+    fn paragraphs_have_hanging_indents() {
         let choice = SheetLineKind::Choice {
             number: Some(2),
             is_selected: true,
@@ -446,7 +449,7 @@ mod tests {
     }
 
     #[test]
-    fn a_number_and_its_unit_stay_together() {
+    fn numbers_and_units_stay_together() {
         for (text, room, wanted) in [
             (
                 "a push of 100 N for 20 s.",
@@ -464,7 +467,7 @@ mod tests {
     }
 
     #[test]
-    fn words_keep_their_looks_over_line_ends() {
+    fn emphasis_survives_wrapping() {
         let words = |text: &str, emphasis| StyledText {
             text: text.to_owned(),
             emphasis,

@@ -327,7 +327,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_cut_has_dots() {
+    fn shortened_text_ends_with_dots() {
         assert_eq!(shortened("Loops", 5), "Loops");
         assert_eq!(shortened("Loops  ", 5), "Loops  ");
         assert_eq!(shortened("A fast top", 9), "A fast...");

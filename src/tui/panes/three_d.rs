@@ -176,7 +176,7 @@ impl<'a> Scene<'a> {
         self.body(&mut dots);
         labels.extend(self.phase_marks(&mut dots));
         labels.extend(self.draw_arrows(&mut dots));
-        self.tops(&mut dots);
+        self.traced_points(&mut dots);
         dots.render(&view.theme, buf);
         let picture = self.picture;
         let mut sheet = Labels { picture, buf };
@@ -216,7 +216,7 @@ impl<'a> Scene<'a> {
             let plumb = [self.dot(&self.position), self.dot(&shadow(self.position))];
             dots.path(plumb.into_iter(), Some(PLUMB_DASHES), f64::INFINITY, floor);
         }
-        if self.stands() {
+        if self.has_post() {
             let post = ink(Role::RimFar, Layer::Far);
             dots.line(self.dot(&Vector3::zeros()), self.dot(&middle), post);
         }
@@ -241,7 +241,7 @@ impl<'a> Scene<'a> {
     }
 
     /// Returns true if the pivot carries an off-center weight, so that a post is drawn under it.
-    fn stands(&self) -> bool {
+    fn has_post(&self) -> bool {
         let body = &self.seen.run.scenario().body.mechanics;
         let weight = self.seen.run.simulation().loads().gravity.abs() * body.first_moment().norm();
         weight > 0.0
@@ -307,7 +307,7 @@ impl<'a> Scene<'a> {
     }
 
     /// Draws the traced point of the run and of the exact motion.
-    fn tops(&self, dots: &mut LayeredDots) {
+    fn traced_points(&self, dots: &mut LayeredDots) {
         let spot = if self.is_large() {
             Spot::Five
         } else {

@@ -448,7 +448,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_number_is_wider_than_its_cell() {
+    fn numbers_fit_their_cells() {
         for width in [12, 30, 42, 60, 100] {
             let format = CellFormat::of_vectors(width);
             for power in -320..308 {

@@ -181,7 +181,7 @@ impl ArrowDiagram {
     }
 }
 
-fn headed(heading: &str, view: &View, area: Rect, buf: &mut Buffer) -> Rect {
+fn with_heading(heading: &str, view: &View, area: Rect, buf: &mut Buffer) -> Rect {
     let [heading_line, below] = split_rows(area, 1);
     let style = view.theme.style(Role::Label);
     write(heading_line, (0, 0), heading, style, buf);
@@ -217,7 +217,7 @@ fn torque_and_change(explained: &StepWorkings) -> [Option<Vector2<f64>>; 2] {
 
 /// Draws the axle and L from above, with τ at the tip of the axle and dL at the tip of L.
 fn from_above(explained: &StepWorkings, view: &View, area: Rect, buf: &mut Buffer) {
-    let area = headed("from above, o: top", view, area, buf);
+    let area = with_heading("from above, o: top", view, area, buf);
     let (_, after) = &explained.states;
     let arm = explained.scenario.arm_m();
     let tip = after.axle().xy() * arm;
@@ -267,7 +267,7 @@ fn from_above(explained: &StepWorkings, view: &View, area: Rect, buf: &mut Buffe
 
 /// Draws the path of the axle's tip in its first dip, magnified to fill the picture.
 fn dip(explained: &StepWorkings, is_seen: bool, view: &View, area: Rect, buf: &mut Buffer) {
-    let area = headed("first dip, magnified", view, area, buf);
+    let area = with_heading("first dip, magnified", view, area, buf);
     let Some(dip) = &explained.dip else {
         let upright = "the axle starts upright: it cannot dip to a side";
         return text(upright, Role::Text, view, area, buf);

@@ -217,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn times_are_round_and_stand_under_their_place() {
+    fn times_are_round_and_centered() {
         let of = |begin_s, window_s, width| line(&Strip::new(begin_s, window_s, 2 * width), width);
         assert_eq!(
             of(0.0, 230.0, 56),
@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn late_times_are_told_at_both_ends() {
+    fn late_times_are_labeled_at_both_ends() {
         let at = |begin_s, width| ends(&Strip::new(begin_s, 230.0, 50), width);
         assert_eq!(
             at(1_130_220.0, 25),
