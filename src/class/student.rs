@@ -380,10 +380,7 @@ impl Student {
         let open = lessons.open_lesson().filter(|_| self.record.is_aside)?;
         let (page, lesson) = (open.place.page, &open.lesson.name);
         let lesson = self.follower.folder.short(lesson);
-        Some(format!(
-            "seat {}, beside page {page} of {lesson}",
-            self.seat.word
-        ))
+        Some(format!("seat {}, page {page} of {lesson}", self.seat.word))
     }
 }
 

@@ -194,7 +194,7 @@ fn the_keys_go_by_phase_and_on_to_the_next_step() {
 fn the_points_add_up_one_by_one() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.commands("pause = true").press("v.");
-    stage.shows("10 more: Down adds them up");
+    stage.shows("10 more: press Down to add them up");
     stage.press("↓").shows("the first of 14 points gives");
     stage.press("↓↓");
     stage.shows("the first 3 of 14 points add up to");

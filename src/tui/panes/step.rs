@@ -217,7 +217,7 @@ impl PhasePage<'_> {
         let turn = significant(turn_deg, 3);
         let rises = new.z - old.z;
         if rises.abs() <= SAME_HEIGHT * old.norm() {
-            format!("L turns by {turn}°, and its z stays: sideways, not down.")
+            format!("L turns by {turn}°; its z does not change: sideways, not down.")
         } else {
             format!(
                 "L turns by {turn}°; its z changes by {} J s.",
@@ -461,7 +461,7 @@ pub(super) fn name_of(scenario: &Scenario, point: usize) -> String {
 const fn words_of(phase: PhaseName) -> [&'static str; 3] {
     match phase {
         PhaseName::Inertia => ["The mass distribution about the pivot, added up point by point.", "nothing yet; gives I", "the body before the step (gray)"],
-        PhaseName::AngularVelocity => ["The present axis of rotation and its speed: L divided by the inertia.", "nothing yet; gives Ω", "the arrow Ω"],
+        PhaseName::AngularVelocity => ["The current axis of rotation and its speed: L divided by the inertia.", "nothing yet; gives Ω", "the arrow Ω"],
         PhaseName::AxisAndAngle => ["The line u along Ω, and the angle about it in one time step.", "nothing yet; gives u and the angle", "the line u through the pivot"],
         PhaseName::Rotation => ["The matrix that turns any point about u by that angle.", "nothing yet; gives R", "the body before (gray) and after"],
         PhaseName::NewPositions => ["R turns every point to its new position.", "the positions of the points", "the body before (gray) and after"],

@@ -223,9 +223,9 @@ impl TableView<'_> {
         }
         if has_more {
             let what = if is_summed(self.table) {
-                "Down adds them up one by one"
+                "press Down to add them up"
             } else {
-                "Down goes through them"
+                "press Down to step through them"
             };
             let text = format!("... {left} more: {what}");
             lines.push(StepPageLine::new(0, text, Role::Label));
