@@ -53,7 +53,7 @@ fn remedy(health: &Health, advice: &Advice) -> Option<String> {
 const LAG_IS_RIGHT: f64 = 1.05;
 
 impl fmt::Display for Predictability {
-    /// Writes the words that follow "the motion is", or nothing without a limit.
+    /// Writes the words that follow "the motion is", or nothing if there is no limit.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.unstable {
             Some(Equilibrium::Upright) => {

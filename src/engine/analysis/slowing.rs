@@ -23,7 +23,8 @@ pub struct FrictionEffect {
 }
 
 impl FrictionEffect {
-    /// Returns the effect of friction on the run at `step`. `None` without friction. A lopsided body has no times.
+    /// Returns the effect of friction on the run at `step`. `None` without friction. For a lopsided body, the times are
+    /// `None`.
     pub fn new(step: &Step) -> Option<Self> {
         let friction = step.loads().friction;
         if friction.is_none() {

@@ -19,7 +19,7 @@ use std::fmt;
 pub const BELIEVED_WITHIN: f64 = 0.01;
 /// Tolerance on the minimum and maximum tilt and on the path of the tilt, as a fraction of the exact swing.
 const SWING_TOLERANCE: f64 = 0.05;
-/// Minimum swing of the exact tilt, degrees. A smaller one is no swing, and the summary shows no more digits.
+/// Minimum swing of the exact tilt, degrees. Below it, the tilt does not swing; the summary does not show more digits.
 const NO_SWING_DEG: f64 = 1e-4;
 /// Tolerance on the tilt if the exact motion does not swing, rad: the same fraction of the traced point's tolerance.
 const WHERE_NONE_RAD: f64 = SWING_TOLERANCE * BELIEVED_WITHIN;
@@ -62,7 +62,7 @@ struct HeightRange {
 /// Swing of the tilt in a run and in the exact motion, in the window in which they differ most.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SwingComparison {
-    /// Begin and end of the window, s. `None` if it is the whole run.
+    /// Start and end of the window, s. `None` if it is the whole run.
     pub stretch_s: Option<(f64, f64)>,
     /// Minimum and maximum tilt of the run in the window, degrees.
     pub run_deg: (f64, f64),

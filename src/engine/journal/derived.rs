@@ -142,7 +142,7 @@ impl DerivedValue {
         number.is_some_and(|number| self.set(number, file, scenario).is_ok())
     }
 
-    /// Nudges `number` up by `times` nudges, or down if `times` is negative.
+    /// Nudges `number` up `times` times, or down if `times` is negative.
     pub fn nudged(self, number: f64, times: i32) -> f64 {
         let rule = match self {
             Self::MomentumTilt => Nudge::By(1.0),

@@ -18,7 +18,7 @@ const WEIGHTS: f64 = 2.0;
 /// direction.
 const ON_VERTICAL: f64 = 1e-9;
 
-/// Begin of a push that starts as soon as it is given.
+/// Start of a push that acts as soon as it is given.
 const NOW_TEXT: &str = "now";
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -133,7 +133,7 @@ impl NextPush {
         }
     }
 
-    /// Returns the push with `field` nudged up by `times` nudges, or down if `times` is negative.
+    /// Returns the push with `field` nudged up `times` times, or down if `times` is negative.
     pub fn nudged(
         &self,
         field: PushField,

@@ -84,7 +84,7 @@ pub fn table_of(file: &ScenarioFile) -> Table {
     Table::try_from(&listed).unwrap_or_default() // TOML can write every checked file
 }
 
-/// Does the same as [`table_of`], and applies the edits of the scenario up to `step`.
+/// Returns the same as [`table_of`], with the edits of the scenario up to `step`.
 pub fn table_at(scenario: &Scenario, step: u64) -> Table {
     let mut table = table_of(&scenario.file);
     let made = scenario.file.edit.iter().filter(|edit| edit.step <= step);
@@ -94,7 +94,7 @@ pub fn table_at(scenario: &Scenario, step: u64) -> Table {
     table
 }
 
-/// Does the same as [`table_at`], and returns a file.
+/// Returns the same as [`table_at`], as a file.
 pub fn file_at(scenario: &Scenario, step: u64) -> ScenarioFile {
     let file = table_at(scenario, step).try_into();
     file.unwrap_or_else(|_: toml::de::Error| scenario.file.clone())
@@ -272,7 +272,7 @@ impl Parameter {
         }
     }
 
-    /// Nudges the value up by `times` nudges, or down if `times` is negative.
+    /// Nudges the value up `times` times, or down if `times` is negative.
     pub fn nudged(&self, times: i32) -> Result<Value, String> {
         let value = match (&self.value, self.lab.nudge) {
             (_, Nudge::Typed) => return Err("is text: type it".to_owned()),

@@ -170,7 +170,7 @@ impl RestartPoint<'_> {
         }
     }
 
-    /// Returns the begin of the remainder of `window`, counted from now, and its duration, both in s. `None` if it is
+    /// Returns the start of the remainder of `window`, counted from now, and its duration, both in s. `None` if it is
     /// over.
     fn seconds(&self, window: Window) -> Option<(f64, f64)> {
         let dt = self.scenario.written_for_s;

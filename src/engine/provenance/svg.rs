@@ -4,7 +4,7 @@
 use super::extracted::{BROKEN, Extracted, place};
 
 const BEGIN: &str = "<metadata>\n";
-/// The begin, with the first letters of the text.
+/// The start tag, with the first letters of the text.
 const BEGIN_OF_TEXT: &[u8] = b"<metadata>\n# gyrolab figure, ";
 const METADATA_END: &str = "\n</metadata>\n";
 pub const END_OF_FILE: &[u8] = b"</svg>\n";

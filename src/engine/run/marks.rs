@@ -6,7 +6,7 @@ use crate::scenario::{Push, Scenario};
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Marks {
-    /// Begin and end of each interval in which at least one push acts, s. Intervals do not touch. The last end may be
+    /// Start and end of each interval in which at least one push acts, s. Intervals do not touch. The last end may be
     /// infinite.
     pub pushes: Vec<(f64, f64)>,
     pub edits: Vec<f64>,

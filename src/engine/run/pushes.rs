@@ -28,7 +28,7 @@ pub enum Counting {
 pub struct Stretch {
     /// Number of the step. Step 1 leads from the start to t = dt.
     pub step: u64,
-    /// Begin, s.
+    /// Start, s.
     pub begin: f64,
     /// End, s.
     pub end: f64,

@@ -9,10 +9,10 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
 
-/// Begin of the line of names in the CSV of a run with every column.
+/// Start of the line of names in the CSV of a run with every column.
 const EVERY_COLUMN: &[u8] = b"step,t_s,";
 
-/// Begin of the version line, which is in the head of every CSV that gyrolab writes.
+/// Start of the version line, which is in the head of every CSV that gyrolab writes.
 const VERSION_LINE: &[u8] = b"# gyrolab = ";
 
 /// Mark that some programs write before the first line of a file.
