@@ -209,7 +209,7 @@ fn two_slow_clicks_are_no_double_click() {
     desk.does(Did::Press, setting).stage.shows("dark");
     desk.does(Did::Press, setting).stage.shows("light");
     desk.stage.press("\u{1b}?");
-    let of_help = desk.place("stop the run");
+    let of_help = desk.place("pause or resume the run");
     desk.does(Did::Press, of_help);
     assert_eq!(desk.stage.lab.popups().mode, Mode::Help);
 }

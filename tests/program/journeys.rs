@@ -66,11 +66,11 @@ fn set_from_now_on(lab: &mut Terminal, value: &str) {
 /// Goes to `step`, once all that was pressed before has been done.
 #[track_caller]
 fn go_to(lab: &mut Terminal, step: u64) {
-    lab.ask(&step.to_string(), &format!("{step}: now the key"));
+    lab.ask(&step.to_string(), &format!("{step}: press a key"));
     lab.press("g");
     let goal = format!("step {step}");
     lab.wait_until(&goal, |lab| {
-        lab.step() == Some(step) && !lab.screen().contains("now the key")
+        lab.step() == Some(step) && !lab.screen().contains("press a key")
     });
 }
 
