@@ -96,7 +96,7 @@ fn a_teacher_stops_steps_and_goes_on() {
     assert_eq!(stage.step(), 200);
     stage.press(".").wait(0.1);
     assert_eq!(stage.step(), 201);
-    stage.press("10").shows("10: now the key").press(".");
+    stage.press("10").shows("10: press a key").press(".");
     stage.wait(0.1);
     assert_eq!(stage.step(), 211);
     stage.press(" ").wait(1.0).shows("► ×20");

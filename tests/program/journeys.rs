@@ -84,7 +84,7 @@ fn steps(lab: &mut Terminal, keys: &str, step: u64) {
 /// Gives the push to come, and waits for the message about it.
 #[track_caller]
 fn push(lab: &mut Terminal) {
-    lab.ask("1", "1: now the key"); // what was said of the push before has gone
+    lab.ask("1", "1: press a key"); // what was said of the push before has gone
     lab.press("p");
     lab.wait_until("a push", |lab| {
         let words = lab.words();
