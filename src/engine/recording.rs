@@ -211,8 +211,8 @@ impl Recording {
 }
 
 const WHOLE_RUN_BINS: usize = 16_384;
-/// Number of bins kept, once there are more than fit, per bin that makes one of the next size. With more, steps would
-/// take longer, because the bins would not stay in the processor's nearer caches.
+/// Once a level drops its oldest bins, it keeps this number times `in_next`. With more, steps would take longer,
+/// because the bins would not stay in the processor's nearer caches.
 const RECENT: usize = 1024;
 
 /// Bins of one size, in order and without gaps. The first of the run has the number 0. The oldest ones may be dropped.

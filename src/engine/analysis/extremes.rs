@@ -4,8 +4,9 @@
 //! If the steps follow the swing, the row nearest to a turning point misses it by an amount that a parabola through the
 //! row and its neighbors gives. This amount is reported as the uncertainty, and is not added to the value.
 //!
-//! With fewer than six rows per swing the run is under-sampled: the rows are phases of the swing in no order. The
-//! amount that their second half has added to the swing of the first half then tells how much is still unseen.
+//! With fewer than six rows per swing the run is under-sampled: the rows are phases of the swing in no particular
+//! order. The amount that their second half has added to the swing of the first half then tells how much is still
+//! unseen.
 
 use super::swings::height_in;
 use super::turns::MeasuredNumber;

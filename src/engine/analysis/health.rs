@@ -49,7 +49,7 @@ pub struct Health {
     pub nutation: Option<Nutation>,
     /// Swing of the tilt compared with the exact motion. `None` if the exact motion would take too long.
     pub swing: Option<SwingComparison>,
-    /// True if the body's orientation is a rotation. A scheme that breaks down does not keep it one.
+    /// True if the body's orientation is a rotation. A scheme that breaks down deforms it.
     pub is_a_rotation: bool,
     /// Angle between axle and L now, degrees.
     pub lag_deg: f64,
@@ -76,7 +76,7 @@ pub struct Health {
 /// Effect of the time step on the picture of a wheel of n equal points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum WheelPicture {
-    /// Each point is nearest to its own last position: the wheel appears to turn correctly.
+    /// Each point is nearest to its own previous position: the wheel appears to turn correctly.
     Right,
     /// Under-sampled: the step turns the wheel by more than π/n, and one point moves to where another was.
     Strobed,
@@ -115,8 +115,8 @@ pub enum Advice {
         /// Shortest time step tried with the run's own scheme, s.
         tried_s: f64,
     },
-    /// Its pushes accumulate per step, and would differ at another time step. No other scheme fixes the run at this
-    /// one.
+    /// The run's pushes accumulate per step, and would differ at another time step. No other scheme fixes the run at
+    /// this one.
     BoundToItsTimeStep,
     /// No fix could be found in reasonable time.
     Nothing,
@@ -391,7 +391,7 @@ fn most_steps(scenario: &Scenario) -> f64 {
 }
 
 /// Returns the time steps to try: 5, 2 and 1 times each power of ten below the scenario's time step. With each, the
-/// body turns by less than half a turn, and all of them together fit into the steps that a search may take.
+/// body turns by less than half a turn, and all of them together take no more steps than a search may.
 fn finer_time_steps(scenario: &Scenario) -> impl Iterator<Item = f64> + use<> {
     let begin = scenario.motion.time_step_s;
     let (duration, most) = (Clock::end_s(scenario), most_steps(scenario));

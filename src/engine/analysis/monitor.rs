@@ -120,8 +120,8 @@ impl Monitor {
         }
     }
 
-    /// Records `step`. It must receive every step, and compares each with the exact motion. A deviation that has
-    /// vanished at the next reading has occurred all the same.
+    /// Records `step`. It must receive every step, and compares each with the exact motion. A deviation counts even if
+    /// it has vanished by the next reading.
     pub fn record(&mut self, step: &Step) {
         self.measure(step);
         self.beside.hold(step.after());

@@ -1,5 +1,5 @@
-//! Measures a run by its highest points, which parabolas through three rows give. It serves lopsided bodies, loads off
-//! the axle, and time steps too long for the motion.
+//! Measures a run by its highest points, found by parabolas through three rows. This is used for lopsided bodies, loads
+//! off the axle, and time steps too long for the motion.
 
 use super::beats::{Point, slope};
 use super::turns::{
@@ -175,7 +175,7 @@ impl Parabolas {
         self.turned_at = Some(height);
     }
 
-    /// Returns true if a lopsided body has no swing so small that another rule might not count it.
+    /// Returns true if a lopsided body has no swing so small that counting it would be a matter of convention.
     fn is_even(&self) -> bool {
         let [lowest, highest] = self.heights;
         self.smallest_swing >= LEAST_SWING_PART * (highest - lowest)

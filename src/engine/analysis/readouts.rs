@@ -324,8 +324,8 @@ pub fn at_end(
     ))
 }
 
-/// Returns true if the `wanted` numbers do not depend on how the run gets to its end. Only theory's numbers do not, and
-/// only if the scheme needs no steps and nothing happens at certain steps on the way.
+/// Returns true if the `wanted` numbers do not depend on how the run gets to its end. This holds only for theory's
+/// numbers, if the scheme needs no steps and nothing happens at certain steps on the way.
 fn needs_no_steps(scenario: &Scenario, wanted: &[&Readout]) -> bool {
     scenario.motion.scheme.order.is_none()
         && wanted

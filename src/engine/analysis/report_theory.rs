@@ -17,7 +17,7 @@ use crate::run::Step;
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 
-/// Prediction for the scheme in the run since the forces last changed.
+/// Predicted effect of the scheme on the run since the forces last changed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReportTheory {
     /// |w*|, rad. `None` if it is too large for the linear theory.

@@ -30,7 +30,7 @@ const FEW_SWINGS: f64 = 3.0;
 /// Maximum number of bins. Beyond it, pairs of bins are merged.
 const MOST_SWING_BINS: usize = 128;
 
-/// Swings of the run and of the exact motion so far. It must receive every step.
+/// Follows the swings of the run and of the exact motion. It must receive every step.
 #[derive(Clone, Debug)]
 pub(super) struct Swings {
     blocks: Vec<SwingBin>,

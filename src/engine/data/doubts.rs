@@ -31,7 +31,7 @@ pub fn doubts(measured: &MeasuredData, scenario: &Arc<Scenario>) -> Vec<String> 
         .collect()
 }
 
-/// Returns the doubt that a point was measured farther from the pivot than its arm.
+/// Returns a warning if a point was measured farther from the pivot than its arm.
 fn point_beyond_arm(series: &TimeSeries, arm_m: f64) -> Option<String> {
     let mut squares = vec![0.0; series.times_s.len()];
     let (mut names, mut sigma) = (Vec::new(), 0.0_f64);
@@ -74,7 +74,7 @@ fn point_beyond_arm(series: &TimeSeries, arm_m: f64) -> Option<String> {
     ))
 }
 
-/// Returns the doubt that a tilt is in radians, because it never exceeds pi while the run's tilt does.
+/// Returns a warning if a tilt may be in radians, because it never exceeds pi while the run's tilt does.
 fn tilt_in_radians(series: &TimeSeries, scenario: &Arc<Scenario>) -> Option<String> {
     let curve = series
         .curves

@@ -174,7 +174,7 @@ impl Guess<'_> {
         self.added.iter().any(|(added, _)| *added == place)
     }
 
-    /// Adds guesses for a table of runs: the key or readout that was probably meant, or that the column is left out.
+    /// Adds guesses for a table of runs: the key or readout that was probably meant, or a mark to leave the column out.
     fn add_of_table(&mut self, places: &[usize]) {
         for &place in places {
             let name = &self.cells.names[place];

@@ -52,7 +52,7 @@ impl<S: Borrow<TimeSeries>> RunReader<S> {
         rows.min().map(|row| series.times_s[row])
     }
 
-    /// Reads `simulation` at every measured time from now up to its next step, without that step.
+    /// Reads `simulation` at every measured time from now until just before its next step.
     pub fn read_to_next_step(&mut self, simulation: &Simulation) -> Result<(), NotFinite> {
         let end_s = simulation.next_time_s();
         while let Some(time_s) = self.next_time_s().filter(|time_s| *time_s < end_s) {

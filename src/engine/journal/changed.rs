@@ -183,8 +183,8 @@ fn number_change(name: &str, unit: &str, [new, old]: [f64; 2]) -> Option<String>
     (new != old).then(|| format!("{name} {} {unit}, not {}", shortest(new), shortest(old)))
 }
 
-/// Describes how the table `name` has changed: lists the new values, or, if there are many, says that it is another
-/// one. `None` if it has not changed.
+/// Describes how the table `name` has changed: lists the new values, or, if there are many, says only that the table
+/// differs. `None` if it has not changed.
 fn values<T: Serialize + PartialEq>(name: &str, before: &T, now: &T) -> Option<String> {
     if before == now {
         return None;

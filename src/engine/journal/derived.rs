@@ -39,7 +39,7 @@ impl DerivedValue {
         Self::Arm,
     ];
 
-    /// Returns a name for it that begins with the key that it sets.
+    /// Returns the name of the value, which begins with the key that it sets.
     pub fn key(self) -> &'static str {
         match self {
             Self::MomentumSize => "start.momentum_Js.size",
@@ -84,7 +84,8 @@ impl DerivedValue {
         }
     }
 
-    /// Returns the value in `scenario`, with `file` as its file including edits. `None` if it has no such value.
+    /// Returns the value in `scenario`. `file` is the scenario's file with its edits applied. `None` if it has no such
+    /// value.
     pub fn number(self, file: &ScenarioFile, scenario: &Scenario) -> Option<f64> {
         let momentum = &scenario.start.momentum;
         match self {

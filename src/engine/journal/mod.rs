@@ -271,8 +271,8 @@ impl Journal {
         }
     }
 
-    /// Does `acts` at `step` of the present run as one act, and returns the run's new scenario. With `coalesces`, they
-    /// are another nudge of the same value, and one undo reverts them together with the previous act.
+    /// Performs `acts` at `step` of the present run as one act, and returns the run's new scenario. With `coalesces`,
+    /// they are another nudge of the same value, and one undo reverts them together with the previous act.
     ///
     /// # Errors
     /// Returns an error if an act is invalid. Nothing has changed then.
@@ -305,7 +305,7 @@ impl Journal {
         Ok(scenario)
     }
 
-    /// Begins a new run, opened under the same name, and does `acts` at its step 0.
+    /// Begins a new run, opened under the same name, and performs `acts` at its step 0.
     ///
     /// The new run has the settings that the present run had when it was left, and the values of `set`; see
     /// [`begun_with`](Self::begun_with). With `coalesces`, this is another nudge of the value that began the present

@@ -18,7 +18,7 @@ const WEIGHTS: f64 = 2.0;
 /// direction.
 const ON_VERTICAL: f64 = 1e-9;
 
-/// Start of a push that acts as soon as it is given.
+/// Text for the start of a push that acts as soon as it is given.
 const NOW_TEXT: &str = "now";
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

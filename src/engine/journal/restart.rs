@@ -63,7 +63,7 @@ pub fn scenario_from(scenario: &Scenario, state: &State, step: u64) -> Result<Sc
     Document::from_file(origin, &file)?.scenario()
 }
 
-/// Returns the number of steps for which the new run is as long, in seconds, as the run of `scenario`.
+/// Returns the number of steps that makes the new run as long, in seconds, as the run of `scenario`.
 fn steps_of_same_length(scenario: &Scenario, motion: &Motion) -> u64 {
     if motion.time_step_s == scenario.motion.time_step_s {
         return scenario.steps;

@@ -72,7 +72,7 @@ impl OwnColumn {
 /// A column of a file, by name or by number from 1, and its new name.
 pub type Renaming = (String, String);
 
-/// Replaces the new name to leave the column out.
+/// Used instead of a new name, to leave the column out.
 pub const LEFT_OUT: &str = "-";
 
 /// Parses a renaming, `COLUMN=NAME`.

@@ -190,7 +190,7 @@ fn text_of_file(file: impl Read) -> Result<ScenarioText, Problem> {
     Ok(ScenarioText::Whole(text))
 }
 
-/// Reads all bytes of `file`, but at most `most` and one.
+/// Reads the bytes of `file` to its end. More than `most` are an error with the message `too_long`.
 pub(super) fn bytes_of(file: impl Read, most: u64, too_long: &str) -> Result<Vec<u8>, Problem> {
     let mut bytes = Vec::new();
     let read = file.take(most + 1).read_to_end(&mut bytes);

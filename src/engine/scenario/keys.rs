@@ -33,7 +33,7 @@ pub const GRAVITY: f64 = 9.8;
 /// Default playback speed, simulated seconds per second.
 pub const DEFAULT_SPEED: f64 = 1.0;
 
-/// Maximum number of a phase of a time step that can be selected.
+/// Highest number of a phase of a time step that can be selected.
 pub const MOST_PHASES: i64 = 1000;
 
 /// Meaning of `start.momentum_Js`, and the keys that can replace it.

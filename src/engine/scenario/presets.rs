@@ -6,8 +6,8 @@ pub struct Preset {
     /// Name on the command line. The file is `presets/NAME.toml` in the source.
     pub name: &'static str,
     pub text: &'static str,
-    /// Suggestion for the time after its run, one line. It is not in the file, because the file is in the header of
-    /// every CSV of the run.
+    /// Suggestion for a next experiment, one line. It is not in the file, because the file is in the header of every
+    /// CSV of the run.
     pub next: &'static str,
 }
 

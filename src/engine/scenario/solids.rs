@@ -203,8 +203,8 @@ fn check_dimensions(form: &SolidShape, file: &PartFile) -> Result<(), Problem> {
     Ok(())
 }
 
-/// Prepares the file's `table` for a new `value` at `key`. If a part gets another shape, or a part of a direction that
-/// its file does not give, the required keys are added. They stay as near to the old values as possible.
+/// Prepares the file's `table` for a new `value` at `key`. If a part gets another shape, or a component of a direction
+/// that the file does not give, the required keys are added. They stay as near to the old values as possible.
 pub(super) fn prepare(table: &mut Table, key: &str, value: &Value) {
     let mut names = key.split('.');
     let (Some("body"), Some("part")) = (names.next(), names.next()) else {

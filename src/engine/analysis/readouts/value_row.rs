@@ -12,7 +12,7 @@ use crate::text::number::{exponent, fixed, rounded};
 const LEAST_SECONDS: f64 = 0.1;
 /// Tolerance as a fraction of the arm, or of the value itself.
 const OFF_PART: f64 = 0.01;
-/// Minimum width for all decimals. A narrower number has at most three.
+/// Minimum width, in columns, for all decimals. In a narrower space, a number has at most three.
 const FULL_DECIMALS_FROM: usize = 7;
 const NARROW_DECIMALS: usize = 3;
 /// Differences from the exact value smaller than this are written with an exponent.
@@ -27,7 +27,7 @@ pub struct ValueRow {
     pub label: &'static str,
     /// The label in a narrow pane, at most 8 characters.
     pub short_label: &'static str,
-    /// Rank in leaving the pane. If there is no room for all rows, the highest ranks leave first; rank 0 stays.
+    /// Order in which rows leave the pane if there is no room for all. The highest rank leaves first, and rank 0 stays.
     pub rank: u8,
     unit: ShownUnit,
     digits: Digits,
