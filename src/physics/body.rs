@@ -1,5 +1,6 @@
 //! What turns: a rigid set of point masses with one point pinned at the origin.
 
+use super::PlacedSolid;
 use nalgebra::{Matrix3, Vector3};
 
 /// Smallest principal moment over the largest at or below which the inertia counts as singular: Ω = I⁻¹L would
@@ -35,6 +36,14 @@ pub struct Body {
 /// Why a set of points cannot turn as a rigid body.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum BodyError {
+    /// A point has a negative mass.
+    #[error("point {point} has a negative mass, {mass:e} kg")]
+    NegativeMass {
+        /// Index of the point.
+        point: usize,
+        /// Its mass, kg.
+        mass: f64,
+    },
     /// All the mass lies on one line through the pivot (or there is none).
     #[error(
         "singular inertia: about the pivot the smallest principal moment is {smallest:e} kg m^2, the largest {largest:e}; put mass off the axle"
@@ -56,9 +65,13 @@ impl Body {
     /// The body made of `points` (body frame, upright pose).
     ///
     /// # Errors
-    /// When the inertia about the pivot is singular (its smallest principal moment at most 1e-12 of the largest) or out of
-    /// the range of numbers. The signs of the masses are not checked.
+    /// If a mass is negative, or if the inertia about the pivot is singular (its smallest principal moment at most 1e-12 of
+    /// the largest) or out of the range of numbers.
     pub fn new(points: Vec<PointMass>) -> Result<Self, BodyError> {
+        if let Some(point) = points.iter().position(|point| point.mass < 0.0) {
+            let mass = points[point].mass;
+            return Err(BodyError::NegativeMass { point, mass });
+        }
         let mass = points.iter().map(|p| p.mass).sum();
         let first_moment = points
             .iter()
@@ -75,6 +88,16 @@ impl Body {
             inverse_inertia,
             frame_moment: 0.0,
         })
+    }
+
+    /// The body made of `solids`. Each becomes [seven points](super::part::POINTS_PER_PART), its center first: the center of
+    /// `solids[i]` is point 7 i. To follow or push another point, add it to the solids' points with mass 0, and use
+    /// [`new`](Self::new).
+    ///
+    /// # Errors
+    /// As of [`new`](Self::new).
+    pub fn from_solids(solids: &[PlacedSolid]) -> Result<Self, BodyError> {
+        Self::new(solids.iter().flat_map(PlacedSolid::points).collect())
     }
 
     /// The body of which one part alone spins about the axle, with the moment `rotor` (kg m²) about it, while the rest of it
@@ -100,7 +123,7 @@ impl Body {
         self.mass
     }
 
-    /// Σ m x, kg m, body frame: mass times the centre of mass.
+    /// Σ m x, kg m, body frame: mass times the center of mass.
     pub fn first_moment(&self) -> Vector3<f64> {
         self.first_moment
     }

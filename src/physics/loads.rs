@@ -42,6 +42,16 @@ impl Friction {
         !self.is_on_spin() && self.swing_viscous == 0.0
     }
 
+    /// k0, k1, k2, k4.
+    pub(crate) fn coefficients(&self) -> [f64; 4] {
+        [
+            self.spin_dry,
+            self.spin_viscous,
+            self.spin_quadratic,
+            self.swing_viscous,
+        ]
+    }
+
     /// Whether the spin is rubbed.
     pub(crate) fn is_on_spin(&self) -> bool {
         self.spin_dry > 0.0 || self.spin_viscous > 0.0 || self.spin_quadratic > 0.0

@@ -35,6 +35,12 @@ pub fn weight_height(body: &Body, state: &State) -> f64 {
         .dot(&body.first_moment())
 }
 
+/// Returns the total energy, J: kinetic energy and potential energy in `gravity` (m/s²), which is 0 at the height of the
+/// pivot. Pushes have no part in it: they do work.
+pub fn total_energy(body: &Body, state: &State, gravity: f64) -> f64 {
+    kinetic_energy(body, state) + gravity * weight_height(body, state)
+}
+
 /// Σ m dz/dt, kg m/s: what of the body's momentum is vertical.
 pub fn vertical_momentum(body: &Body, state: &State) -> f64 {
     let moment = state.orientation * body.first_moment();

@@ -1,6 +1,6 @@
-//! Solid parts of a body, each replaced by six points of the same mass, centre and inertia.
+//! Solid parts of a body, each replaced by six points of the same mass, center and inertia.
 //!
-//! A rigid part of mass m, centre c and principal moments A, B, C about its centre moves as six points of m/6 at
+//! A rigid part of mass m, center c and principal moments A, B, C about its center moves as six points of m/6 at
 //! c ± a e1, c ± b e2, c ± c3 e3 do (they are *equimomental* to it), where
 //!
 //! a² = 3 (B + C − A)/(2 m), b² = 3 (A + C − B)/(2 m), c3² = 3 (A + B − C)/(2 m).
@@ -17,10 +17,10 @@ use std::fmt;
 /// two are equal.
 const MOMENT_SUM_ROUNDING: f64 = 1e-12;
 
-/// The points that stand for a part: its centre, without mass, and the six.
+/// The points that stand for a part: its center, without mass, and the six.
 pub const POINTS_PER_PART: usize = 7;
 
-/// A solid, in its own frame: its axis is z, its centre of mass the origin. Lengths in m.
+/// A solid, in its own frame: its axis is z, its center of mass the origin. Lengths in m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shape {
     /// A thin ring across the axis.
@@ -59,7 +59,7 @@ pub enum Shape {
         /// Its radius.
         radius: f64,
     },
-    /// A solid cone, its apex against the axis, three quarters of its length from the centre of mass.
+    /// A solid cone, its apex against the axis, three quarters of its length from the center of mass.
     Cone {
         /// Radius of its base.
         radius: f64,
@@ -76,7 +76,7 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// The principal moments about the centre divided by the mass, m²: about x, about y, about the axis.
+    /// The principal moments about the center divided by the mass, m²: about x, about y, about the axis.
     pub fn moments_per_mass(&self) -> Vector3<f64> {
         let symmetric = |along: f64, across: f64| Vector3::new(across, across, along);
         match *self {
@@ -110,11 +110,84 @@ impl Shape {
             Self::Moments(moments) => moments,
         }
     }
+
+    /// Refuses dimensions that no solid of this shape has.
+    fn check(&self) -> Result<(), PartError> {
+        match *self {
+            Self::Ring { radius } | Self::Ball { radius } | Self::Shell { radius } => {
+                above_zero("radius", radius)
+            }
+            Self::Cylinder { radius, length } => {
+                above_zero("radius", radius)?;
+                not_negative("length", length)
+            }
+            Self::Tube {
+                inner,
+                outer,
+                length,
+            } => {
+                above_zero("outer", outer)?;
+                not_negative("inner", inner)?;
+                not_negative("length", length)?;
+                require(inner <= outer, "inner", "must not be greater than outer")
+            }
+            Self::Rod { length } => above_zero("length", length),
+            Self::Cone { radius, length } => {
+                above_zero("radius", radius)?;
+                above_zero("length", length)
+            }
+            Self::Block { size } => none_negative("size", &size),
+            Self::Moments(moments) => none_negative("moments", &moments),
+        }
+    }
+}
+
+fn require(holds: bool, name: &'static str, rule: &'static str) -> Result<(), PartError> {
+    if holds {
+        Ok(())
+    } else {
+        Err(PartError::Dimension { name, rule })
+    }
+}
+
+fn above_zero(name: &'static str, value: f64) -> Result<(), PartError> {
+    require(value > 0.0, name, "must be greater than zero")
+}
+
+fn not_negative(name: &'static str, value: f64) -> Result<(), PartError> {
+    require(value >= 0.0, name, "must not be negative")
+}
+
+fn none_negative(name: &'static str, values: &Vector3<f64>) -> Result<(), PartError> {
+    let holds = values.iter().all(|value| *value >= 0.0);
+    require(holds, name, "must not contain a negative number")
+}
+
+/// Refuses a mass and an axis that no part has.
+fn check_mass_and_axis(mass: f64, axis: &Vector3<f64>) -> Result<(), PartError> {
+    above_zero("mass", mass)?;
+    if !axis.iter().all(|component| component.is_finite()) {
+        return Err(PartError::OutOfRange);
+    }
+    let is_direction = *axis != Vector3::zeros();
+    require(
+        is_direction,
+        "axis",
+        "must not have length 0: it is a direction",
+    )
 }
 
 /// Why there is no part of some moments.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum PartError {
+    /// Mass, axis or a dimension is not that of any solid.
+    #[error("{name} {rule}")]
+    Dimension {
+        /// The name of the field or argument.
+        name: &'static str,
+        /// What it must be.
+        rule: &'static str,
+    },
     /// One moment is above the sum of the two others.
     #[error("{0}: no body of real masses has these moments")]
     Unreal(&'static str),
@@ -155,7 +228,7 @@ impl fmt::Display for Bound {
     }
 }
 
-/// Distances of the six points from the centre for the moments A, B, C divided by the mass, m.
+/// Distances of the six points from the center for the moments A, B, C divided by the mass, m.
 ///
 /// # Errors
 /// Where one of A, B, C is above the sum of the two others, or not finite.
@@ -183,31 +256,34 @@ pub struct PlacedSolid {
     pub shape: Shape,
     /// Its mass, kg.
     pub mass: f64,
-    /// Its centre of mass, body frame, m.
-    pub centre: Vector3<f64>,
+    /// Its center of mass, body frame, m.
+    pub center: Vector3<f64>,
     /// Its own directions x, y and axis as columns, body frame.
     pub directions: Matrix3<f64>,
-    /// Distances of the six points from the centre along its own x, y and axis, m. They are the half axes of the thin
+    /// Distances of the six points from the center along its own x, y and axis, m. They are the half axes of the thin
     /// ellipsoid (the shell between two similar ones) that has the same moments.
     pub distances: [f64; 3],
 }
 
 impl PlacedSolid {
-    /// The part of this shape and `mass` (kg), which is above 0, whose centre is at `centre` (body frame, m) and whose axis
-    /// has the direction `axis` (body frame, of any length but 0). Neither mass nor axis is checked.
+    /// The part with this shape and `mass` (kg). Its center is at `center` (body frame, m); its axis has the direction `axis`
+    /// (body frame, of any length but 0).
     ///
     /// # Errors
-    /// Where no body of real masses has its moments (to 1e-12 of the largest), or they are no finite numbers.
+    /// If the mass is not above 0, if the axis has no direction, if the shape has a dimension that no such solid has, or if
+    /// no body of real masses has its moments (to 1e-12 of the largest).
     pub fn new(
         shape: Shape,
         mass: f64,
-        centre: Vector3<f64>,
+        center: Vector3<f64>,
         axis: &Vector3<f64>,
     ) -> Result<Self, PartError> {
+        check_mass_and_axis(mass, axis)?;
+        shape.check()?;
         Ok(Self {
             shape,
             mass,
-            centre,
+            center,
             directions: turn_to(axis),
             distances: distances(&shape.moments_per_mass())?,
         })
@@ -217,17 +293,19 @@ impl PlacedSolid {
     /// center and axis as in [`new`](Self::new). Its principal axes at the center are its own x, y and axis.
     ///
     /// # Errors
-    /// Where no body of real masses has these moments, this mass and this center, or they are no finite numbers.
+    /// As of [`new`](Self::new), and if no body of real masses has these moments, this mass and this center.
     pub fn about_pivot(
         moments: &Vector3<f64>,
         mass: f64,
-        centre: Vector3<f64>,
+        center: Vector3<f64>,
         axis: &Vector3<f64>,
     ) -> Result<Self, PartError> {
+        check_mass_and_axis(mass, axis)?;
         let per_mass = moments / mass;
+        Shape::Moments(per_mass).check()?;
         distances(&per_mass)?;
         // Steiner's theorem for the second moments of the mass, ∫x² dm and so on, divided by it.
-        let squares = turn_to(axis).tr_mul(&centre).map(|along| along * along);
+        let squares = turn_to(axis).tr_mul(&center).map(|along| along * along);
         let about_pivot = Vector3::repeat(0.5 * per_mass.sum()) - per_mass;
         let about_center = about_pivot - squares;
         if !about_center.sum().is_finite() {
@@ -245,21 +323,21 @@ impl PlacedSolid {
         }
         let [x, y, z] = about_center.map(|second| second.max(0.0)).into();
         let shape = Shape::Moments(Vector3::new(y + z, x + z, x + y));
-        Self::new(shape, mass, centre, axis)
+        Self::new(shape, mass, center, axis)
     }
 
-    /// The principal moments about the centre: about its own x, y and axis, kg m².
+    /// The principal moments about the center: about its own x, y and axis, kg m².
     pub fn moments(&self) -> Vector3<f64> {
         self.mass * self.shape.moments_per_mass()
     }
 
-    /// The points that stand for it, body frame: the centre, without mass, and then on each of its own directions x, y and
-    /// axis the one before and the one behind the centre.
+    /// The points that stand for it, body frame: the center, without mass, and then on each of its own directions x, y and
+    /// axis the one before and the one behind the center.
     pub fn points(&self) -> [PointMass; POINTS_PER_PART] {
         let mass = self.mass / 6.0;
         let [x, y, z] = [0, 1, 2].map(|i| self.directions.column(i) * self.distances[i]);
-        let six = [x, -x, y, -y, z, -z].map(|off| PointMass::new(self.centre + off, mass));
-        let mut points = [PointMass::new(self.centre, 0.0); POINTS_PER_PART];
+        let six = [x, -x, y, -y, z, -z].map(|off| PointMass::new(self.center + off, mass));
+        let mut points = [PointMass::new(self.center, 0.0); POINTS_PER_PART];
         points[1..].copy_from_slice(&six);
         points
     }

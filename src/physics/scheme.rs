@@ -134,7 +134,8 @@ impl SchemeInfo {
         SCHEMES.iter().find(|scheme| scheme.name == name)
     }
 
-    /// A scheme for `body`, to be started and loaded before its first step.
+    /// Returns a scheme for `body`. It must be [loaded](Scheme::load) and [started](Scheme::start) before its first step;
+    /// [`SteppedMotion`](super::SteppedMotion) does this, and checks the arguments.
     pub fn make(&self, body: &Body) -> Box<dyn Scheme> {
         (self.make)(body)
     }

@@ -1,12 +1,13 @@
-//! How the body stands and moves.
+//! Time, orientation and angular momentum of a body.
 
+use super::Body;
 use nalgebra::{Matrix3, Vector3};
 
 /// An axle whose direction's length is outside these is that of no rotation.
 const LEAST_AXLE: f64 = 0.5;
 const MOST_AXLE: f64 = 1.5;
 
-/// What passes from step to step and from scheme to scheme: time, orientation and angular momentum, no more.
+/// Time, orientation and angular momentum of a body: all that passes from step to step and from scheme to scheme.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State {
     /// Time, s.
@@ -18,13 +19,35 @@ pub struct State {
 }
 
 impl State {
+    /// Returns the state at time 0 of a body with this `orientation` that turns about its axle by `spin`, rad/s, while the
+    /// axle is at rest. For any other motion, add to `momentum`, or use
+    /// [`with_angular_velocity`](Self::with_angular_velocity).
+    ///
+    /// ω is along the axle; L is too if the axle is a principal axis.
+    pub fn spinning(body: &Body, orientation: Matrix3<f64>, spin: f64) -> Self {
+        Self::with_angular_velocity(body, orientation, &(spin * orientation.column(2)))
+    }
+
+    /// Returns the state at time 0 of a body with this `orientation` and the angular velocity `omega`, world frame, rad/s.
+    pub fn with_angular_velocity(
+        body: &Body,
+        orientation: Matrix3<f64>,
+        omega: &Vector3<f64>,
+    ) -> Self {
+        Self {
+            time_s: 0.0,
+            orientation,
+            momentum: orientation * (body.inertia() * orientation.tr_mul(omega)),
+        }
+    }
+
     /// The axle's direction, world frame: the body direction that was +z upright, whatever the masses.
     pub fn axle(&self) -> Vector3<f64> {
         self.orientation.column(2).into_owned()
     }
 
-    /// Whether the orientation is still that of a rigid body: a scheme that breaks down stretches it, or lets it collapse,
-    /// before the numbers stop being finite.
+    /// Whether the orientation is near to a rotation. A scheme that breaks down stretches it, or lets it collapse, before the
+    /// numbers stop being finite.
     #[inline]
     pub fn is_a_rotation(&self) -> bool {
         (LEAST_AXLE * LEAST_AXLE..MOST_AXLE * MOST_AXLE).contains(&self.axle().norm_squared())

@@ -1,6 +1,7 @@
 //! How a time step is taken: what every scheme must do.
 
 use super::{Loads, State, workings::Phase};
+use std::fmt::Debug;
 
 /// A way to take the body one time step further. [`SchemeInfo::make`](super::SchemeInfo::make) makes one.
 ///
@@ -9,7 +10,7 @@ use super::{Loads, State, workings::Phase};
 ///
 /// Orientation, L and t are all that passes from one scheme to another; whatever else a scheme keeps (the report's
 /// carries the points themselves) it makes anew in [`start`](Scheme::start).
-pub trait Scheme: Send {
+pub trait Scheme: Send + Debug {
     /// Takes the run over at `state`: at its beginning, or from another scheme. Comes before the first step.
     fn start(&mut self, state: &State);
 
@@ -44,6 +45,40 @@ pub trait Scheme: Send {
 
     /// A copy that goes its own way from here.
     fn boxed(&self) -> Box<dyn Scheme>;
+}
+
+/// Time counted in steps and not summed, so that steps of equal length add no rounding.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct StepClock {
+    before_s: f64,
+    time_step_s: f64,
+    steps: u64,
+}
+
+impl StepClock {
+    pub fn starting_at(time_s: f64) -> Self {
+        Self {
+            before_s: time_s,
+            ..Self::default()
+        }
+    }
+
+    /// Counts a step of `time_step_s`, and returns when it ends, s.
+    pub fn next_time(&mut self, time_step_s: f64) -> f64 {
+        if time_step_s != self.time_step_s {
+            *self = Self {
+                before_s: self.time_s(),
+                time_step_s,
+                steps: 0,
+            };
+        }
+        self.steps += 1;
+        self.time_s()
+    }
+
+    fn time_s(&self) -> f64 {
+        self.before_s + self.steps as f64 * self.time_step_s
+    }
 }
 
 impl Clone for Box<dyn Scheme> {

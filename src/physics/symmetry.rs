@@ -23,19 +23,19 @@ const NEARLY_ON_AXLE: f64 = 1e-3;
 /// Nearer to equal moments, the small difference decides how the axle moves.
 const OF_KAPPA: f64 = 0.2;
 
-/// The moments of a body that is symmetric about its axle (the body's z axis), its centre of mass on the axle.
+/// The moments of a body that is symmetric about its axle (the body's z axis), its center of mass on the axle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SymmetricTop {
     /// I1, across the axle, about the pivot, kg m².
     pub across: f64,
     /// I3, along the axle, kg m².
     pub along: f64,
-    /// M times the height of the centre of mass along the axle, kg m; negative below the pivot.
+    /// M times the height of the center of mass along the axle, kg m; negative below the pivot.
     pub first_moment: f64,
 }
 
 impl SymmetricTop {
-    /// The moments of `body`, or `None` where they, or its centre of mass, are off by more than 1e-9 of the whole.
+    /// The moments of `body`, or `None` where they, or its center of mass, are off by more than 1e-9 of the whole.
     pub fn from_body(body: &Body) -> Option<Self> {
         let inertia = body.inertia();
         let largest = inertia.diagonal().amax();
@@ -45,10 +45,10 @@ impl SymmetricTop {
             && small(inertia[(0, 2)])
             && small(inertia[(1, 2)]);
         let first = body.first_moment();
-        // An offset c of the centre of mass counts against the size of the body: M c² against its moments.
+        // An offset c of the center of mass counts against the size of the body: M c² against its moments.
         let size = (largest * body.mass()).sqrt();
-        let centred = first.x.abs().max(first.y.abs()) <= SYMMETRY_TOLERANCE * size;
-        (even && centred).then(|| Self {
+        let centered = first.x.abs().max(first.y.abs()) <= SYMMETRY_TOLERANCE * size;
+        (even && centered).then(|| Self {
             across: 0.5 * (inertia[(0, 0)] + inertia[(1, 1)]),
             along: inertia[(2, 2)],
             first_moment: first.z,
@@ -112,9 +112,11 @@ impl SymmetricTop {
     }
 }
 
-/// The rates of steady precession, rad/s, the slow and the fast one: the roots of `across_cos` w² − `spin` w + `load` = 0,
-/// of I1 cos θ, L3 = I3 ω3 and M g l; neither as a small difference. No slow one where the top spins too slowly, no fast
-/// one for a level axle either. Without spin and load the slow one is not a number.
+/// Returns the slow and the fast rate of steady precession, rad/s: the roots w of `across_cos` w² − `spin` w + `load` = 0.
+///
+/// `across_cos` is I1 cos θ, kg m²; `spin` is L3 = I3 ω3, J s; `load` is M g l, N m. Neither root is found as a small
+/// difference. There is no slow rate if the top spins too slowly. There is no fast rate then either, nor if the axle is
+/// level. Without spin and load the slow rate is NaN.
 pub fn steady_precession(across_cos: f64, spin: f64, load: f64) -> (Option<f64>, Option<f64>) {
     let discriminant = spin * spin - 4.0 * across_cos * load;
     if discriminant < 0.0 {

@@ -112,8 +112,7 @@ fn spin_momentum(state: &State) -> f64 {
 }
 
 fn energy(body: &Body, loads: &Loads, state: &State) -> f64 {
-    observables::kinetic_energy(body, state)
-        + loads.gravity * observables::weight_height(body, state)
+    observables::total_energy(body, state, loads.gravity)
 }
 
 fn omega_across(body: &Body, state: &State) -> f64 {

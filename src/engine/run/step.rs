@@ -51,9 +51,8 @@ pub(super) struct Derived {
 impl EnergyAccount {
     pub fn new(scenario: &Scenario) -> Self {
         let (body, state) = (&scenario.body.mechanics, &scenario.start);
-        let kinetic = observables::kinetic_energy(body, state);
         Self {
-            start: kinetic + scenario.motion.gravity * observables::weight_height(body, state),
+            start: observables::total_energy(body, state, scenario.motion.gravity),
             work: 0.0,
             friction: 0.0,
             scale: EnergyScale::find(scenario),

@@ -100,8 +100,7 @@ pub fn check_names(table: &Table, found: &mut Problems) {
 /// Returns true if the first row of the run's CSV consists of finite numbers.
 fn is_readable(body: &NamedBody, trace: usize, start: &State, gravity: f64) -> bool {
     let mechanics = &body.mechanics;
-    let energy = observables::kinetic_energy(mechanics, start)
-        + gravity * observables::weight_height(mechanics, start);
+    let energy = observables::total_energy(mechanics, start, gravity);
     let traced = observables::position(mechanics, start, trace);
     energy.is_finite() && traced.iter().all(|c| c.is_finite())
 }

@@ -274,8 +274,8 @@ fn moment_alone(part: &PlacedSolid) -> Result<f64, &'static str> {
     let moments = part.moments();
     let axis = part.directions.column(2);
     let size = (moments.amax() / part.mass).sqrt();
-    let off_axle = part.centre.x.abs().max(part.centre.y.abs());
-    let is_on_axle = off_axle <= AXLE_TOLERANCE * size.max(part.centre.z.abs());
+    let off_axle = part.center.x.abs().max(part.center.y.abs());
+    let is_on_axle = off_axle <= AXLE_TOLERANCE * size.max(part.center.z.abs());
     let is_along = axis.x.abs().max(axis.y.abs()) <= AXLE_TOLERANCE;
     let is_round = (moments.x - moments.y).abs() <= AXLE_TOLERANCE * moments.amax();
     match (is_on_axle, is_along, is_round) {

@@ -107,33 +107,59 @@ pub(super) fn read_part(file: &PartFile) -> Result<PlacedSolid, Problems> {
     let known = FORMS.iter().find(|form| form.name == file.shape);
     let form = known.unwrap_or(&FORMS[0]);
     Problems::from(wrong_dimensions(form, file)).or(())?;
-    check_dimensions(form, file)?;
     let axis = Vector3::from(file.axis.unwrap_or([0.0, 0.0, 1.0]));
-    if axis == Vector3::zeros() {
-        let rule = "must not have length 0: it is a direction";
-        return Err(Problem::with_value("axis", &vector(&axis), rule).into());
-    }
-    let centre = Vector3::from(file.at_m);
+    let center = Vector3::from(file.at_m);
     let part = match file.about {
         Some(About::Pivot) => {
             let moments = file.moments_kg_m2.unwrap_or_default().into();
-            PlacedSolid::about_pivot(&moments, file.mass_kg, centre, &axis)
+            PlacedSolid::about_pivot(&moments, file.mass_kg, center, &axis)
         }
         Some(About::Center) | None => {
-            PlacedSolid::new((form.make)(file), file.mass_kg, centre, &axis)
+            PlacedSolid::new((form.make)(file), file.mass_kg, center, &axis)
         }
     };
-    Ok(part.map_err(|error| {
-        let moments = vector(&Vector3::from(file.moments_kg_m2.unwrap_or_default()));
-        let rule = match error {
-            PartError::OutOfRange => return Problem::at("", error.to_string()),
-            PartError::Unreal(_) => format!("cannot be: {error}"),
-            PartError::TooFar { nearer, .. } => {
-                format!("cannot be: {error}{}", moves_alike(file, nearer))
-            }
-        };
-        Problem::with_value("moments_kg_m2", &moments, rule)
-    })?)
+    part.map_err(|error| refusal(error, file).into())
+}
+
+/// Returns the error message for the part of `file`.
+fn refusal(error: PartError, file: &PartFile) -> Problem {
+    let moments = vector(&Vector3::from(file.moments_kg_m2.unwrap_or_default()));
+    let rule = match error {
+        PartError::OutOfRange => return Problem::at("", error.to_string()),
+        PartError::Dimension { name, rule } => return refused_dimension(name, rule, file),
+        PartError::Unreal(_) => format!("cannot be: {error}"),
+        PartError::TooFar { nearer, .. } => {
+            format!("cannot be: {error}{}", moves_alike(file, nearer))
+        }
+    };
+    Problem::with_value("moments_kg_m2", &moments, rule)
+}
+
+/// Returns the error message for a dimension, with its key and value in `file`. `name` is its name in [`PlacedSolid`] or
+/// [`Shape`].
+fn refused_dimension(name: &str, rule: &str, file: &PartFile) -> Problem {
+    let key = match name {
+        "inner" => "inner_radius_m",
+        "outer" => "outer_radius_m",
+        "mass" => "mass_kg",
+        "moments" => "moments_kg_m2",
+        "axis" => "axis",
+        _ => &format!("{name}_m"),
+    };
+    let written = Table::try_from(file).unwrap_or_default();
+    let rule = match (key, file.outer_radius_m) {
+        ("inner_radius_m", Some(outer)) => {
+            format!(
+                "must not be greater than outer_radius_m, {}",
+                shortest(outer)
+            )
+        }
+        _ => rule.to_owned(),
+    };
+    match written.get(key) {
+        Some(value) => Problem::with_value(key, value, rule),
+        None => Problem::at(key, rule),
+    }
 }
 
 /// Suggests a mass and a center of mass that the part of `file` may have instead. The mass is larger, and nearer to the
@@ -171,36 +197,6 @@ fn wrong_dimensions(form: &SolidShape, file: &PartFile) -> Vec<Problem> {
         }
     }
     problems
-}
-
-/// Checks that a solid of this shape can have the dimensions.
-fn check_dimensions(form: &SolidShape, file: &PartFile) -> Result<(), Problem> {
-    let refused =
-        |name: &str, value: Value, rule: &str| Err(Problem::with_value(name, &value, rule));
-    if let (Some(length), "rod" | "cone") = (file.length_m, form.name)
-        && length <= 0.0
-    {
-        return refused("length_m", length.into(), "must be greater than zero");
-    }
-    if let (Some(inner), Some(outer)) = (file.inner_radius_m, file.outer_radius_m)
-        && inner > outer
-    {
-        let rule = format!(
-            "must not be greater than outer_radius_m, {}",
-            shortest(outer)
-        );
-        return refused("inner_radius_m", inner.into(), &rule);
-    }
-    for (name, numbers) in [
-        ("size_m", file.size_m),
-        ("moments_kg_m2", file.moments_kg_m2),
-    ] {
-        let numbers = Vector3::from(numbers.unwrap_or_default());
-        if numbers.min() < 0.0 {
-            return refused(name, vector(&numbers), "must not contain a negative number");
-        }
-    }
-    Ok(())
 }
 
 /// Prepares the file's `table` for a new `value` at `key`. If a part gets another shape, or a component of a direction

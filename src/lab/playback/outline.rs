@@ -38,7 +38,7 @@ pub fn lines(part: &PlacedSolid) -> Vec<Polyline> {
     let mut lines = own_lines(part);
     for line in &mut lines {
         for point in &mut line.points {
-            *point = part.centre + part.directions * *point;
+            *point = part.center + part.directions * *point;
         }
         if let LineKind::Edge { faces, .. } = &mut line.kind {
             *faces = faces.map(|normal| part.directions * normal);
@@ -190,8 +190,8 @@ mod tests {
     use super::*;
 
     fn part(shape: Shape) -> PlacedSolid {
-        let centre = Vector3::new(0.1, 0.2, 0.3);
-        PlacedSolid::new(shape, 2.0, centre, &Vector3::new(1.0, 2.0, -2.0)).unwrap()
+        let center = Vector3::new(0.1, 0.2, 0.3);
+        PlacedSolid::new(shape, 2.0, center, &Vector3::new(1.0, 2.0, -2.0)).unwrap()
     }
 
     /// Returns the extent of a solid's lines along its own x, y and axis, from minimum to maximum.
@@ -199,7 +199,7 @@ mod tests {
         let part = part(shape);
         let lines = lines(&part);
         let points = lines.iter().flat_map(|line| &line.points);
-        let own = points.map(|at| part.directions.tr_mul(&(at - part.centre)));
+        let own = points.map(|at| part.directions.tr_mul(&(at - part.center)));
         let none = [(f64::INFINITY, f64::NEG_INFINITY); 3];
         own.fold(none, |reach, at| {
             std::array::from_fn(|i| (reach[i].0.min(at[i]), reach[i].1.max(at[i])))

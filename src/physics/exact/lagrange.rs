@@ -104,7 +104,7 @@ pub struct LagrangeTop {
     momentum_vertical: f64,
     turning: Turning,
     pub(super) lattice: Lattice,
-    /// Time between the start and the turning point the sums are centred on, s.
+    /// Time between the start and the turning point the sums are centered on, s.
     pub(super) since_origin: f64,
     starts_low: bool,
     pub(super) alpha: CayleyKleinParameter,

@@ -1,6 +1,7 @@
 //! The exact motion as a scheme: the time step only says where the rows stand.
 
 use super::{ExactMethod, ExactMotion};
+use crate::stepping::StepClock;
 use crate::workings::{Listener, Nobody, Phase};
 use crate::{Body, Loads, Scheme, State};
 
@@ -11,42 +12,17 @@ pub struct Exact {
     loads: Loads,
     /// The motion since the loads changed, its times counted from there; none before the first step under them.
     motion: Option<ExactMotion>,
-    pace: LoadClock,
+    /// Time since the loads changed.
+    pace: StepClock,
     kinds: (bool, bool),
     /// Work of friction since the loads changed, and in the step taken last, J.
     work: f64,
     step_work: f64,
 }
 
-/// Time since the loads changed, counted in steps and not summed.
-#[derive(Clone, Copy, Debug, Default)]
-struct LoadClock {
-    before_s: f64,
-    time_step_s: f64,
-    steps: u64,
-}
-
-impl LoadClock {
-    fn next_time(&mut self, time_step_s: f64) -> f64 {
-        if time_step_s != self.time_step_s {
-            *self = Self {
-                before_s: self.time_s(),
-                time_step_s,
-                steps: 0,
-            };
-        }
-        self.steps += 1;
-        self.time_s()
-    }
-
-    fn time_s(&self) -> f64 {
-        self.before_s + self.steps as f64 * self.time_step_s
-    }
-}
-
 impl Exact {
     pub fn new(body: &Body) -> Self {
-        let (loads, pace) = (Loads::default(), LoadClock::default());
+        let (loads, pace) = (Loads::default(), StepClock::default());
         Self {
             body: body.clone(),
             loads,
@@ -61,7 +37,7 @@ impl Exact {
     #[inline]
     fn advance<L: Listener>(&mut self, dt: f64, state: &mut State, listener: &mut L) {
         let motion = self.motion.get_or_insert_with(|| {
-            self.pace = LoadClock::default();
+            self.pace = StepClock::default();
             self.work = 0.0;
             ExactMotion::new(
                 &self.body,

@@ -42,7 +42,7 @@ pub(super) struct Sliding {
     load: [Vector3<f64>; SERIES_ORDER],
     /// Coefficients of ω3, rad/s.
     spin: [f64; SERIES_ORDER],
-    /// Coefficients of the work of friction, J; the first is the work up to the centre of the series.
+    /// Coefficients of the work of friction, J; the first is the work up to the center of the series.
     work: [f64; SERIES_ORDER + 1],
 }
 
@@ -147,7 +147,7 @@ impl Sliding {
         convolve(k, |i, j| known.matrix[i] * self.torque[j])
     }
 
-    /// The distance from the centre within `radius` at which the contact changes, s; the series ends there.
+    /// The distance from the center within `radius` at which the contact changes, s; the series ends there.
     pub fn find_event(&mut self, radius: f64) -> Option<f64> {
         let event = self.event_within(radius);
         self.ends = event.is_some();
@@ -178,12 +178,12 @@ impl Sliding {
         (high > SAME_EVENT * radius).then_some(high)
     }
 
-    /// The work of friction up to `t` s from the centre of the series, J.
+    /// The work of friction up to `t` s from the center of the series, J.
     pub fn work(&self, t: f64) -> f64 {
         value(&self.work, t)
     }
 
-    /// The next series begins `t` s from the centre of this one.
+    /// The next series begins `t` s from the center of this one.
     pub fn go_on_from(&mut self, t: f64) {
         self.work[0] = self.work(t);
     }
@@ -212,7 +212,7 @@ impl Sliding {
     }
 }
 
-/// The value of a series `t` from its centre, by Horner's rule.
+/// The value of a series `t` from its center, by Horner's rule.
 fn value(coefficients: &[f64], t: f64) -> f64 {
     let from_last = coefficients.iter().rev();
     from_last.fold(0.0, |sum, coefficient| sum * t + coefficient)

@@ -36,7 +36,7 @@ pub struct AccurateMotion {
     inverse_inertia: Matrix3<f64>,
     moment: Matrix3<f64>,
     momentum_unit: f64,
-    /// The centre of the series.
+    /// The center of the series.
     pub(super) time: f64,
     /// How far from `time` the series holds, s, to either side.
     radius: f64,
@@ -53,17 +53,17 @@ pub struct AccurateMotion {
 pub(super) struct Rubbing {
     sliding: Sliding,
     /// Centres of the series so far, every `apart`-th of them; the first is the start.
-    centres: Vec<Centre>,
+    centres: Vec<Center>,
     apart: u64,
     /// How many series there have been before this one.
     count: u64,
-    /// Where in the series it was asked for last, s from the centre.
+    /// Where in the series it was asked for last, s from the center.
     asked_s: f64,
 }
 
 /// Where a series begins.
 #[derive(Clone, Copy, Debug)]
-struct Centre {
+struct Center {
     count: u64,
     time: f64,
     turn: Quaternion<f64>,
@@ -79,7 +79,7 @@ impl AccurateMotion {
     /// The body that is in this state at t = 0.
     ///
     /// `inertia`: about the pivot, body frame, kg m^2. `moment`: sum of (body point, m)(world force, N)^T, N m; gravity is
-    /// one force at the centre of mass. `orientation`: rotation matrix from body to world components. `momentum`: L about
+    /// one force at the center of mass. `orientation`: rotation matrix from body to world components. `momentum`: L about
     /// the pivot, world frame, J s.
     ///
     /// None if the inertia is not positive definite (all masses on one line) or anything is not finite.
@@ -178,25 +178,25 @@ impl AccurateMotion {
         true
     }
 
-    /// With friction, goes to the last centre that was kept before `t`, unless `t` is ahead and this one is as near.
+    /// With friction, goes to the last center that was kept before `t`, unless `t` is ahead and this one is as near.
     fn go_to_centre(&mut self, t: f64) {
         let Some(rubbing) = &mut self.friction else {
             return;
         };
-        let before = rubbing.centres.partition_point(|centre| centre.time <= t);
-        let Some(&centre) = rubbing.centres.get(before.saturating_sub(1)) else {
+        let before = rubbing.centres.partition_point(|center| center.time <= t);
+        let Some(&center) = rubbing.centres.get(before.saturating_sub(1)) else {
             return;
         };
-        if t >= self.time && centre.count <= rubbing.count {
+        if t >= self.time && center.count <= rubbing.count {
             return;
         }
-        rubbing.count = centre.count;
-        rubbing.sliding.go_back(centre.friction);
-        (self.time, self.carry) = (centre.time, centre.carry);
-        self.expand(centre.turn, centre.momentum);
+        rubbing.count = center.count;
+        rubbing.sliding.go_back(center.friction);
+        (self.time, self.carry) = (center.time, center.carry);
+        self.expand(center.turn, center.momentum);
     }
 
-    /// The quaternion, and the change of L, at `t` s from the centre of the series, by Horner's rule.
+    /// The quaternion, and the change of L, at `t` s from the center of the series, by Horner's rule.
     fn evaluate(&self, t: f64) -> (Quaternion<f64>, Vector3<f64>) {
         let (mut turn, mut momentum) = (self.turn[SERIES_ORDER], self.momentum[SERIES_ORDER]);
         for k in (1..SERIES_ORDER).rev() {
@@ -206,7 +206,7 @@ impl AccurateMotion {
         (turn * t + self.turn[0], momentum * t)
     }
 
-    /// All coefficients from the state at the centre, and with them the radius.
+    /// All coefficients from the state at the center, and with them the radius.
     fn expand(&mut self, turn: Quaternion<f64>, momentum: Vector3<f64>) {
         let mut spin = [Vector3::zeros(); SERIES_ORDER];
         let mut matrix = [Matrix3::zeros(); SERIES_ORDER];
@@ -270,7 +270,7 @@ impl Rubbing {
         }
     }
 
-    /// Keeps the centre of the series that begins, if its turn has come and it is not kept yet.
+    /// Keeps the center of the series that begins, if its turn has come and it is not kept yet.
     fn keep(
         &mut self,
         time: f64,
@@ -289,12 +289,12 @@ impl Rubbing {
             self.apart *= 2;
             let apart = self.apart;
             self.centres
-                .retain(|centre| centre.count.is_multiple_of(apart));
+                .retain(|center| center.count.is_multiple_of(apart));
             if !self.count.is_multiple_of(apart) {
                 return;
             }
         }
-        self.centres.push(Centre {
+        self.centres.push(Center {
             count: self.count,
             time,
             turn,

@@ -326,7 +326,7 @@ mod tests {
     const RENAMED: Matrix3<f64> = Matrix3::new(0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0);
 
     fn tops() -> [(&'static str, Loaded); 4] {
-        // The centre of mass is off every axis.
+        // The center of mass is off every axis.
         let lopsided = [
             [0.9, 0.0, 0.7],
             [-0.3, 0.5, 1.1],

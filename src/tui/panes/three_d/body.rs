@@ -98,7 +98,7 @@ fn rim_masses(rim: &RimFile, state: &State) -> impl Iterator<Item = Vector3<f64>
 
 /// The lines of a solid part in the body frame.
 struct Solid {
-    centre: Vector3<f64>,
+    center: Vector3<f64>,
     /// Maximum distance of a line from the center, m.
     size: f64,
     lines: Vec<Polyline>,
@@ -108,9 +108,9 @@ impl Solid {
     fn new(part: &PlacedSolid) -> Self {
         let lines = outline::lines(part);
         let points = lines.iter().flat_map(|line| &line.points);
-        let distances = points.map(|at| (at - part.centre).norm());
+        let distances = points.map(|at| (at - part.center).norm());
         Self {
-            centre: part.centre,
+            center: part.center,
             size: distances.fold(0.0, f64::max),
             lines,
         }
@@ -175,10 +175,10 @@ impl Scene<'_> {
     /// Draws a part. Its far lines and the hidden edges of a block are dashed. A dashed line connects an off-axle part
     /// to the axle.
     fn solid(&self, solid: &Solid, dots: &mut LayeredDots) {
-        let center = self.state.orientation * solid.centre;
+        let center = self.state.orientation * solid.center;
         let middle = self.camera.depth(&center);
-        if solid.centre.xy().norm() > CENTER_ON_AXLE * self.reach {
-            let foot = self.state.axle() * solid.centre.z;
+        if solid.center.xy().norm() > CENTER_ON_AXLE * self.reach {
+            let foot = self.state.axle() * solid.center.z;
             self.dashed(&foot, &center, Role::RimNear, dots);
         }
         for line in &solid.lines {
