@@ -66,10 +66,10 @@ pub fn lines(folder: &ClassFolder, width: usize) -> Vec<String> {
 
 /// Returns the page as text, with the votes on its questions.
 fn page_lines(lesson: &Lesson, state: &ClassState, seats: &[SeatStatus]) -> Vec<String> {
-    let told = for_teacher(lesson, state.page, |predict| {
+    let text = for_teacher(lesson, state.page, |predict| {
         round_lines(predict, state, seats)
     });
-    told.lines().map(str::to_owned).collect()
+    text.lines().map(str::to_owned).collect()
 }
 
 /// Returns the votes on `predict`, round by round. During a round, no choices are shown.

@@ -433,7 +433,7 @@ fn read_right(
             Ok(Some(Right::Number { value, within }))
         }
         (AnswerKind::Number { .. }, ..) => {
-            Err("must come together: right is the right number, within (above 0) its tolerance")
+            Err("needs both right and within: the right number, and its tolerance (above 0)")
         }
     }
 }

@@ -236,11 +236,11 @@ impl<'a> LessonWalk<'a> {
 /// Converts the error `text` of a command, `origin:line: ...`, to a problem. If it names no line, the problem is on
 /// `line`.
 fn as_problem(origin: &str, line: usize, text: &str) -> Problem {
-    let told = text
+    let located = text
         .strip_prefix(origin)
         .and_then(|rest| rest.strip_prefix(':'))
         .and_then(|rest| rest.split_once(": "))
         .and_then(|(number, rest)| Some((number.parse().ok()?, rest)));
-    let (on, rule) = told.unwrap_or((line, text));
+    let (on, rule) = located.unwrap_or((line, text));
     on_line(on, Problem::at("", rule))
 }

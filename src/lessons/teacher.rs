@@ -194,12 +194,12 @@ fn task(page: &LessonPage) -> Option<String> {
         .map(|placed| placed.command.to_table())
         .collect();
     let commands = task.commands.iter();
-    let way: Vec<String> = commands
+    let solution: Vec<String> = commands
         .flat_map(|placed| changes(&placed.command, &opened))
         .collect();
     let mut text = format!("**Task.** {}.", goals.join("; "));
-    if !way.is_empty() {
-        text += &format!(" One way (`h` twice shows it): {}.", way.join(", "));
+    if !solution.is_empty() {
+        text += &format!(" One way (`h` twice shows it): {}.", solution.join(", "));
     }
     Some(text)
 }

@@ -85,13 +85,13 @@ fn refusal(mode: Mode, key: Key) -> String {
 fn elsewhere(mode: Mode, key: Key) -> Option<String> {
     let of_pane = panes::rows().find(|pane| pane.keys.iter().any(|row| row.keys.contains(&key)));
     if let Some(pane) = of_pane.filter(|_| mode == Mode::Lab) {
-        let way = match pane.id {
+        let how = match pane.id {
             Pane::Lesson => "L lists the lessons",
             Pane::Step => "v opens it",
             Pane::Parameters => "e goes to it",
             Pane::Traces | Pane::Above | Pane::ThreeD => "Tab goes to it",
         };
-        return Some(format!("of the pane \"{}\": {way}", pane.title));
+        return Some(format!("of the pane \"{}\": {how}", pane.title));
     }
     let mut others = BINDINGS.iter().filter(|row| !row.modes.contains(&mode));
     let other = others.find(|row| row.keys.contains(&key))?;

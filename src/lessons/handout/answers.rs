@@ -43,12 +43,12 @@ fn answers_of(
     place: &LessonProgress,
     walk: &LessonWalk<'_>,
 ) -> Vec<String> {
-    let told = page.blocks.iter().filter_map(|block| match block {
+    let entries = page.blocks.iter().filter_map(|block| match block {
         LessonBlock::Predict(predict) => predicted(predict, place, walk),
         LessonBlock::Compare(compare) => came_out(lesson, compare, place, walk),
         _ => None,
     });
-    let mut parts: Vec<_> = told.collect();
+    let mut parts: Vec<_> = entries.collect();
     if page.task().is_some() {
         let tried = Tried::words(place.tasks.get(&page.heading));
         let checks = page.checks();

@@ -203,9 +203,9 @@ impl FormPane<'_> {
 
 /// Takes up to `wanted` lines from `room` and returns their number.
 fn take_rows(room: &mut usize, wanted: usize) -> usize {
-    let taken = wanted.min(*room);
-    *room -= taken;
-    taken
+    let rows = wanted.min(*room);
+    *room -= rows;
+    rows
 }
 
 /// Returns the first visible one of `chars` on `width` columns, so that the one at `cursor` is visible.

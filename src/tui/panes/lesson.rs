@@ -111,11 +111,11 @@ fn draw_line(line: &LessonLine, row: Rect, theme: &Theme, buf: &mut Buffer) {
 }
 
 /// Writes the status of the class, and `more` if both fit.
-fn write_border(said: &str, more: &str, border: Rect, style: Style, buf: &mut Buffer) {
+fn write_border(status: &str, more: &str, border: Rect, style: Style, buf: &mut Buffer) {
     let room = border.width.saturating_sub(columns(more) as u16 + 1);
-    let said = longest(said.lines().map(|form| format!(" {form} ")), room.into());
-    write(border, (0, 0), &said, style, buf);
-    if columns(&said) <= room.into() && !more.is_empty() {
+    let status = longest(status.lines().map(|form| format!(" {form} ")), room.into());
+    write(border, (0, 0), &status, style, buf);
+    if columns(&status) <= room.into() && !more.is_empty() {
         write(border, (room, 0), more, style, buf);
     }
 }

@@ -256,7 +256,7 @@ pub(super) fn popup_rule(title: &str, area: Rect, theme: &Theme, buf: &mut Buffe
     rule(title, None, true, area, theme, buf)
 }
 
-/// Writes `text`, made printable, at `x`, `y` relative to `area`, [`shortened`] at its right edge. Returns the column
+/// Makes `text` printable and writes it at `x`, `y` relative to `area`, [`shortened`] at its right edge. Returns the column
 /// after the text.
 pub(super) fn write(
     area: Rect,

@@ -94,8 +94,11 @@ impl CellFormat {
         } else {
             // Use as many digits as the exponent leaves room for.
             let text = exponent(number, 0);
-            let taken = columns(&text) + 2;
-            exponent(number, self.cell.saturating_sub(taken).min(self.digits - 1))
+            let used_columns = columns(&text) + 2;
+            exponent(
+                number,
+                self.cell.saturating_sub(used_columns).min(self.digits - 1),
+            )
         }
     }
 }

@@ -56,8 +56,8 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let room = area.height.saturating_sub(LEAST_PICTURE);
     page::fit(&mut sections, room.into());
     page::draw(&sections, area, &view.theme, buf);
-    let taken = (page::height(&sections) as u16).min(area.height);
-    let [_, below] = split_rows(area, taken);
+    let used_rows = (page::height(&sections) as u16).min(area.height);
+    let [_, below] = split_rows(area, used_rows);
     if below.height < LEAST_PICTURE {
         return;
     }
@@ -275,12 +275,12 @@ fn dip(explained: &StepWorkings, is_seen: bool, view: &View, area: Rect, buf: &m
     if area.height < 4 || area.width < 8 {
         return;
     }
-    let way: Vec<_> = dip
+    let path: Vec<_> = dip
         .way_m
         .iter()
         .map(|(side, down)| Vector2::new(*side, -down))
         .collect();
-    let far = way.iter().fold(0.0_f64, |far, at| far.max(at.amax()));
+    let far = path.iter().fold(0.0_f64, |far, at| far.max(at.amax()));
     if far <= DISPLACEMENT_ROUNDING * explained.scenario.arm_m() {
         let still = "no motion yet; press . to take a step";
         return text(still, Role::Text, view, area, buf);
@@ -293,8 +293,8 @@ fn dip(explained: &StepWorkings, is_seen: bool, view: &View, area: Rect, buf: &m
     let mut notes = wrapped(note, area.width.into());
     notes.retain(|line| !line.is_empty());
     let [place, below] = split_rows(area, area.height.saturating_sub(1 + notes.len() as u16));
-    let mut picture = ArrowDiagram::new(place, view, around(&way), |half| 1.15 * half + 0.1 * far);
-    for pair in way.windows(2) {
+    let mut picture = ArrowDiagram::new(place, view, around(&path), |half| 1.15 * half + 0.1 * far);
+    for pair in path.windows(2) {
         // Steps too long for the true dip are not joined.
         let from = if is_seen { pair[0] } else { pair[1] };
         picture.line(from, pair[1], Role::Run);
