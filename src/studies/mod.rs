@@ -1,13 +1,13 @@
 //! Studies: many runs at once, or a run compared with other data.
 //!
-//! It uses the [`engine`](crate::engine), and draws nothing: figures of its tables belong to [`report`](crate::report). A new
-//! study that computes many runs, or checks a file by computing it again, belongs here.
+//! The module uses the [`engine`](crate::engine) and draws nothing: figures of its tables belong to
+//! [`report`](crate::report). Put a new study here if it computes many runs, or checks a file by recomputing it.
 //!
-//! - [`sweep`]: a grid of runs, a row each.
-//! - [`table`]: the CSVs that are no run: those of a comparison, a sweep or a fit.
-//! - [`fit`]: keys of a scenario so that its runs come nearest to measured data.
-//! - [`verify`](mod@verify): a CSV, computed again and compared with its rows.
-//! - [`own_code`]: rows that somebody's own program of the report's scheme wrote, compared with it: which slip made them?
+//! - [`sweep`]: a grid of runs, one row per run.
+//! - [`table`]: CSVs that do not contain a run: the tables of a comparison, a sweep or a fit.
+//! - [`fit`]: fits keys of a scenario to measured data.
+//! - [`verify`](mod@verify): recomputes a CSV and compares the rows.
+//! - [`own_code`]: compares the rows of a reader's own program with the report's scheme and names the mistake.
 
 pub mod fit;
 pub mod own_code;

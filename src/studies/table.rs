@@ -1,4 +1,4 @@
-//! A CSV that is no run: the table of a comparison, of a sweep, or of a fit.
+//! CSVs that do not contain a run: the tables of a comparison, a sweep or a fit.
 
 use crate::engine::export::layout::above_run_file;
 use crate::engine::scenario::csv::{self, Csv};
@@ -11,46 +11,46 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
-/// The most values of a table, rows times columns: those of a sweep of some hundred thousand runs.
+/// Maximum number of values in a table (rows times columns), enough for a sweep of several hundred thousand runs.
 const MOST_TABLE_VALUES: usize = 4_000_000;
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum TableSubject {
     Comparison,
     Sweep(SweepTable),
-    /// What was measured, and what a fitted model says of it.
+    /// Measured values and the values of the fitted model.
     Fit(FitTable),
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct SweepTable {
-    /// The keys that were varied; the last runs fastest.
+    /// The varied keys, slowest first.
     pub varied: Vec<String>,
-    /// The scenario, in which the keys have their names.
+    /// The scenario that the varied keys belong to.
     pub scenario: toml::Table,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct FitTable {
-    /// The columns that say where each value was measured: the time, or settings.
+    /// The columns that locate each measured value: the time, or the settings.
     pub settings: Vec<String>,
     /// The run file of the fitted scenario.
     pub run_file: String,
-    /// What was found for the free keys.
+    /// The fitted values of the free keys.
     pub found: Vec<FittedKey>,
 }
 
-/// A fitted key, as the header of a fit's CSV has it.
+/// A fitted key in the header of a fit's CSV.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FittedKey {
     pub key: String,
     pub value: f64,
-    /// One standard uncertainty of it.
+    /// One standard uncertainty, in the unit of the key.
     pub uncertainty: Option<f64>,
 }
 
-/// The columns of a fit, behind those that say where each value was measured.
+/// The last columns of a fit's CSV, after the row number and the settings.
 pub const FIT_COLUMNS: [&str; 6] = [
     "quantity",
     "measured",
@@ -63,16 +63,19 @@ pub const FIT_COLUMNS: [&str; 6] = [
 #[derive(Clone, Debug)]
 pub struct TableSource {
     pub subject: TableSubject,
-    /// The title in its header, or empty.
+    /// The title in the table's header, or empty.
     pub title: String,
-    /// The file, as the user named it, and its content.
+    /// The file name as the user typed it. `text` holds the content.
     pub origin: String,
     pub text: String,
     csv: Csv,
 }
 
 impl TableSource {
-    /// The table in the file `path`; `None` where that is a run or no CSV.
+    /// Reads the table in the file `path`. Returns `None` if the file is a run or not a CSV.
+    ///
+    /// # Errors
+    /// Returns an error if the file cannot be read or parsed, or if it is the `.part` file of an unfinished sweep.
     pub fn read(path: &Path) -> Result<Option<Self>, Problems> {
         let origin = path.display().to_string();
         let ending = path.extension().and_then(|ending| ending.to_str());
@@ -87,14 +90,14 @@ impl TableSource {
             return Ok(None);
         }
         if is_part {
-            let rule = "holds the rows of a sweep that is not whole yet: the command that began it goes on with it, and the file gets its name";
+            let rule = "holds the rows of an unfinished sweep: repeat the command that started it to complete the file";
             return Err(Problems::one(origin, Problem::at("", rule)));
         }
         let text = csv::text(path).map_err(|problem| Problems::one(origin.clone(), problem))?;
         Self::from_csv(&origin, text)
     }
 
-    /// The table in `text`, the content of the file `origin`; `None` where it is none.
+    /// Parses `text`, the content of the file `origin`. Returns `None` if it is not a table of this kind.
     pub fn from_csv(origin: &str, text: String) -> Result<Option<Self>, Problems> {
         let head = Head::read(&mut text.as_bytes()).ok();
         let Some((subject, title)) = head.and_then(|head| subject(&head)) else {
@@ -119,12 +122,12 @@ impl TableSource {
         self.csv.rows.len()
     }
 
-    /// The texts of the column of that name.
+    /// Returns the cells of the column `name` as text.
     pub fn texts(&self, name: &str) -> Option<Vec<&str>> {
         Some(self.csv.column(name)?.collect())
     }
 
-    /// The numbers of the column of that name, NaN where there is none; `None` where the column has texts that are no numbers.
+    /// Returns the numbers of the column `name`, with NaN for empty cells. Returns `None` if a cell is not a number.
     pub fn numbers(&self, name: &str) -> Option<Vec<f64>> {
         self.csv
             .column(name)?
@@ -138,7 +141,7 @@ impl TableSource {
     }
 }
 
-/// What the table with this head is, and its title; `None` where it is none.
+/// Returns the kind of table with this head, and its title; `None` if it is not a table of this kind.
 fn subject(head: &Head) -> Option<(TableSubject, String)> {
     let first_line = String::from_utf8_lossy(head.names());
     let names: Vec<&str> = first_line
@@ -173,13 +176,13 @@ fn subject(head: &Head) -> Option<(TableSubject, String)> {
     Some((TableSubject::Sweep(SweepTable { varied, scenario }), title))
 }
 
-/// Returns the title that `table` has, or an empty one.
+/// Returns the title in `table`, or an empty text.
 fn title_in(table: &toml::Table) -> String {
     let title = table.get("title").and_then(toml::Value::as_str);
     title.unwrap_or_default().to_owned()
 }
 
-/// What was found by the fit in whose CSV this is the `header`; nothing where that does not tell.
+/// Returns the fitted keys in the `header` of a fit's CSV, or nothing if they cannot be parsed.
 fn found(header: &str) -> Vec<FittedKey> {
     #[derive(Deserialize)]
     struct AboveRunFile {
@@ -189,7 +192,7 @@ fn found(header: &str) -> Vec<FittedKey> {
     above.map(|above| above.key).unwrap_or_default()
 }
 
-/// The columns of the CSV of a fit that say where its values were measured; `None` where it is none.
+/// Returns the setting columns of a fit's CSV; `None` if the columns `names` are not a fit's.
 fn settings_of_fit(names: &[&str]) -> Option<Vec<String>> {
     let (row, rest) = names.split_first()?;
     let count = rest.len().checked_sub(FIT_COLUMNS.len())?;

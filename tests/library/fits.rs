@@ -340,7 +340,7 @@ fn what_cannot_be_told_apart_is_named_and_has_no_uncertainty() {
     assert!(unmoved.keys[0].sigma.is_some() && unmoved.keys[1].sigma.is_none());
     assert_eq!(
         unmoved.remarks()[0],
-        "The data do not depend on start.turn_deg: they say nothing of it."
+        "The data do not depend on start.turn_deg and cannot determine it."
     );
 }
 
@@ -358,12 +358,12 @@ fn a_key_at_its_bound_is_said_to_be() {
     let told = report.to_string();
     // The CSV, the JSON and the text are quoted each by itself: each says by which scheme.
     let json = serde_json::to_value(report).unwrap();
-    let remark = "The fitted runs have the scheme exact; the scenario's own is rk4 (--scheme rk4 fits the runs of that).";
+    let remark = "The fitted runs use the scheme exact; the scenario's scheme is rk4 (use --scheme rk4 to fit with it).";
     assert_eq!(json["remarks"][0], remark);
     assert!(told.contains(remark), "{told}");
     has(
         &told,
-        "body.part.0.moments_kg_m2.2 stands at its bound 0.0038: the fit would be better beyond it, and it has no uncertainty. Begun at another value by --set, the search may find a better fit within.",
+        "body.part.0.moments_kg_m2.2 is at its bound 0.0038: the fit would be better beyond it, and it has no uncertainty. With another start value (--set), the search may find a better fit within the bounds.",
     );
     // One that is inside of its bounds is not said to be at one.
     let inside = format!("{MOMENT}=0.003..0.005");
@@ -425,7 +425,7 @@ fn data_without_uncertainties_are_weighed_by_their_scatter() {
     assert_eq!((fit.quality.chi_squared, fit.quality.fits()), (None, None));
     assert!(
         fit.sentence(&model)
-            .contains("cannot be said, since the data have no uncertainties")
+            .contains("cannot be judged, since the data have no uncertainties")
     );
     let tilt = &fit.keys[0];
     is_near("tilt", tilt.value, 30.0, 4.0 * tilt.sigma.unwrap());
@@ -498,7 +498,7 @@ fn two_keys_can_have_one_value() {
     let unlike = "body.part.0.moments_kg_m2.0+body.part.0.moments_kg_m2.2";
     assert_eq!(
         Free::parse(unlike, &document).unwrap_err().to_string(),
-        "--free body.part.0.moments_kg_m2.0+body.part.0.moments_kg_m2.2: body.part.0.moments_kg_m2.0 is 0.004 and body.part.0.moments_kg_m2.2 is 0.00375: keys that have one value must begin with it"
+        "--free body.part.0.moments_kg_m2.0+body.part.0.moments_kg_m2.2: body.part.0.moments_kg_m2.0 is 0.004 and body.part.0.moments_kg_m2.2 is 0.00375: keys that share one value must start from the same value"
     );
 }
 
@@ -608,7 +608,7 @@ fn few_data_without_uncertainties_give_no_uncertainties() {
         &sentence,
         [
             "1 datum more than fitted values is too few",
-            "Measure 3 more",
+            "Measure at least 3 more",
         ],
     );
     let (sure, of_four) = fit_of("t_s,tilt_deg\n0,30\n0,30.1\n0,29.9\n0,30.1\n");
@@ -637,7 +637,7 @@ fn where_the_data_depend_on_no_key_no_other_start_is_proposed() {
     let fit = fitted(&model);
     assert_eq!(fit.solution.silent.len(), 1);
     let alone = fit.sentence(&model);
-    has(&alone, "No value of the free keys changes that");
+    has(&alone, "No value of the free keys improves it");
     has_no(&alone, "elsewhere");
 }
 

@@ -251,6 +251,6 @@ fn a_key_at_the_least_value_it_can_have_has_an_upper_limit() {
     assert_eq!(stated, ["1000.70 +0.65 -0.50", "0 +1.0e-8 -0"]);
     has(
         &fit.remarks().concat(),
-        "the least that it can be, at most ",
+        "its lowest possible value, at most ",
     );
 }

@@ -39,7 +39,7 @@ fn a_fit_by_another_scheme_than_the_scenario_has_says_so_wherever_it_is_quoted()
     let data = "t_s,tilt_deg\n0,45.1\n0.5,45\n1,44.9\n1.5,45.1\n";
     ground.write("tilt.csv", data);
     let fit = "fit tilt.csv --in method-2 --free=start.tilt_deg";
-    let remark = "The fitted runs have the scheme exact; the scenario's own is report (--scheme report fits the runs of that).";
+    let remark = "The fitted runs use the scheme exact; the scenario's scheme is report (use --scheme report to fit with it).";
     has(ground.stdout(fit), remark);
     let json = ground.json(&format!("{fit} --json"));
     assert_eq!(json["scheme"], "exact");
@@ -113,7 +113,7 @@ fn what_is_wrong_is_told_with_the_remedy() {
         (
             "fit lab.csv --in cusps --free start.tilt_deg,start.momentum_Js.2",
             1,
-            "gyrolab: lab.csv in cusps: 1 measured value cannot say 2 values: free fewer keys, or measure more",
+            "gyrolab: lab.csv in cusps: 1 measured value cannot determine 2 keys: free fewer keys, or measure more",
         ),
         ("fit lab.csv --in cusps", 2, "--free"),
         (

@@ -137,7 +137,7 @@ fn a_file_is_what_its_name_says() {
     }
     ground.stderr("sweep method-2 --vary motion.steps=1,2 -o s.csv");
     ground.write("t.csv.part", &ground.read("s.csv"));
-    let words = ["t.csv.part", "a sweep that is not whole yet"];
+    let words = ["t.csv.part", "an unfinished sweep"];
     ground.refused("figure t.csv.part -o x.svg", 1, &words);
     // Every number there is, of which a page holds a few.
     let too_many = "do not fit on a page: choose some with --kind";

@@ -1,9 +1,11 @@
-//! The parameters in which the search goes on, and their limits.
+//! The parameters of the search, and their limits.
 //!
-//! A key is a parameter itself, but for moments of a part. No moment of a body is larger than the two others together; a flat
-//! body, for which the two are equal, lies on that edge. Half the difference is the second moment of mass along an axis, the
-//! integral of x^2 dm, which is at least 0. Where several moments are free, the search takes as many second moments in
-//! their place: a step that changes one of them up or down is always possible, also for a flat body or a rod.
+//! Each key is a parameter, except for moments of a part. No moment of a body is larger than the sum of the two others;
+//! for a flat body they are equal. Half the difference is the second moment of mass along an axis, the integral of x^2
+//! dm, which is at least 0.
+//!
+//! If several moments are free, the search uses the same number of second moments instead. It can then always change
+//! one of them up or down, even for a flat body or a rod.
 
 use super::free::Free;
 use super::within::Limit;
@@ -18,17 +20,17 @@ pub struct Chart {
     pub matrix: DMatrix<f64>,
     offset: DVector<f64>,
     pub inverse: DMatrix<f64>,
-    /// The moments of each part of which some are free.
+    /// The moments of each part that has a free moment, by the index of the part.
     moments: Vec<(usize, [Row; 3])>,
     pub rules: Vec<Rule>,
-    /// The limits of the parameters, one a rule.
+    /// Limits of the parameters, one per rule.
     pub limits: Vec<Limit>,
 }
 
-/// What limits the keys.
+/// Reason for a limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rule {
-    /// The least value of a key, by its place.
+    /// Lower bound of the key with this index. `Greatest` is its upper bound.
     Least(usize),
     Greatest(usize),
     /// The second moment of mass of a part along one of its axes is at least 0.
@@ -36,7 +38,7 @@ pub enum Rule {
         part: usize,
         axis: usize,
     },
-    /// A moment of a part is above 0, by [`LEAST_MOMENT`].
+    /// A moment of a part is at least [`LEAST_MOMENT`] times the sum of its moments.
     Moment {
         part: usize,
         axis: usize,
@@ -44,7 +46,7 @@ pub enum Rule {
 }
 
 impl Rule {
-    /// Whether nothing beyond the limit can be, whoever draws limits.
+    /// Returns true for a physical limit, false for a bound set by the user.
     pub fn is_of_nature(self, free: &[Free]) -> bool {
         match self {
             Self::Least(key) => free[key].from == free[key].least,
@@ -54,7 +56,8 @@ impl Rule {
     }
 }
 
-/// The least moment of a part as a share of all three: a rod without any thickness has no motion about its axis.
+/// Minimum moment of a part, as a fraction of the sum of all three: a rod without thickness has no defined rotation
+/// about its axis.
 pub const LEAST_MOMENT: f64 = 1e-6;
 
 /// A linear function of the keys.
@@ -65,7 +68,7 @@ struct Row {
 }
 
 impl Chart {
-    /// The parameters for the keys `free` of `scenario`, whose other values stay as they are.
+    /// Creates the parameters for the `free` keys of `scenario`. All other values of the scenario stay fixed.
     pub fn new(free: &[Free], scenario: &Scenario) -> Self {
         let count = free.len();
         let unit =
@@ -119,12 +122,12 @@ impl Chart {
         chart
     }
 
-    /// Adds the limit that `slopes` . keys is at least `least`.
+    /// Adds the limit `slopes` . keys >= `least`.
     fn limit(&mut self, rule: Rule, slopes: &DVector<f64>, least: f64) {
         if slopes.amax() == 0.0 || !least.is_finite() {
             return;
         }
-        // What is a parameter itself is limited exactly, without the rounding of the inverse.
+        // A key that is itself a parameter is limited exactly, without the rounding errors of the inverse.
         let own = (0..slopes.len()).find(|&place| self.matrix.row(place).transpose() == *slopes);
         let limit = match own {
             Some(place) => Limit {
@@ -140,13 +143,13 @@ impl Chart {
         self.limits.push(limit);
     }
 
-    /// The parameters for these values of the keys.
+    /// Converts values of the keys to parameters.
     pub fn parameters(&self, keys: &[f64]) -> Vec<f64> {
         let keys = DVector::from_column_slice(keys);
         (&self.matrix * keys + &self.offset).as_slice().to_vec()
     }
 
-    /// The values of the keys for these parameters.
+    /// Converts parameters to values of the keys.
     pub fn keys(&self, parameters: &[f64]) -> Vec<f64> {
         let parameters = DVector::from_column_slice(parameters);
         (&self.inverse * (parameters - &self.offset))
@@ -154,7 +157,7 @@ impl Chart {
             .to_vec()
     }
 
-    /// The limits, of which those that `parameters` are outside of by rounding begin there.
+    /// Returns the limits around `parameters`. A limit that they violate by rounding is moved so that it holds.
     pub fn limits_around(&self, parameters: &[f64]) -> Vec<Limit> {
         self.limits
             .iter()
@@ -165,7 +168,7 @@ impl Chart {
             .collect()
     }
 
-    /// The moment of `part` about `axis` for these values of the keys; `None` where none of the part's is free.
+    /// Returns the moment of `part` about `axis` for these values of the keys; `None` if the part has no free moment.
     pub fn moment(&self, part: usize, axis: usize, keys: &[f64]) -> Option<f64> {
         let (_, rows) = self.moments.iter().find(|(own, _)| *own == part)?;
         let row = &rows[axis];
@@ -173,7 +176,7 @@ impl Chart {
         Some(row.at_zero + free.sum::<f64>())
     }
 
-    /// Whether these values of the keys are within all limits.
+    /// Returns true if these values of the keys satisfy all limits.
     pub fn holds(&self, keys: &[f64]) -> bool {
         let parameters = self.parameters(keys);
         self.limits
@@ -182,7 +185,7 @@ impl Chart {
     }
 }
 
-/// The part and the axis of the key of a moment.
+/// Parses the key of a moment and returns its part and axis.
 pub fn moment(key: &str) -> Option<(usize, usize)> {
     let (part, axis) = key
         .strip_prefix("body.part.")?
@@ -193,13 +196,13 @@ pub fn moment(key: &str) -> Option<(usize, usize)> {
     ))
 }
 
-/// The parts of which a moment is free.
+/// Returns the parts with a free moment.
 fn parts(free: &[Free]) -> BTreeSet<usize> {
     let keys = free.iter().flat_map(|free| &free.keys);
     keys.filter_map(|key| Some(moment(key)?.0)).collect()
 }
 
-/// The three moments of `part` about its center as functions of the keys.
+/// Returns the three moments of `part` about its center as functions of the keys.
 fn of_part(free: &[Free], part: usize, scenario: &Scenario) -> [Row; 3] {
     let own = Vector3::from(
         scenario
@@ -229,7 +232,7 @@ fn of_part(free: &[Free], part: usize, scenario: &Scenario) -> [Row; 3] {
     })
 }
 
-/// The second moments of mass of the body that has these moments.
+/// Returns the second moments of mass of a body with these moments, as functions of the keys.
 fn second(moments: &[Row; 3]) -> [Row; 3] {
     [0, 1, 2].map(|axis| {
         let [own, next, last] = [0, 1, 2].map(|turn| &moments[(axis + turn) % 3]);
@@ -240,7 +243,7 @@ fn second(moments: &[Row; 3]) -> [Row; 3] {
     })
 }
 
-/// The places of so many of the `rows` that do not depend on each other.
+/// Returns the indices of `count` of the `rows` that are linearly independent.
 fn independent(rows: &[Row], count: usize) -> Vec<usize> {
     let mut basis: Vec<DVector<f64>> = Vec::new();
     let mut places = Vec::new();
@@ -257,7 +260,7 @@ fn independent(rows: &[Row], count: usize) -> Vec<usize> {
     places
 }
 
-/// The second moments of mass along the axes of the body with these moments.
+/// Returns the second moments of mass along the axes of a body with these moments.
 pub fn second_moments(moments: &Vector3<f64>) -> Vector3<f64> {
     Vector3::repeat(0.5 * moments.sum()) - moments
 }

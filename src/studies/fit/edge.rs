@@ -1,9 +1,11 @@
-//! The limits at which a search has ended, and how far inside of them the truth may be.
+//! The limits at which a search has ended, and the uncertainty inside them.
 //!
-//! Beyond such a limit the fit would be better. There the distance s to the limit is 0, and the data would have it negative:
-//! their normal distribution of s has its mean outside. Only what is inside can be; the upper limit of s at 68 % is the value
-//! below which 68.27 % of this inside part are, as if each s from 0 on were as likely before. It is never 0, and it holds
-//! the truth at least as often as it says, since those throws whose s came out above 0 are stated as usual.
+//! Beyond such a limit the fit would be better. At the limit the distance s is 0, but the data prefer a negative s:
+//! their normal distribution of s has its mean outside. Only the part with s > 0 is possible. The upper limit of s at
+//! 68 % is the value below which 68.27 % of this part lies, if all s > 0 were equally likely before the measurement.
+//!
+//! This upper limit is never 0. It contains the true value at least as often as stated, because experiments that find s
+//! above 0 are reported in the usual way.
 
 use super::chart::{Chart, Rule, moment};
 use super::fitted::Fitted;
@@ -19,19 +21,21 @@ use serde_json::{Value, json};
 #[derive(Clone, Debug)]
 pub struct Edge {
     pub rule: Rule,
-    /// Whether nothing beyond it can be, whoever draws limits.
+    /// True for a physical limit, false for a bound set by the user.
     pub is_of_nature: bool,
-    /// The keys that it holds.
+    /// True for each key that the limit holds.
     pub holds: Vec<bool>,
-    /// How much each key changes where the distance to the limit is 1, the other limits held.
+    /// Change of each key per unit of distance from the limit, with the other active limits held.
     pub moves: Vec<f64>,
-    /// The greatest distance; `None` where the user drew the limit, which says nothing of nature, or the data do not say.
+    /// Upper limit of the distance. `None` if the user set the bound, which says nothing physical, or if the data do
+    /// not determine the distance.
     pub most: Option<Most>,
-    /// The moment that the distance is compared with, kg m^2: of a flat body the one across it, of a rod one across it.
+    /// The moment to compare the distance with, kg m^2: for a flat body the moment about its normal, for a rod a moment
+    /// across it.
     pub moment: Option<f64>,
 }
 
-/// The upper limits of a distance at 68.27 % and at 95.45 %, in its unit.
+/// Upper limits of a distance at 68.27 % and 95.45 %, in its unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Most {
     pub at_68: f64,
@@ -41,12 +45,12 @@ pub struct Most {
 const LEVEL_68: f64 = 0.682_689_492;
 const LEVEL_95: f64 = 0.954_499_736;
 
-/// What holds a part, in words: which axes it has no extent along.
+/// Equations of a body without extent along each axis.
 const FLAT: [&str; 3] = ["B + C = A", "A + C = B", "A + B = C"];
 const ROD: [&str; 3] = ["A = 0", "B = 0", "C = 0"];
 
 impl Edge {
-    /// The part that it limits, and what it makes of it: "flat: A + B = C".
+    /// Returns the part that this limits, and its shape, such as "flat: A + B = C".
     pub fn of_part(&self) -> Option<(usize, String)> {
         match self.rule {
             Rule::Least(_) | Rule::Greatest(_) => None,
@@ -55,7 +59,7 @@ impl Edge {
         }
     }
 
-    /// How far from the limit the body may be, at both levels, in percent of [`moment`](Self::moment).
+    /// Returns the upper limits of the distance at both levels, in percent of [`moment`](Self::moment).
     fn percents(&self) -> Option<[f64; 2]> {
         let times = match self.rule {
             Rule::SecondMoment { .. } => 200.0, // A + B - C is twice the second moment
@@ -65,14 +69,14 @@ impl Edge {
         Some([at_68, at_95].map(|most| times * most / self.moment.unwrap_or(f64::NAN)))
     }
 
-    /// What is to be known of it, in words.
+    /// Describes the limit and its consequences in words.
     pub fn remark(&self, keys: &[Fitted]) -> String {
         let key = |place: usize| (&keys[place].free.key, significant(keys[place].value, 6));
         match (self.rule, self.most) {
             (Rule::Least(place) | Rule::Greatest(place), None) => {
                 let (key, value) = key(place);
                 format!(
-                    "{key} stands at its bound {value}: the fit would be better beyond it, and it has no uncertainty. Begun at another value by --set, the search may find a better fit within."
+                    "{key} is at its bound {value}: the fit would be better beyond it, and it has no uncertainty. With another start value (--set), the search may find a better fit within the bounds."
                 )
             }
             (Rule::Least(place) | Rule::Greatest(place), Some(Most { at_68, at_95 })) => {
@@ -80,7 +84,7 @@ impl Edge {
                 let [at_68, at_95] =
                     [at_68, at_95].map(|it| significant(keys[place].value + it, 2));
                 format!(
-                    "{key} is at {value}, the least that it can be{}.",
+                    "{key} is at {value}, its lowest possible value{}.",
                     at_most(&at_68, &at_95)
                 )
             }
@@ -133,7 +137,7 @@ fn percent(percent: f64) -> String {
     format!("{} %", significant(percent, 2))
 }
 
-/// The limits that hold the keys at the `minimum`. `variance` is the factor of the covariances.
+/// Returns the limits that hold the keys at the `minimum`. `variance` is the factor of the covariances.
 pub fn edges_at(
     minimum: &Minimum,
     chart: &Chart,
@@ -180,17 +184,18 @@ pub fn edges_at(
         .collect()
 }
 
-/// The normal distribution of the distance to a limit, by the data alone.
+/// The normal distribution of the distance to a limit, from the data alone.
 struct Inside {
     mean: f64,
-    /// Its standard deviation, for data whose uncertainty is 1.
+    /// Standard deviation, for data with uncertainty 1.
     sigma: f64,
-    /// How much each parameter changes where the distance is 1.
+    /// Change of each parameter per unit of distance.
     moves: DVector<f64>,
 }
 
 impl Inside {
-    /// The distribution for the limit at `place`, the others held; `None` where the data do not say.
+    /// Computes the distribution for the limit at index `place`, with the other active limits held. Returns `None` if
+    /// the data do not determine it.
     fn new(minimum: &Minimum, chart: &Chart, place: usize) -> Option<Self> {
         let slopes = &minimum.slopes;
         let units = slopes.column_iter().map(|column| match column.norm() {
@@ -239,10 +244,10 @@ impl Inside {
     }
 }
 
-/// How far above 0, in standard deviations, the value is below which `level` of that part of a normal distribution lies that
-/// is above 0, where its mean is `below` standard deviations below 0.
+/// Returns an upper limit, in standard deviations, for a normal distribution whose mean is `below` standard deviations
+/// below 0. The fraction `level` of the part above 0 lies below this limit.
 fn sigmas_to_most(below: f64, level: f64) -> f64 {
-    /// Beyond this the part above 0 is an exponential to 0.2 %, and is too small for numbers soon.
+    /// Beyond this the part above 0 is exponential to 0.2 %, and soon too small for floating-point numbers.
     const FAR: f64 = 30.0;
     if below > FAR {
         return -libm::log(1.0 - level) / below;
@@ -264,7 +269,7 @@ fn at_most(at_68: &str, at_95: &str) -> String {
     format!(", at most {at_68} with 68 % probability and {at_95} with 95 %")
 }
 
-/// The probability that a standard normal number is farther than `from` from 0.
+/// Returns the probability that a standard normal number is farther than `from` from 0.
 fn both_tails(from: f64) -> f64 {
     libm::erfc(from * std::f64::consts::FRAC_1_SQRT_2)
 }
@@ -275,7 +280,8 @@ mod tests {
 
     #[test]
     fn an_upper_limit_is_that_of_the_part_inside() {
-        // Of a mean at the limit, one and two standard deviations; of one far outside, those of an exponential.
+        // With the mean at the limit: one and two standard deviations. With the mean far outside: values of an
+        // exponential.
         for (below, level, wanted) in [
             (0.0, LEVEL_68, 1.0),
             (0.0, LEVEL_95, 2.0),

@@ -1,21 +1,21 @@
-//! The value of a key that a fit has found, with its uncertainties.
+//! A fitted key: its value and uncertainties.
 
 use super::free::Free;
 
 #[derive(Clone, Debug)]
 pub struct Fitted {
-    /// The key, where the search began, and its bounds.
+    /// The key, its start value and its bounds.
     pub free: Free,
     pub value: f64,
-    /// One standard uncertainty of it, of two sides the larger one; `None` where it cannot be stated.
+    /// One standard uncertainty, the larger one of the two sides; `None` if it cannot be stated.
     pub sigma: Option<f64>,
-    /// The uncertainties to both sides, which differ where a limit of nature holds the key.
+    /// The uncertainties on both sides. They differ if a physical limit holds the key.
     pub sides: Option<Sides>,
-    /// Whether it is held at a bound, beyond which the fit would be better.
+    /// True if the key is at a bound and the fit would be better beyond it.
     pub is_held: bool,
 }
 
-/// How far below and above its value a key may be.
+/// Uncertainties below and above the value of a key, in its unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sides {
     pub below: f64,

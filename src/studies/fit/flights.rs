@@ -1,9 +1,10 @@
-//! Where a recording of the three rates of a body has free flights.
+//! Finds the free flights in a recording of a body's three rates.
 //!
-//! In free flight Euler's equations hold without a torque: w1 changes by g1 times the integral of w2 w3, with g1 = (B - C)/A,
-//! and so on about the other axes. No body has a g beyond -1..1, whatever its moments are. A flight is a longest run of
-//! rows that one such g about each axis explains within the noise, where the body turns fast. A hand that turns or catches the
-//! body changes the rates without such a product.
+//! In free flight, Euler's equations hold without a torque: w1 changes by g1 times the integral of w2 w3, with g1 = (B
+//! - C)/A, and likewise for the other axes. Whatever its moments are, no body has a g outside -1..1.
+//!
+//! A flight is a longest run of rows in which the body turns fast and one such g for each axis explains the rates
+//! within the noise. A hand that turns or catches the body changes the rates in other ways.
 
 use super::thrown::{flies, product, recorded};
 use crate::engine::data::TimeSeries;
@@ -11,49 +12,49 @@ use crate::engine::scenario::Scenario;
 use nalgebra::Vector3;
 use std::ops::Range;
 
-/// A free flight of a recording.
+/// A free flight in a recording.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flight {
-    /// The times of its first and its last row, s.
+    /// Time of the first row, s. `to_s` is the time of the last row.
     pub from_s: f64,
     pub to_s: f64,
     pub rows: usize,
-    /// The mean of |omega|, rad/s.
+    /// Mean of |omega|, rad/s.
     pub rate: f64,
 }
 
-/// What a recording has of free flight.
+/// Result of the search for free flights in a recording.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Found {
     /// The data are not the three rates of a body that flies freely in the scenario.
     NotThrown,
-    /// All of the recording is one flight.
+    /// The whole recording is one flight.
     Whole,
     Flights(Vec<Flight>),
 }
 
-/// The shortest flight, s, and the fewest rows of one.
+/// Minimum duration of a flight, s, and its minimum number of rows.
 const SHORTEST_S: f64 = 0.2;
 const FEWEST_ROWS: usize = 12;
-/// The least share of the shortest flight that the ends may leave.
+/// Minimum fraction of the shortest duration that must remain after the ends are trimmed.
 const LEFT: f64 = 0.75;
-/// The least mean of |omega| of a flight, rad/s: slower turns look like any other rest.
+/// Minimum mean of |omega| in a flight, rad/s: slower rotation cannot be distinguished from rest.
 const LEAST_RATE: f64 = 2.0;
-/// The rates may be off by their noise and this share of |omega|: sensors are a little askew.
+/// Allowed deviation of the rates in addition to the noise, as a fraction of |omega|: sensors are slightly misaligned.
 const SHARE: f64 = 0.01;
-/// The mean square of noise may be above the expected one by so many of its own standard deviations.
+/// Allowed excess of the noise's mean square over its expected value, in standard deviations.
 const SCATTERS: f64 = 4.0;
-/// The rows of this time at an end are not of the flight where their mean is off by more than so many standard deviations,
-/// and by more than many of a whole recording.
+/// Duration at each end, s, whose rows are trimmed if their mean deviates by more than `OFF` standard deviations. For a
+/// whole recording the limit is `FAR_OFF`.
 const END_S: f64 = 0.02;
 const OFF: f64 = 3.0;
 const FAR_OFF: f64 = 6.0;
-/// What is left out at each end, s, besides: a row at least. There a hand still pushes a little.
+/// Additional margin trimmed at each end, s, at least one row, because a hand may still push a little.
 const MARGIN_S: f64 = 0.015;
-/// A pause of more than so many times the usual time between rows ends a flight.
+/// A pause longer than this multiple of the usual time between rows ends a flight.
 const PAUSE: f64 = 4.5;
 
-/// Looks for the free flights of `series`, in the order of time.
+/// Finds the free flights of `series`, in order of time.
 pub fn find(series: &TimeSeries, scenario: &Scenario) -> Found {
     let Some(recorded) = recorded(series).filter(|_| flies(scenario)) else {
         return Found::NotThrown;
@@ -83,16 +84,16 @@ pub fn find(series: &TimeSeries, scenario: &Scenario) -> Found {
 struct Recording {
     times_s: Vec<f64>,
     rates: Vec<Vector3<f64>>,
-    /// The products w2 w3, w3 w1, w1 w2 summed up from the first row on.
+    /// The products w2 w3, w3 w1, w1 w2, integrated from the first row.
     sums: Vec<Vector3<f64>>,
-    /// The standard deviation of the noise of a rate.
+    /// Standard deviation of the noise of a rate, rad/s.
     noise: f64,
-    /// The usual time between rows.
+    /// Median time between rows, s.
     apart_s: f64,
 }
 
-/// Sums over rows, of differences from the first one. About each axis they give the line w = offset + growth . sum of least
-/// squares, for a growth that a body can have.
+/// Sums over rows, relative to the first row. For each axis they give the least-squares line w = offset + growth . sum,
+/// with a growth that a body can have.
 #[derive(Default)]
 struct Squares {
     count: f64,
@@ -114,7 +115,7 @@ impl Squares {
         self.rates_sums += rates.component_mul(sums);
     }
 
-    /// The covariance of two of the columns, by the sum of their products.
+    /// Returns the covariance of two columns from the sum of their products, `products`, and their own sums.
     fn covariance(
         &self,
         products: &Vector3<f64>,
@@ -136,7 +137,7 @@ impl Squares {
         })
     }
 
-    /// The largest mean square about the lines, of the three axes.
+    /// Returns the largest mean square deviation from the lines, of the three axes.
     fn mean_square(&self) -> f64 {
         let growth = self.growth();
         let rates = self.covariance(&self.rates_rates, &self.rates, &self.rates);
@@ -165,7 +166,8 @@ impl Recording {
             sums.push(sum);
         }
         let apart_s = median(times_s.windows(2).map(|pair| pair[1] - pair[0]).collect());
-        // Of white noise the third differences have 20 times the variance; smooth motion hardly has any.
+        // The variance of the third differences is 20 times the variance of white noise. Smooth motion contributes
+        // almost nothing.
         let thirds = rates
             .windows(4)
             .map(|row| row[3] - 3.0 * row[2] + 3.0 * row[1] - row[0])
@@ -203,7 +205,7 @@ impl Recording {
         squares.mean_square() <= self.noise * self.noise * scatter + askew * askew
     }
 
-    /// Whether free flight explains all rows, to their ends, however slow the body turns.
+    /// Returns true if free flight explains all rows, including the ends, however slowly the body turns.
     fn is_one_flight(&self) -> bool {
         let all = 0..self.times_s.len();
         let pairs = self.times_s.windows(2);
@@ -214,7 +216,7 @@ impl Recording {
             && self.without_ends(all.clone(), FAR_OFF) == all
     }
 
-    /// The longest of the flights that begin at row `first` or soon after it, with what is left of hands at its ends.
+    /// Returns the longest flight that begins at row `first` or soon after. Its ends are not yet trimmed.
     fn longest_from(&self, first: usize) -> Option<Range<usize>> {
         let mut longest = self.explained_from(first)?;
         let until_s = self.times_s[first] + SHORTEST_S;
@@ -230,7 +232,7 @@ impl Recording {
         Some(longest)
     }
 
-    /// The longest flight that begins at row `first`.
+    /// Returns the longest flight that begins at row `first`.
     fn explained_from(&self, first: usize) -> Option<Range<usize>> {
         let mut squares = Squares::default();
         let mut found = None;
@@ -252,12 +254,12 @@ impl Recording {
         found.filter(|rows| self.speed(rows) >= LEAST_RATE)
     }
 
-    /// The same without the rows at the ends that are off, and a margin.
+    /// Trims deviating rows at the ends of `rows`, and a margin. Returns `None` if the rest is too short.
     fn trimmed(&self, rows: Range<usize>) -> Option<Range<usize>> {
         let rows = self.without_ends(rows, OFF);
         let margin = (MARGIN_S / self.apart_s).ceil().max(1.0) as usize;
         let last = self.times_s.len();
-        // Where the recording itself begins or ends in flight, there is no hand.
+        // If the recording itself begins or ends in flight, there is no hand.
         let start = if rows.start == 0 {
             0
         } else {
@@ -273,7 +275,7 @@ impl Recording {
         is_long.then_some(kept)
     }
 
-    /// `rows` without those at the ends that are off the lines of all by more than `most` standard deviations.
+    /// Trims rows at the ends that deviate from the lines of all rows by more than `most` standard deviations.
     fn without_ends(&self, mut rows: Range<usize>, most: f64) -> Range<usize> {
         let block = (END_S / self.apart_s).clamp(1.0, FEWEST_ROWS as f64 / 2.0) as usize;
         while rows.len() > FEWEST_ROWS {

@@ -1,4 +1,4 @@
-//! A key whose value is looked for.
+//! A free key: a scenario key whose value is fitted.
 
 use crate::engine::scenario::dotted;
 use crate::engine::scenario::keys::{self, Effect};
@@ -8,33 +8,34 @@ use crate::engine::scenario::{Document, Problem, Problems, float};
 use crate::engine::text::number::shortest;
 use crate::engine::text::printable::brief;
 
-/// A free key: where the search begins, and what it may not leave.
+/// A free key: the start of the search and its bounds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Free {
-    /// The dotted key; of several that have one value, all of them with + between.
+    /// The dotted key. Several keys that share one value are joined by +.
     pub key: String,
     pub keys: Vec<String>,
     pub start: f64,
-    /// The least value; -infinity where there is none.
+    /// Lower bound; -infinity if there is none.
     pub from: f64,
-    /// The greatest value; infinity where there is none.
+    /// Upper bound; infinity if there is none.
     pub to: f64,
-    /// The least value that it can have at all; -infinity where it can have any.
+    /// Lowest value that the key allows in any scenario; -infinity if every value is allowed.
     pub least: f64,
-    /// A value of the size that is usual for it.
+    /// A typical size of the value.
     pub scale: f64,
 }
 
-/// A change of a value that is 0 and has no bounds, where the table of keys names none.
+/// Typical change of a value that is 0 and has no bounds, if the table of keys has none.
 const ZERO_VALUE_CHANGE: f64 = 0.01;
 
 impl Free {
-    /// The free key that `argument`, KEY or KEY=FROM..TO, means in `scenario`; either end may be left out. KEY+KEY are two
-    /// keys that have the same value, such as the two moments across the axle of a symmetric body.
+    /// Parses `argument`, KEY or KEY=FROM..TO, for `scenario`. Either bound may be omitted.
+    ///
+    /// KEY+KEY means two keys that share one value, such as the two moments across the axle of a symmetric body.
     ///
     /// # Errors
-    /// When there is no such key, no number of a run depends on it, it has no value to begin from, or the bounds are none
-    /// or leave the value out.
+    /// Returns an error if the key is unknown, has no value to start from, or does not affect any number of a run. Also
+    /// if the bounds cannot be parsed or exclude the start value.
     pub fn parse(argument: &str, scenario: &Document) -> Result<Self, Problems> {
         Self::read(argument.trim(), scenario).map_err(|rule| {
             let mut problem = Problem::at("", rule);
@@ -43,7 +44,7 @@ impl Free {
         })
     }
 
-    /// The size of the key at `value`, by which relative changes are measured.
+    /// Returns the size of `value`, the unit of relative changes; a typical size if it is 0.
     pub(super) fn size(&self, value: f64) -> f64 {
         match value.abs() {
             0.0 => self.scale,
@@ -60,7 +61,7 @@ impl Free {
             let (start_of_other, ..) = Self::one(other, scenario)?;
             if start_of_other != start {
                 return Err(format!(
-                    "{} is {} and {other} is {}: keys that have one value must begin with it",
+                    "{} is {} and {other} is {}: keys that share one value must start from the same value",
                     keys[0],
                     shortest(start),
                     shortest(start_of_other)
@@ -85,20 +86,20 @@ impl Free {
         })
     }
 
-    /// The value of `key` in `scenario`, a small change of it, and the least value that it may have.
+    /// Returns the value of `key` in `scenario`, a small change of it, and its lowest allowed value.
     fn one(key: &str, scenario: &Document) -> Result<(f64, f64, f64), String> {
         let (row, kind) = keys::find(key)?;
         let ValueKind::Number(range) = kind else {
             return Err(not_a_number(key, kind));
         };
         if Effect::of_key(key) == Effect::None || key.starts_with("edit.") {
-            return Err("no number of a run depends on this key: it cannot be fitted".to_owned());
+            return Err("cannot be fitted: no number of a run depends on this key".to_owned());
         }
         let written = dotted::find(scenario.table(), key).cloned();
         let stated = written.or_else(|| row.default.map(toml::Value::from));
         let start = stated.and_then(|value| float(&value)).ok_or_else(|| {
             format!(
-                "has no value in the scenario, from which the search would begin: give it one by --set {key}=..."
+                "has no value in the scenario to start the search from: set one with --set {key}=..."
             )
         })?;
         let nudge = match row.lab.map(|lab| lab.nudge) {
@@ -113,17 +114,17 @@ impl Free {
     }
 }
 
-/// Whether the search for `key` can begin at `start` within these bounds.
+/// Checks that the search for `key` can start at `start` within these bounds.
 fn can_begin(key: &str, start: f64, from: f64, to: f64) -> Result<(), String> {
     if from >= to {
         return Err(format!(
-            "the bounds leave no room: it is never below {}, and the upper bound must be above that",
+            "the upper bound must be above {}, the lowest value of this key",
             shown(from)
         ));
     }
     if !(from..=to).contains(&start) {
         return Err(format!(
-            "begins at {}, the scenario's value, outside of {}..{}: give other bounds, or begin inside by --set {key}=...",
+            "starts at {}, the scenario's value, which is outside {}..{}: change the bounds, or start inside with --set {key}=...",
             shortest(start),
             shown(from),
             shown(to)
@@ -135,18 +136,18 @@ fn can_begin(key: &str, start: f64, from: f64, to: f64) -> Result<(), String> {
 fn not_a_number(key: &str, kind: ValueKind) -> String {
     match kind {
         ValueKind::Vector => {
-            format!("is a vector, of which each number can be free: {key}.0, {key}.1, {key}.2")
+            format!("is a vector: free its components {key}.0, {key}.1, {key}.2")
         }
         ValueKind::Whole(..) | ValueKind::WholeOr(..) => {
-            "is a whole number, which cannot be varied by little: vary it by gyrolab sweep"
-                .to_owned()
+            "is a whole number and cannot be fitted: vary it with gyrolab sweep".to_owned()
         }
-        _ => "is no number: it cannot be fitted".to_owned(),
+        _ => "cannot be fitted: it is not a number".to_owned(),
     }
 }
 
 fn ends(bounds: &str) -> Result<(f64, f64), String> {
-    const WRONG: &str = "bounds must be FROM..TO, two numbers of which either may be left out, such as 0.1..0.5 or 0..";
+    const WRONG: &str =
+        "bounds must be FROM..TO, with at least one number, such as 0.1..0.5 or 0..";
     let (from, to) = bounds.split_once("..").ok_or(WRONG)?;
     let from = end(from, f64::NEG_INFINITY).ok_or(WRONG)?;
     let to = end(to, f64::INFINITY).ok_or(WRONG)?;
@@ -154,14 +155,14 @@ fn ends(bounds: &str) -> Result<(f64, f64), String> {
         Ok((from, to))
     } else {
         Err(format!(
-            "the bounds leave no room: {} must be below {}",
+            "the lower bound {} must be below the upper bound {}",
             shown(from),
             shown(to)
         ))
     }
 }
 
-/// Returns the number in `text`, or the `absent` one where it is empty; `None` where it is no finite number.
+/// Parses the number in `text`; an empty text gives `absent`. Returns `None` if it is not a finite number.
 fn end(text: &str, absent: f64) -> Option<f64> {
     match text.trim() {
         "" => Some(absent),
@@ -172,7 +173,7 @@ fn end(text: &str, absent: f64) -> Option<f64> {
     }
 }
 
-/// A bound as it is written; nothing where there is none.
+/// Returns a bound as text; empty if it is infinite.
 pub(super) fn shown(bound: f64) -> String {
     if bound.is_finite() {
         shortest(bound)

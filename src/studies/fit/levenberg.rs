@@ -1,43 +1,44 @@
-//! The search for the least sum of squares: Levenberg and Marquardt's, within limits.
+//! The search for the minimum sum of squares: the method of Levenberg and Marquardt, within limits.
 //!
-//! Sources: D. W. Marquardt, J. Soc. Indust. Appl. Math. 11, 431 (1963); J. J. Moré, Lecture Notes in Mathematics 630, 105
-//! (1978), for the scaling of the parameters, which never shrinks; H. B. Nielsen, Damping parameter in Marquardt's method,
-//! IMM-REP-1999-05, Technical University of Denmark (1999), for the damping. Each step is the least square of the linear
-//! problem [`within`](super::within) the limits of the parameters. A well-kept crate with this method, levenberg-marquardt,
-//! needs another version of nalgebra and has no limits.
+//! Sources: D. W. Marquardt, J. Soc. Indust. Appl. Math. 11, 431 (1963). J. J. Moré, Lecture Notes in Mathematics 630,
+//! 105 (1978), for the scaling of the parameters, which never shrinks. H. B. Nielsen, Damping parameter in Marquardt's
+//! method, IMM-REP-1999-05, Technical University of Denmark (1999), for the damping.
+//!
+//! Each step solves the linear least-squares problem [`within`](super::within) the limits of the parameters. The crate
+//! levenberg-marquardt has this method too, but it needs another version of nalgebra and has no limits.
 
 use super::within::{Limit, complement, least_squares};
 use nalgebra::{DMatrix, DVector};
 
-/// What is to be made small.
+/// A problem whose sum of squares is minimized.
 pub trait LeastSquares {
-    /// The residuals r at `p`, in units in which a standard uncertainty is 1.
+    /// Computes the residuals r at `p`, in units in which a standard uncertainty is 1.
     fn residuals(&self, p: &[f64]) -> Result<DVector<f64>, Stop>;
 
-    /// −∂r/∂p at `p`: a column for each parameter.
+    /// Computes −∂r/∂p at `p`, one column per parameter.
     fn slopes(&self, p: &[f64]) -> Result<DMatrix<f64>, Stop>;
 
-    /// Called after each step, with the number of steps and the sum.
+    /// Called after each step, with the number of steps and the sum of squares.
     fn on_iteration(&self, step: u64, sum: f64);
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Stop {
-    /// There is no such run, or no such number of it.
+    /// The run is impossible, or it does not have one of the numbers.
     Impossible(String),
     Interrupted,
 }
 
-/// A place where the sum is less, and the residuals there.
+/// A point with a smaller sum of squares, and the residuals there.
 type Better = (Vec<f64>, DVector<f64>);
 
 #[derive(Clone, Debug)]
 pub struct Minimum {
     pub p: Vec<f64>,
     pub residuals: DVector<f64>,
-    /// −∂r/∂p there.
+    /// −∂r/∂p at the minimum.
     pub slopes: DMatrix<f64>,
-    /// The limits that hold the parameters, by their places: beyond each of them the sum would be less.
+    /// Indices of the active limits: beyond each of them the sum would be smaller.
     pub held: Vec<usize>,
     pub steps: u64,
     pub failure: Option<Failure>,
@@ -47,27 +48,27 @@ pub struct Minimum {
 pub enum Failure {
     /// The sum was still falling after [`MOST_ITERATIONS`].
     TooManySteps,
-    /// However short a step is, it makes nothing better, though the slopes say that it should.
+    /// No step reduces the sum, however short, although the slopes predict that one should.
     Stuck,
 }
 
 pub const MOST_ITERATIONS: u64 = 200;
 
-/// A foreseen gain below this ends the search; in the sum 1 is a standard uncertainty.
+/// The search ends if the expected reduction of the sum is below this. The unit of the sum is a squared uncertainty.
 const ENOUGH: f64 = 1e-8;
-/// The same as a part of the sum.
+/// The same limit, relative to the sum.
 const ENOUGH_OF_SUM: f64 = 1e-10;
-/// Where no step reduces the sum, a foreseen gain below this is rounding.
+/// If no step reduces the sum, an expected reduction below this is rounding error.
 const GAIN_ROUNDING: f64 = 1e-3;
-/// Singular values below this part of the largest are the rounding of the slopes.
+/// Singular values below this fraction of the largest are rounding error of the slopes.
 pub const SINGULAR: f64 = 1e-6;
-/// A limit that is nearer than this, in uncertainties, has been reached.
+/// A limit closer than this, in uncertainties, counts as reached.
 const HERE: f64 = 1e-9;
-/// The damping at the beginning, of slopes whose columns have length 1.
+/// Initial damping, for slopes whose columns have length 1.
 const DAMPING: f64 = 1e-3;
 const MOST_DAMPING: f64 = 1e12;
 
-/// Looks for the least sum of squares from `start` on, which is inside of all `limits`.
+/// Searches for the minimum sum of squares from `start`, which must satisfy all `limits`.
 pub fn search(
     problem: &dyn LeastSquares,
     start: &[f64],
@@ -110,14 +111,14 @@ pub fn search(
     Err(Stop::Interrupted) // not reached: the steps are counted above
 }
 
-/// The linear problem at one place, J d = r, in units of the scales of the parameters.
+/// The linear problem at one point, J d = r, in units of the scales of the parameters.
 struct Linear<'a> {
     slopes: &'a DMatrix<f64>,
     units: DVector<f64>,
-    /// R of the slopes Q R, and Q^T r.
+    /// R of the decomposition Q R of the slopes. `along` is Q^T r.
     root: DMatrix<f64>,
     along: DVector<f64>,
-    /// The limits of a step from here.
+    /// The limits of a step from this point.
     limits: Vec<Limit>,
 }
 
@@ -150,7 +151,7 @@ impl<'a> Linear<'a> {
         }
     }
 
-    /// Returns the limits that hold the parameters where they are: those that the steepest way down leads beyond.
+    /// Returns the limits that hold the parameters at this point: the direction of steepest descent crosses them.
     fn held(&self) -> Vec<usize> {
         let here: Vec<usize> = (0..self.limits.len())
             .filter(|place| self.limits[*place].least >= -HERE)
@@ -168,7 +169,7 @@ impl<'a> Linear<'a> {
         within.held.into_iter().map(|place| here[place]).collect()
     }
 
-    /// Returns by how much the sum would fall, were the residuals linear, along the limits that are `held`.
+    /// Returns the reduction of the sum along the `held` limits if the residuals were linear.
     fn gain(&self, held: &[usize]) -> f64 {
         let normals = held.iter().map(|&place| &self.limits[place].normal);
         let free = complement(normals, self.units.len());
@@ -186,7 +187,7 @@ impl<'a> Linear<'a> {
         seen.map(|(_, part)| part * part).sum()
     }
 
-    /// Returns where the longest step leads that reduces the sum; `None` where there is none.
+    /// Returns the result of the longest step that reduces the sum; `None` if no step does.
     fn better(
         &self,
         problem: &dyn LeastSquares,
@@ -220,7 +221,7 @@ impl<'a> Linear<'a> {
         }
     }
 
-    /// Returns the step under `damping`, in the parameters' own units.
+    /// Returns the step for this `damping`, in the parameters' own units.
     fn step(&self, damping: f64) -> DVector<f64> {
         let (rows, count) = self.root.shape();
         let own = DMatrix::from_diagonal_element(count, count, damping.sqrt());
@@ -230,7 +231,7 @@ impl<'a> Linear<'a> {
         let within = least_squares(&damped, &along, &self.limits);
         let mut step = within.y.component_mul(&self.units);
         for (change, slopes) in step.iter_mut().zip(self.root.column_iter()) {
-            // What moves no datum stays where it is, and not but for rounding.
+            // A parameter without effect on the data keeps its value exactly; rounding would move it.
             if slopes.amax() == 0.0 {
                 *change = 0.0;
             }
@@ -239,7 +240,7 @@ impl<'a> Linear<'a> {
     }
 }
 
-/// Returns `p` after `step`. What one parameter alone is limited by holds exactly, and not but for rounding.
+/// Returns `p` after `step`. A limit on a single parameter then holds exactly, without rounding errors.
 fn moved(p: &[f64], step: &DVector<f64>, limits: &[Limit]) -> Vec<f64> {
     let mut moved: Vec<f64> = p
         .iter()

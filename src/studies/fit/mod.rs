@@ -1,12 +1,16 @@
-//! Fits: values for keys of a scenario so that its runs come nearest to what was measured, in the sense of weighted least
-//! squares, with what the data say of these values and of the model.
+//! Fits: finds values of scenario keys whose runs come closest to measured data by weighted least squares, with
+//! uncertainties and a test of the model.
 //!
-//! [`free`] says which keys are free, from where to where. A [`Model`] computes the runs for given values and holds them
-//! against the data. `thrown` says where to begin for a body that flies freely, [`flights`] where a recording has free flights.
-//! [`chart`] says in which parameters the search goes on, and within which limits. [`levenberg`] looks for the values, by
-//! steps that [`within`] finds; [`weights`] says how much each datum counts, [`solution`] what the minimum says of the keys
-//! and of the model, [`edge`] what it says where a limit holds them, [`verdict`] whether the model fits, in a sentence.
-//! [`search`] brings these together to a [`Fit`], with each key as [`fitted`], [`report`] writes it for people and programs, and as a CSV.
+//! - Input: [`free`] defines the free keys and their bounds, [`weights`] the weight of each datum. A [`Model`] computes
+//!   the runs for given values and compares them with the data.
+//! - Start: `thrown` suggests start values for a body that flies freely. [`flights`] finds the free flights in a
+//!   recording.
+//! - Search: [`chart`] defines the parameters of the search and their limits. [`levenberg`] finds the minimum, in steps
+//!   that [`within`] computes.
+//! - Result: [`solution`] holds uncertainties and quality, [`edge`] treats keys at a limit, and [`verdict`] says in one
+//!   sentence if the model fits.
+//!
+//! [`search`] combines these into a [`Fit`] whose keys are [`fitted`]. [`report`] writes it as text, JSON and CSV.
 
 pub mod chart;
 pub mod edge;

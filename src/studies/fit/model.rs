@@ -1,4 +1,4 @@
-//! The runs of a scenario for given values of its free keys, beside the data.
+//! The model of a fit: the runs of a scenario for given values of its free keys, compared with the data.
 
 use super::free::Free;
 use super::levenberg::Stop;
@@ -19,7 +19,7 @@ use toml::Value;
 
 pub type FitProgress<'a> = &'a (dyn Fn() -> bool + Sync);
 
-/// A scenario, its free keys, and the data that its runs are held against.
+/// A scenario, its free keys, and the data to compare its runs with.
 #[derive(Debug)]
 pub struct Model {
     base: Document,
@@ -28,7 +28,7 @@ pub struct Model {
     pub title: String,
     pub scheme: &'static str,
     pub columns: Vec<Measurand>,
-    /// Every measured value: column by column, and in each in the order of the rows.
+    /// All measured values, by column and then by row.
     pub data: Vec<Datum>,
     runs: AtomicU64,
 }
@@ -36,7 +36,7 @@ pub struct Model {
 #[derive(Clone, Copy, Debug)]
 pub struct Measurand {
     pub readout: &'static Readout,
-    /// The quantity, of a time series.
+    /// The quantity, if the data are a time series.
     pub quantity: Option<&'static RunQuantity>,
 }
 
@@ -47,10 +47,11 @@ pub struct Datum {
 }
 
 impl Model {
-    /// The model that `scenario` is with these keys free, beside `measured`.
+    /// Creates the model of `scenario` with the keys `free` for the data `measured`.
     ///
     /// # Errors
-    /// When the scenario is wrong, a key is free that a column sets, or the run would take too many steps to the last row.
+    /// Returns an error if the scenario is wrong, if a data column sets a free key, or if the run needs too many steps
+    /// to reach the last row.
     pub fn new(
         scenario: &Document,
         free: Vec<Free>,
@@ -77,7 +78,7 @@ impl Model {
         })
     }
 
-    /// Says what in the data cannot be right for the scenario's body.
+    /// Returns warnings about data that cannot be right for the scenario's body.
     pub fn doubts(&self) -> Vec<String> {
         let scenario = self.base.scenario();
         scenario.map_or_else(
@@ -94,7 +95,7 @@ impl Model {
         Ok(self.document(p)?.scenario()?)
     }
 
-    /// The same, as long as it was measured: at least up to the last time of a time series.
+    /// Returns the scenario for the values `p`, extended to the last time of a time series if necessary.
     pub fn as_long_as_measured(&self, p: &[f64]) -> Result<Scenario, String> {
         let scenario = self.scenario(p)?;
         let last_s = match &self.measured.data {
@@ -122,11 +123,13 @@ impl Model {
         Ok(document)
     }
 
-    /// What the runs with these values say of each datum, in its unit. Of a table of runs, the value of a setting, by its
-    /// place, may be `changed` by a multiple of its uncertainty in every row.
+    /// Computes the model's value for each datum, in its unit. `p` holds the values of the free keys.
+    ///
+    /// For a table of runs, `changed` is the index of a setting and a number of its uncertainties, which are added in
+    /// every row.
     ///
     /// # Errors
-    /// Why there is no such run, or which number it does not have.
+    /// Returns an error if a run is impossible or does not have one of the numbers.
     pub fn values(
         &self,
         p: &[f64],
@@ -196,18 +199,18 @@ impl Model {
         value.filter(|value| value.is_finite()).ok_or_else(|| {
             let row = self.row(datum.point.row);
             Stop::Impossible(format!(
-                "{name} is null in {row}: the run of the scenario does not have this number (gyrolab readouts says when)"
+                "{name} is null in {row}: the scenario's run does not have this number (see gyrolab readouts)"
             ))
         })
     }
 
-    /// A row in words: its number, from 1, and its line in the file.
+    /// Names a row in words: its number, counted from 1, and its line in the file.
     pub fn row(&self, row: usize) -> String {
         let line = self.measured.lines.get(row).copied().unwrap_or_default();
         format!("row {} (line {line} of the data)", row + 1)
     }
 
-    /// The data held against `values`, one residual each.
+    /// Compares the data with `values` and returns one residual per datum.
     pub fn residuals(&self, values: &[f64]) -> Vec<Residual> {
         let mut all = Vec::with_capacity(values.len());
         for (column, measurand) in self.columns.iter().enumerate() {
@@ -222,7 +225,7 @@ impl Model {
     }
 }
 
-/// The columns that were measured, and every value in them.
+/// Returns the measured columns, and all values in them.
 fn listed(data: &DataKind) -> (Vec<Measurand>, Vec<Datum>) {
     let measured: Vec<(Measurand, &[MeasuredPoint])> = match data {
         DataKind::Series(series) => series
@@ -251,7 +254,8 @@ fn listed(data: &DataKind) -> (Vec<Measurand>, Vec<Datum>) {
     (columns, all)
 }
 
-/// `document` with the settings of the `row` of `table`, one of them changed by a multiple of its uncertainty.
+/// Returns `document` with the settings of the `row` of `table`. `changed` adds a multiple of its uncertainty to one
+/// setting.
 fn with_settings(
     document: &Document,
     table: &RunTable,
@@ -273,13 +277,13 @@ fn with_settings(
     Ok(changed_document)
 }
 
-/// Refuses data whose last row the run of `scenario` takes too many steps to come to.
+/// Returns the error for data whose last row needs too many steps in the run of `scenario`.
 fn too_far(measured: &MeasuredData, series: &TimeSeries, scenario: &Scenario) -> Problems {
     let [first_s, last_s] = [series.times_s.first(), series.times_s.last()];
     let [first_s, last_s] = [first_s, last_s].map(|time_s| time_s.copied().unwrap_or(0.0));
     let begin = if first_s > 0.5 * last_s {
         format!(
-            "; the recording begins at {0} s: --from {0} counts the time from there",
+            "; the recording starts at {0} s: use --from {0} to count the time from there",
             shortest(first_s)
         )
     } else {
@@ -288,7 +292,7 @@ fn too_far(measured: &MeasuredData, series: &TimeSeries, scenario: &Scenario) ->
     let mut problem = Problem::at(
         "t_s",
         format!(
-            "{} s is too many time steps of {} s away: a run is followed for 10 000 000 steps (2^12 times as many where the scheme is exact); leave the row out, or give a longer motion.time_step_s{begin}",
+            "{} s needs too many time steps of {} s: a run has at most 10 000 000 steps (2^12 times as many with the exact scheme); remove the row, or set a longer motion.time_step_s{begin}",
             shortest(last_s),
             shortest(scenario.motion.time_step_s)
         ),
@@ -297,7 +301,7 @@ fn too_far(measured: &MeasuredData, series: &TimeSeries, scenario: &Scenario) ->
     Problems::one(measured.origin.clone(), problem)
 }
 
-/// The settings at which `data` were measured.
+/// Returns the settings at which `data` were measured.
 pub(super) fn settings(data: &DataKind) -> &[RunSetting] {
     match data {
         DataKind::Table(table) => &table.settings,
@@ -305,7 +309,7 @@ pub(super) fn settings(data: &DataKind) -> &[RunSetting] {
     }
 }
 
-/// Refuses free keys that write into the same value, or into one that a column sets.
+/// Checks that no two free keys set the same value, and that no data column sets a free key.
 fn are_apart(free: &[Free], settings: &[RunSetting]) -> Result<(), Problems> {
     let keys: Vec<&String> = free.iter().flat_map(|free| &free.keys).collect();
     for (index, key) in keys.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! A fit as people read it, as programs do, and as a CSV.
+//! A fit as text, JSON and CSV.
 
 use super::fitted::{Fitted, Sides};
 use super::free::shown;
@@ -23,16 +23,16 @@ use std::io::{self, Write};
 pub struct FitReport<'a> {
     pub fit: &'a Fit,
     pub model: &'a Model,
-    /// The scheme of the scenario, where the runs have another.
+    /// The scheme of the scenario, if the runs use a different one.
     pub instead_of: Option<&'static str>,
 }
 
-/// Uncertainties to both sides that differ by no more than this part are one.
+/// Uncertainties of the two sides that differ by at most this fraction are shown as one.
 const ALIKE: f64 = 0.05;
-/// Digits of a value whose uncertainty cannot be stated.
+/// Significant digits of a value without an uncertainty.
 const REPORT_VALUE_DIGITS: usize = 7;
 
-/// Returns `number` to the second digit of `uncertainty`: 3.040e-4, where that is 2.2e-6.
+/// Formats `number` down to the second digit of `uncertainty`: 3.040e-4 for an uncertainty of 2.2e-6.
 fn to_the_digit_of(number: f64, uncertainty: f64) -> String {
     let stated = uncertain(number, uncertainty).filter(|_| number != 0.0);
     stated.map_or_else(
@@ -42,7 +42,7 @@ fn to_the_digit_of(number: f64, uncertainty: f64) -> String {
 }
 
 impl Fitted {
-    /// The value with its uncertainty, as people read it: 0.003920(38), or where that differs 0.003920 +0.000042 -0.000038.
+    /// Formats the value with its uncertainty: 0.003920(38), or 0.003920 +0.000042 -0.000038 if the two sides differ.
     pub fn stated(&self) -> String {
         if let Some(Sides { below, above }) = self.sides
             && (below - above).abs() > ALIKE * below.max(above)
@@ -68,11 +68,11 @@ impl Fitted {
 }
 
 impl FitReport<'_> {
-    /// What is to be known beside the values, a sentence each.
+    /// Returns remarks on the fit, one sentence each.
     fn remarks(&self) -> Vec<String> {
         let other = self.instead_of.map(|own| {
             format!(
-                "The fitted runs have the scheme {}; the scenario's own is {own} (--scheme {own} fits the runs of that).",
+                "The fitted runs use the scheme {}; the scenario's scheme is {own} (use --scheme {own} to fit with it).",
                 self.model.scheme
             )
         });
@@ -80,7 +80,7 @@ impl FitReport<'_> {
         remarks.chain(self.fit.aliased(self.model)).collect()
     }
 
-    /// What is to be known of a key beside its value; empty where there is nothing.
+    /// Returns a short remark on a key, or an empty text.
     fn remark(&self, index: usize) -> String {
         let key = &self.fit.keys[index];
         let held = self.fit.edges.iter().filter(|edge| edge.holds[index]);
@@ -116,7 +116,7 @@ impl FitReport<'_> {
         if count < 2 {
             return Ok(());
         }
-        writeln!(f, "\nCorrelations, the keys in that order:")?;
+        writeln!(f, "\nCorrelations, keys in the same order:")?;
         for i in 0..count {
             let cells: String = (0..=i)
                 .map(|j| match self.fit.solution.correlation(i, j) {
@@ -162,7 +162,7 @@ impl FitReport<'_> {
             0..=MOST_REPORTED_ROWS => writeln!(f, "\nResiduals:")?,
             count => writeln!(
                 f,
-                "\nThe {MOST_REPORTED_ROWS} of {count} residuals that are furthest off:"
+                "\nThe {MOST_REPORTED_ROWS} largest of {count} residuals:"
             )?,
         }
         write_table(f, head, rows)
@@ -214,7 +214,7 @@ impl FitReport<'_> {
     }
 }
 
-/// Returns the square matrix of `count` rows with these cells.
+/// Returns a square matrix with `count` rows from a function for its cells.
 fn matrix(count: usize, cell: impl Fn(usize, usize) -> Option<f64>) -> Vec<Vec<Option<f64>>> {
     (0..count)
         .map(|i| (0..count).map(|j| cell(i, j)).collect())
@@ -244,7 +244,7 @@ impl fmt::Display for FitReport<'_> {
                 .map_or(NOT_AVAILABLE.to_owned(), |p| significant(p, 2));
             writeln!(
                 f,
-                "chi^2/degree of freedom: {each}, probability of so much or more: {probability}"
+                "chi^2/degree of freedom: {each}, probability of this value or more: {probability}"
             )?;
         }
         for remark in self.remarks() {
@@ -260,7 +260,7 @@ impl Serialize for FitReport<'_> {
     }
 }
 
-/// A head and rows of cells in columns that are as wide as their widest cell.
+/// Writes a header and rows as aligned columns.
 fn write_table<const N: usize>(
     f: &mut fmt::Formatter<'_>,
     head: [&str; N],
@@ -282,7 +282,7 @@ fn write_table<const N: usize>(
     Ok(())
 }
 
-/// The comments above the run file.
+/// The TOML in the comments above the run file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Header {
@@ -290,20 +290,20 @@ pub struct Header {
     pub key: Vec<FittedKey>,
 }
 
-/// The command of a fit, and how well the model fits.
+/// The command of a fit, and the quality of the result.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FitCommand {
-    /// The whole command, without its output.
+    /// The complete command, without its output option.
     pub command: String,
     pub measured: String,
     #[serde(rename = "in")]
     pub scenario: String,
     pub scheme: String,
     pub free: Vec<String>,
-    /// The rows that were fitted, where these are not all.
+    /// The rows that were fitted, if not all.
     pub rows: Option<String>,
-    /// chi^2, of data with uncertainties.
+    /// chi^2, if the data have uncertainties.
     pub chi_squared: Option<f64>,
     pub degrees_of_freedom: u64,
     /// The scatter of data without uncertainties, in their unit.
@@ -311,9 +311,10 @@ pub struct FitCommand {
     pub verdict: String,
 }
 
-/// Writes a row for each measured value, below the run file of the fitted scenario. What was fitted to what, and what was
-/// found, stands above the run file as TOML in TOML's comments: the CSV opens as the run that it fitted, `scenario`. `asked`
-/// has what was asked for.
+/// Writes a CSV with one row per measured value, below the run file of the fitted `scenario`. The CSV opens as this
+/// run.
+///
+/// The command `asked` and the fitted values are written above the run file, as TOML in comments of the TOML.
 pub fn write_csv(
     mut out: impl Write,
     report: &FitReport<'_>,
@@ -353,7 +354,7 @@ pub fn write_csv(
     rows.flush()
 }
 
-/// The columns of a row behind its quantity.
+/// The columns of a row after its quantity.
 #[derive(Serialize)]
 struct ValueColumns {
     measured: f64,
@@ -375,7 +376,7 @@ impl ValueColumns {
     }
 }
 
-/// The names of what says where a value was measured.
+/// Returns the names of the columns that locate a measured value.
 fn at_names(data: &DataKind) -> Vec<&str> {
     match data {
         DataKind::Series(_) => vec![TIME_COLUMN],
@@ -383,7 +384,7 @@ fn at_names(data: &DataKind) -> Vec<&str> {
     }
 }
 
-/// The same of a row, from 0.
+/// Returns the cells of these columns for `row`, counted from 0.
 fn at_cells(data: &DataKind, row: usize) -> Vec<String> {
     match data {
         DataKind::Series(series) => vec![number(series.times_s[row])],
@@ -401,7 +402,7 @@ fn at_cells(data: &DataKind, row: usize) -> Vec<String> {
     }
 }
 
-/// A number as CSVs of runs have it.
+/// Formats a number as in the CSV of a run.
 fn number(number: f64) -> String {
     ryu::Buffer::new().format(number).to_owned()
 }
@@ -410,12 +411,12 @@ fn finite(bound: f64) -> Option<f64> {
     bound.is_finite().then_some(bound)
 }
 
-/// The size of a residual in units of its uncertainty, or where it has none as it is.
+/// Returns the size of a residual in units of its uncertainty, or in its own unit if it has none.
 fn size(residual: &Residual) -> f64 {
     residual.in_sigmas().unwrap_or(residual.value()).abs()
 }
 
-/// The columns that a cell takes on a terminal.
+/// Returns the width of a cell on a terminal, in columns.
 fn width(cell: &str) -> usize {
     columns(&printable(cell))
 }

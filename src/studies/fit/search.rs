@@ -1,4 +1,4 @@
-//! The whole of a fit: from the start values to the minimum, and what the data say there.
+//! The complete fit: from the start values to the minimum, and the results there.
 
 use super::chart::Chart;
 use super::edge::{Edge, edges_at};
@@ -17,43 +17,43 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 #[derive(Clone, Debug)]
 pub struct Fit {
-    /// The keys with their values, in the order in which they were asked for.
+    /// The keys with their values, in the order requested.
     pub keys: Vec<Fitted>,
-    /// What the data say of the keys; its covariances are for the uncertainties of `weights`.
+    /// Uncertainties and correlations of the keys. Its covariances assume the uncertainties in `weights`.
     pub solution: FitSolution,
-    /// Measured less model, one a datum; the uncertainty is that by which it was weighed, `None` where none is stated.
+    /// Measured minus model, one per datum, with the uncertainty that weighted it; `None` without stated uncertainties.
     pub residuals: Vec<Residual>,
     pub quality: Quality,
     pub weights: Weights,
     pub steps: u64,
-    /// The factor of the covariances: 1, or for unweighted data (scatter times Student's factor) squared.
+    /// Factor of the covariances: 1, or for unweighted data (scatter times Student's factor) squared.
     pub variance: Option<f64>,
-    /// The limits that hold the keys.
+    /// The active limits.
     pub edges: Vec<Edge>,
 }
 
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum NoFit {
     #[error(
-        "{data} measured {} cannot say {keys} values: free fewer keys, or measure more",
+        "{data} measured {} cannot determine {keys} keys: free fewer keys, or measure more",
         if *data == 1 { "value" } else { "values" }
     )]
     TooFew { data: usize, keys: usize },
-    #[error("the model cannot be held against the data: {0}")]
+    #[error("the model cannot be compared with the data: {0}")]
     Impossible(String),
     #[error(
-        "the fit did not converge in {most} steps, the last values are {at}: begin nearer by --set KEY=VALUE, give bounds by --free KEY=FROM..TO, or free fewer keys"
+        "the fit did not converge in {most} steps; the last values are {at}: start closer with --set KEY=VALUE, set bounds with --free KEY=FROM..TO, or free fewer keys"
     )]
     TooLong { at: String, most: u64 },
     #[error(
-        "the fit got stuck at {0}, where no step makes it better though the slopes say so: begin elsewhere by --set KEY=VALUE, or give bounds by --free KEY=FROM..TO that keep it where the scenario is possible"
+        "the fit got stuck at {0}: no step improves it, although its slopes predict that one should; start elsewhere with --set KEY=VALUE, or set bounds with --free KEY=FROM..TO within which the scenario is possible"
     )]
     Stuck(String),
     #[error(
-        "the fit did not converge: the weights that the uncertainties of the settings make go on changing; leave their columns out"
+        "the fit did not converge: the weights keep changing with the uncertainties of the settings; remove the columns of these uncertainties"
     )]
     Unsettled,
-    #[error("the fit was ended before it converged")]
+    #[error("the fit was interrupted before it converged")]
     Interrupted,
 }
 
@@ -66,22 +66,22 @@ impl From<Stop> for NoFit {
     }
 }
 
-/// The change of a key by which slopes are taken, of its size.
+/// Change of a key for computing slopes, relative to its size.
 const SLOPE_CHANGE: f64 = 1e-4;
-/// A change that moves a datum by more than this part of its uncertainty may be too large for a slope.
+/// A change that moves a datum by more than this fraction of its uncertainty may be too large for a slope.
 const LARGE_SLOPE_CHANGE: f64 = 0.5;
-/// The part that is aimed at then.
+/// The fraction to aim at then.
 const AIM: f64 = 0.1;
-/// A change is no larger than this part of the way to a limit that is not yet reached: there the data may bend.
+/// Maximum change as a fraction of the distance to a limit that is not yet reached: near it the data may bend.
 const OF_WAY: f64 = 1e-3;
-/// A limit that is nearer than this part of a change has been reached.
+/// A limit closer than this fraction of a change counts as reached.
 const REACHED: f64 = 1e-4;
-/// From how many starts the search begins at most.
+/// Maximum number of start points.
 const MOST_STARTS: usize = 4;
-/// How often the weights are computed anew.
+/// Maximum number of times the weights are recomputed.
 const MOST_ROUNDS: u32 = 40;
 
-/// Fits the free keys of `model` to its data. `tell` hears of each step: how many, and chi^2.
+/// Fits the free keys of `model` to its data. `tell` is called at each step with the number of steps and chi^2.
 pub fn fit(
     model: &Model,
     go_on: FitProgress<'_>,
@@ -106,7 +106,7 @@ pub fn fit(
     Err(first_failure.unwrap_or(NoFit::Interrupted))
 }
 
-/// The values from which the search begins, one after the other until it ends well: the nearest to the data first.
+/// Returns the start points to try in turn, closest to the data first.
 fn starts(
     model: &Model,
     chart: &Chart,
@@ -170,7 +170,7 @@ fn fit_from(
     Err(NoFit::Unsettled)
 }
 
-/// How far the data are from the run with these values; infinitely where there is no such run.
+/// Returns the sum of squared residuals at `p`; infinity if that run is impossible.
 fn sum_of_squares(model: &Model, p: &[f64], go_on: FitProgress<'_>) -> Result<f64, Stop> {
     match model.values(p, None, go_on) {
         Ok(values) => {
@@ -183,7 +183,7 @@ fn sum_of_squares(model: &Model, p: &[f64], go_on: FitProgress<'_>) -> Result<f6
 }
 
 impl NoFit {
-    /// The search has ended by `failure` at these values of the keys.
+    /// Creates the error for a search that ended with `failure` at these values of the keys.
     fn at(model: &Model, p: &[f64], failure: Failure) -> Self {
         let pairs = model
             .free
@@ -248,7 +248,8 @@ fn finished(
     })
 }
 
-/// The uncertainties of a key: those along the limits that hold it, and to the inside of each limit as far as it may be.
+/// Returns the uncertainties of a key: those along the active limits, combined with the allowed distance inside each
+/// limit.
 fn sides_of(
     index: usize,
     value: f64,
@@ -274,7 +275,7 @@ fn sides_of(
         squares[usize::from(moved > 0.0)] += moved * moved;
     }
     let [below, above] = squares.map(f64::sqrt);
-    // Inside of a corner of limits a key may move either way.
+    // Inside a corner of limits, a key may move either way.
     let most = below.max(above);
     let [below, above] = if is_corner { [most; 2] } else { [below, above] };
     let is_rounding = most <= f64::EPSILON * value.abs();
@@ -282,13 +283,13 @@ fn sides_of(
     is_stated.then_some(Sides { below, above })
 }
 
-/// The model with its data weighed, as the search sees it.
+/// The model with weighted data, as a problem for the search.
 struct Weighed<'a> {
     model: &'a Model,
     chart: &'a Chart,
     limits: &'a [Limit],
     weights: &'a Weights,
-    /// The change of each parameter by which slopes are taken, in its unit.
+    /// Change of each parameter for computing slopes, in the parameter's unit.
     changes: &'a Mutex<Vec<f64>>,
     go_on: FitProgress<'a>,
     tell: &'a (dyn Fn(u64, f64) + Sync),
@@ -303,8 +304,10 @@ impl Weighed<'_> {
         self.model.values(&self.chart.keys(p), None, self.go_on)
     }
 
-    /// How far the `index`-th parameter alone can be changed from `p`, to its least and its greatest value. Limits of several
-    /// together are left to the scenario, which refuses what cannot be: at one that the user drew no parameter is stuck.
+    /// Returns the lowest and highest value that the `index`-th parameter can have at `p`, the others fixed.
+    ///
+    /// Limits that involve several parameters are left to the scenario, which rejects impossible values. A parameter
+    /// never gets stuck at a bound set by the user.
     fn ends(&self, p: &[f64], index: usize) -> (f64, f64) {
         let (mut from, mut to) = (f64::NEG_INFINITY, f64::INFINITY);
         for limit in self.limits.iter().filter(|it| it.only() == Some(index)) {
@@ -318,7 +321,7 @@ impl Weighed<'_> {
         (from, to)
     }
 
-    /// `change` of the `index`-th parameter from `p`, or a smaller one where a limit is near.
+    /// Returns `change` of the `index`-th parameter from `p`, or a smaller change if a limit is near.
     fn before_limits(&self, p: &[f64], index: usize, change: f64) -> f64 {
         let ways = self
             .limits
@@ -328,10 +331,11 @@ impl Weighed<'_> {
         near.fold(change, |change, way| change.min(OF_WAY * way))
     }
 
-    /// The change of every datum with the `index`-th parameter by central differences, as far as the limits and the scenario
-    /// allow, and the change of the parameter by which it was found.
+    /// Returns the slope of every datum along the `index`-th parameter, and the change that it was computed with.
+    ///
+    /// The differences are central, as far as the limits and the scenario allow.
     fn slope(&self, p: &[f64], index: usize, mut change: f64) -> Result<(Vec<f64>, f64), Stop> {
-        /// How often a change that was too large is made smaller.
+        /// How often a too large change is reduced.
         const TRIES: u32 = 4;
         for try_ in 0.. {
             let near = self.before_limits(p, index, change);
@@ -348,12 +352,12 @@ impl Weighed<'_> {
         Err(Stop::Interrupted) // not reached: the tries are counted
     }
 
-    /// The same by this change, and how far apart the two values of the parameter were.
+    /// Returns the slopes computed with `change`, and the distance between the two values of the parameter.
     fn slope_by(&self, p: &[f64], index: usize, change: f64) -> Result<(Vec<f64>, f64), Stop> {
         let ends = [change, -change].map(|by| self.values_at(p, index, p[index] + by));
         let why = match &ends {
             [Err(Stop::Impossible(why)), _] | [_, Err(Stop::Impossible(why))] => why.clone(),
-            _ => "the data depend on digits of it beyond its last one".to_owned(),
+            _ => "the change is smaller than the last digit of the value".to_owned(),
         };
         let [upper, lower] = ends.map(|side| match side {
             Err(Stop::Impossible(_)) => self.values_at(p, index, p[index]),
@@ -373,7 +377,7 @@ impl Weighed<'_> {
         Ok((slope.collect(), width))
     }
 
-    /// Computes the values where parameter `index` is as near to `value` as its bounds allow; returns that too.
+    /// Computes the values with parameter `index` as close to `value` as its bounds allow. Returns the value used, too.
     fn values_at(&self, p: &[f64], index: usize, value: f64) -> Result<(f64, Vec<f64>), Stop> {
         let (from, to) = self.ends(p, index);
         let mut there = p.to_vec();
@@ -407,7 +411,7 @@ impl LeastSquares for Weighed<'_> {
             .enumerate()
             .map(|(index, (slope, _)): (usize, &(Vec<f64>, f64))| {
                 let whitened = self.weights.whitened(slope);
-                // The slope of what does not move is rounding, and would lead anywhere.
+                // A slope without effect is rounding error and would lead anywhere.
                 if whitened.norm() * self.model.free[index].size(keys[index]) <= SILENT_KEY {
                     DVector::zeros(whitened.len())
                 } else {
@@ -417,7 +421,7 @@ impl LeastSquares for Weighed<'_> {
             .collect();
         *self.kept() = found.iter().map(|(_, change)| *change).collect();
         let slopes = DMatrix::from_columns(&columns);
-        // The decomposition of a matrix with a NaN would not end.
+        // The decomposition of a matrix that contains a NaN would never end.
         are_numbers(slopes.norm_squared())?;
         Ok(slopes)
     }
@@ -432,6 +436,7 @@ fn are_numbers(sum: f64) -> Result<(), Stop> {
         return Ok(());
     }
     Err(Stop::Impossible(
-        "the residuals in units of their uncertainties are beyond the range of numbers".to_owned(),
+        "the residuals, in units of their uncertainties, are too large for floating-point numbers"
+            .to_owned(),
     ))
 }

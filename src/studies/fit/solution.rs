@@ -1,5 +1,5 @@
-//! What a minimum says of the keys: their uncertainties, how these hang together, and what cannot be told apart; and how
-//! well the model fits, in numbers.
+//! Results at a minimum: uncertainties and correlations of the keys, indistinguishable keys, and the quality of the
+//! fit.
 
 use super::chart::Chart;
 use super::free::Free;
@@ -11,35 +11,37 @@ use nalgebra::{DMatrix, DVector};
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct FitSolution {
-    /// The covariances of the keys along the limits that hold them, in their units, for data whose uncertainty is 1; `None`
-    /// of a key whose value the data do not say, or that is held at a bound.
+    /// Covariances of the keys along the active limits, in their units, for data with uncertainty 1. `None` for a key
+    /// that the data do not determine or that is held at a bound.
     pub covariance: Vec<Vec<Option<f64>>>,
     pub rank: usize,
-    /// The keys on which no datum depends.
+    /// The keys that no datum depends on.
     pub silent: Vec<usize>,
-    /// The combinations of keys that change no datum: the keys by their places, and the change of each, relative to its
-    /// value, the largest of them 1; relative to [`Free::scale`](super::free::Free::scale) where the value is 0.
+    /// Combinations of keys that change no datum. Each lists the keys by index with their changes, the largest of which
+    /// is 1.
+    ///
+    /// A change is relative to the key's value, or to [`Free::scale`](super::free::Free::scale) if the value is 0.
     pub alike: Vec<Vec<(usize, f64)>>,
-    /// Which keys change any datum along the limits that hold them.
+    /// True for each key that can change the data while the active limits hold.
     pub is_moving: Vec<bool>,
 }
 
-/// A key that moves no datum by this part of its uncertainty when it changes by its own size moves none.
+/// A key has no effect if a change by its own size moves the data by less than this fraction of their uncertainty.
 pub(super) const SILENT_KEY: f64 = 1e-5;
-/// Parts of a combination below this are rounding.
+/// Components of a combination below this are rounding error.
 pub(super) const COMBINATION_ROUNDING: f64 = 1e-2;
-/// The part of a key in a direction is rounding below this.
+/// A key's component of a direction is rounding error below this.
 const ROUNDING: f64 = 1e-9;
 
-/// The combination of the keys in the direction `way`, for keys in `units`: those that take part, with their changes, the
-/// largest of them 1.
+/// Returns the combination of keys in the direction `way`, for keys in `units`: the keys involved and their changes,
+/// scaled so that the largest is 1.
 fn alike(way: &DVector<f64>, moving: &[usize], units: &[f64]) -> Vec<(usize, f64)> {
     let parts: Vec<f64> = way
         .iter()
         .zip(units)
         .map(|(way, unit)| way / unit)
         .collect();
-    // Of equal ones the first.
+    // Of equal components, the first counts.
     let sizes = parts.iter().copied().rev();
     let largest = sizes
         .max_by(|a, b| a.abs().total_cmp(&b.abs()))
@@ -49,13 +51,13 @@ fn alike(way: &DVector<f64>, moving: &[usize], units: &[f64]) -> Vec<(usize, f64
     combined.collect()
 }
 
-/// A direction of the keys along the limits that hold them, for keys in units in which the slope of each is 1.
+/// A direction of the keys along the active limits, for keys in units in which the slope of each is 1.
 struct Way {
     singular: f64,
     parts: DVector<f64>,
 }
 
-/// The directions along which the keys can move, within the limits that hold them.
+/// Returns the directions in which the keys can move along the active limits.
 fn singular_ways(slopes: &DMatrix<f64>, normals: &[DVector<f64>]) -> Vec<Way> {
     let free = complement(normals.iter(), slopes.ncols());
     if free.is_empty() {
@@ -67,7 +69,7 @@ fn singular_ways(slopes: &DMatrix<f64>, normals: &[DVector<f64>]) -> Vec<Way> {
     };
     (0..v_t.nrows())
         .map(|k| Way {
-            // With fewer data than keys some directions have no singular value at all.
+            // With fewer data than keys, some directions have no singular value.
             singular: svd.singular_values.get(k).copied().unwrap_or(0.0),
             parts: &free * v_t.row(k).transpose(),
         })
@@ -138,7 +140,7 @@ impl FitSolution {
         solution
     }
 
-    /// One standard uncertainty of the `index`-th key.
+    /// Returns one standard uncertainty of the `index`-th key.
     pub fn sigma(&self, index: usize) -> Option<f64> {
         self.covariance[index][index].map(f64::sqrt)
     }
@@ -153,41 +155,45 @@ impl FitSolution {
     }
 }
 
-/// Below this probability a model does not fit; above 1 less this, the uncertainties are too large.
+/// A model whose probability is below this does not fit. Above 1 minus this, the stated uncertainties are too large.
 pub(super) const RARE: f64 = 0.01;
-/// The fewest degrees of freedom from which the scatter of data without uncertainties says how uncertain they are: with
-/// fewer, two data that agree by chance would make the keys as sure as one likes.
+/// Minimum degrees of freedom for estimating uncertainties from the scatter of the data. With fewer, two data that
+/// agree by chance would make the keys look far too certain.
 pub(super) const LEAST_FREEDOM: u64 = 3;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Quality {
-    /// The sum of the squared residuals in units of their uncertainties; `None` where none are stated.
+    /// The sum of the squared residuals in units of their uncertainties; `None` if none are stated.
     pub chi_squared: Option<f64>,
-    /// How many data there are beyond those that the fitted values take up.
+    /// The number of data minus the number of fitted values that they determine.
     pub degrees_of_freedom: u64,
-    /// The probability that a model that is right has so large a chi^2 or a larger one.
+    /// The probability of this chi^2 or a larger one if the model is right.
     pub probability: Option<f64>,
-    /// The scatter of data without uncertainties about the model, in their unit: the root of the sum of the squared residuals
-    /// over the degrees of freedom.
+    /// The scatter of data without uncertainties about the model, in their unit: the root of the sum of the squared
+    /// residuals divided by the degrees of freedom.
     pub scatter: Option<f64>,
 }
 
-/// The variance of data without uncertainties, from their scatter (`sum` is the sum of the squared residuals), times the
-/// square of Student's factor; `None` where it cannot be stated.
+/// Returns the variance of data without uncertainties, from their scatter, times the square of Student's factor. `sum`
+/// is the sum of the squared residuals. Returns `None` if there are too few degrees of freedom.
 pub(super) fn scatter_variance(sum: f64, freedom: u64) -> Option<f64> {
     (freedom >= LEAST_FREEDOM).then(|| sum / freedom as f64 * student(freedom).powi(2))
 }
 
-/// Student's factor: an uncertainty made of the scatter of few data is itself uncertain, and times this factor twice of it
-/// still holds the truth in 95.45 % of all cases. The expansion of the quantile in 1/`freedom` (M. Abramowitz, I. Stegun,
-/// Handbook of Mathematical Functions, 26.7.5), within 0.2 % from three degrees of freedom on.
+/// Returns Student's factor for `freedom` degrees of freedom.
+///
+/// An uncertainty estimated from the scatter of few data is itself uncertain. Multiplied by this factor, twice the
+/// uncertainty contains the true value in 95.45 % of all cases.
+///
+/// The formula is the expansion of the quantile in 1/`freedom` (M. Abramowitz, I. Stegun, Handbook of Mathematical
+/// Functions, 26.7.5). It is accurate to 0.2 % from three degrees of freedom on.
 pub(super) fn student(freedom: u64) -> f64 {
     let x = 1.0 / freedom as f64;
     1.0 + x * (1.25 + x * (1.53125 + x * (1.429_687_5 + x * 0.922_037)))
 }
 
-/// The probability that chi^2 of `freedom` degrees of freedom is `chi_squared` or larger (M. Abramowitz, I. Stegun, Handbook
-/// of Mathematical Functions, 26.4.4 and 26.4.5).
+/// Computes the probability that chi^2 with `freedom` degrees of freedom is at least `chi_squared` (M. Abramowitz, I.
+/// Stegun, Handbook of Mathematical Functions, 26.4.4 and 26.4.5).
 fn at_least(chi_squared: f64, freedom: u64) -> f64 {
     let half = 0.5 * chi_squared;
     if half == 0.0 {
@@ -206,7 +212,7 @@ fn at_least(chi_squared: f64, freedom: u64) -> f64 {
             .sum::<f64>()
 }
 
-/// What is said of uncertainties for which chi^2 of `freedom` degrees of freedom is hardly ever so small.
+/// Returns a remark on the stated uncertainties if chi^2 is improbably small for `freedom` degrees of freedom.
 pub fn too_large(chi_squared: f64, freedom: u64) -> Option<String> {
     let is_rare = freedom > 0 && chi_squared > 0.0 && at_least(chi_squared, freedom) > 1.0 - RARE;
     is_rare.then(|| {
@@ -216,7 +222,7 @@ pub fn too_large(chi_squared: f64, freedom: u64) -> Option<String> {
 }
 
 impl Quality {
-    /// How well a model fits: `sum` is the sum of the squared residuals in the units of `weights`.
+    /// Computes the quality of a fit. `sum` is the sum of the squared residuals in the units of `weights`.
     pub(super) fn new(sum: f64, freedom: u64, weights: &Weights) -> Self {
         let mut quality = Self {
             degrees_of_freedom: freedom,
@@ -233,8 +239,8 @@ impl Quality {
         quality
     }
 
-    /// Whether the model fits, where that can be said: its chi^2 is not rare. Uncertainties that are too large are no reason
-    /// against it.
+    /// Returns true if the model fits: its chi^2 is not improbably large. Returns `None` if this cannot be decided. Too
+    /// large uncertainties do not count against the model.
     pub fn fits(&self) -> Option<bool> {
         self.probability.map(|probability| probability >= RARE)
     }
@@ -246,7 +252,7 @@ mod tests {
 
     #[test]
     fn chi_squared_is_as_rare_as_the_tables_say() {
-        // Percentage points of the tables: 5 %, 1 %, 95 % and 50 %.
+        // Values from the tables, at 5 %, 5 %, 1 %, 95 % and 50 %.
         let rows = [
             (3.841_458_821, 1, 0.05),
             (5.991_464_547, 2, 0.05),

@@ -1,8 +1,8 @@
-//! Where to begin for a body that was thrown: its rates about its own axes tell the ratios of its moments and the rates at
-//! the start, without a search.
+//! Start values for a body that was thrown. The rates about its own axes determine the ratios of its moments and the
+//! rates at the start, without a search.
 //!
-//! Euler's equations A dw1 = (B - C) w2 w3 dt and so on, summed up over the recording, are linear in A, B, C, which are known
-//! up to a factor: the vector that comes nearest to fulfilling all of them.
+//! Euler's equations A dw1 = (B - C) w2 w3 dt and so on, integrated over the recording, are linear in A, B, C. The
+//! solution is the vector that comes closest to fulfilling all of them; its length is unknown.
 
 use super::Free;
 use super::chart::{moment, second_moments};
@@ -15,11 +15,11 @@ use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 const RATES: [&str; 3] = ["w1_rad_per_s", "w2_rad_per_s", "w3_rad_per_s"];
 const START_OMEGA_KEY: &str = "start.omega_rad_per_s.";
 
-/// The least share of a second moment of mass in all three with which the search begins.
+/// Minimum second moment of mass at the start of the search, as a fraction of the sum of all three.
 const LEAST_SHARE: f64 = 1e-3;
 
-/// Shares of the second moments of mass of bodies with which the search may begin too, where noise hides the ratios: compact,
-/// long and flat ones.
+/// Ratios of the second moments of mass of compact, long and flat bodies. The search may also start from these, in case
+/// noise hides the true ratios.
 const SHARES: [[f64; 3]; 13] = [
     [1.0, 1.0, 1.0],
     [2.0, 1.0, 1.0],
@@ -36,7 +36,8 @@ const SHARES: [[f64; 3]; 13] = [
     [0.1, 1.0, 4.0],
 ];
 
-/// The keys that a throw tells: free flight depends on the ratios of the moments alone, so the third one is held.
+/// The keys that a throw determines. Free flight depends only on the ratios of the moments, so the third moment is
+/// fixed.
 const USUAL_KEYS: [&str; 5] = [
     "body.part.0.moments_kg_m2.0",
     "body.part.0.moments_kg_m2.1",
@@ -45,16 +46,16 @@ const USUAL_KEYS: [&str; 5] = [
     "start.omega_rad_per_s.2",
 ];
 
-/// Returns the keys that are free where none are named; `None` where the data are not the three rates of a body that flies
-/// freely and has its moments in the scenario.
+/// Returns the keys that are free by default. Returns `None` if the data are not the three rates of a body in free
+/// flight, or if the scenario does not give its moments.
 pub fn usual_keys(series: &TimeSeries, scenario: &Scenario) -> Option<[&'static str; 5]> {
     let has_moments = scenario.file.body.part.first()?.moments_kg_m2.is_some();
     let is_thrown = flies(scenario) && recorded(series).is_some();
     (is_thrown && has_moments).then_some(USUAL_KEYS)
 }
 
-/// Values of the free keys to begin from in place of `p`, the likeliest first; none where the data are not the three rates of
-/// a body that flies freely.
+/// Returns start values of the free keys to use instead of `p`, the likeliest first. The list is empty if the data are
+/// not the three rates of a body in free flight.
 pub(super) fn starts(model: &Model, p: &[f64]) -> Vec<Vec<f64>> {
     let recorded = match &model.measured.data {
         DataKind::Series(series) => recorded(series).unwrap_or_default(),
@@ -78,7 +79,7 @@ pub(super) fn starts(model: &Model, p: &[f64]) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// Values of the free keys for a body with these moments, known up to a factor.
+/// Returns start values of the free keys for a body with these moments, known up to a factor.
 fn start(
     model: &Model,
     p: &[f64],
@@ -86,7 +87,7 @@ fn start(
     sums: &Sums,
     moments: &Vector3<f64>,
 ) -> Vec<f64> {
-    // The moments that are held are what they are; where none is, their sum stays.
+    // Fixed moments keep their values and determine the factor. If no moment is fixed, their sum is kept.
     let mut held: Vec<usize> = (0..3)
         .filter(|axis| {
             !model
@@ -124,14 +125,14 @@ fn start(
         .collect()
 }
 
-/// The moments of a body with these second moments of mass, in which none is too small.
+/// Returns the moments of a body with these second moments of mass, raised where one is too small.
 fn moments_of(second: &Vector3<f64>) -> Vector3<f64> {
     let least = LEAST_SHARE * second.map(|it| it.max(0.0)).sum();
     let raised = second.map(|it| it.max(least));
     Vector3::repeat(raised.sum()) - raised
 }
 
-/// Whether nothing turns the body of `scenario`, and its start is stated by rates about its own axes.
+/// Returns true if no torque acts on the body of `scenario` and its start is given by rates about its own axes.
 pub(super) fn flies(scenario: &Scenario) -> bool {
     scenario.motion.gravity == 0.0
         && scenario.pushes.is_empty()
@@ -140,7 +141,7 @@ pub(super) fn flies(scenario: &Scenario) -> bool {
         && scenario.file.start.omega_frame == Some(VectorFrame::Body)
 }
 
-/// The times, s, with the three rates, rad/s.
+/// Returns the times, s, with the three rates, rad/s. Returns `None` if one of the rates was not measured.
 pub(super) fn recorded(series: &TimeSeries) -> Option<Vec<(f64, Vector3<f64>)>> {
     let [x, y, z] = RATES.map(|name| {
         let mut curves = series.curves.iter();
@@ -155,16 +156,16 @@ pub(super) fn recorded(series: &TimeSeries) -> Option<Vec<(f64, Vector3<f64>)>> 
     Some(rates.collect())
 }
 
-/// The products of each two of three rates.
+/// Returns the products of each pair of the three rates.
 pub(super) fn product(w: &Vector3<f64>) -> Vector3<f64> {
     Vector3::new(w.y * w.z, w.z * w.x, w.x * w.y)
 }
 
-/// The rates of a recording, and their products summed up from time 0 on.
+/// The rates of a recording, and their products integrated from time 0.
 struct Sums {
     mean_rate: Vector3<f64>,
     mean_sum: Vector3<f64>,
-    /// The rates and the sums of each row, less the means.
+    /// The rates and the integrals of each row, minus their means.
     rows: Vec<(Vector3<f64>, Vector3<f64>)>,
 }
 
@@ -193,7 +194,7 @@ impl Sums {
         })
     }
 
-    /// The moments about the body's axes, up to a factor; `None` where the rates say nothing of them.
+    /// Returns the moments about the body's axes, up to a factor; `None` if the rates do not determine them.
     fn moments(&self) -> Option<Vector3<f64>> {
         let mut squares = Matrix3::zeros();
         for (w, s) in &self.rows {
@@ -211,12 +212,12 @@ impl Sums {
         let all = SymmetricEigen::new(squares);
         let nearest = all.eigenvectors.column(all.eigenvalues.imin());
         let moments = nearest * nearest.sum().signum();
-        // Noise makes second moments of mass of a flat body negative, or moments of a thin one.
+        // Noise can make second moments of mass of a flat body, or moments of a thin one, negative.
         let is_body = moments.iter().all(|moment| *moment > 0.0);
         is_body.then(|| moments_of(&second_moments(&moments)))
     }
 
-    /// The rates at time 0 of a body with these `moments`, known up to a factor, rad/s.
+    /// Computes the rates at time 0 of a body with these `moments`, known up to a factor; rad/s.
     fn rates_at_start(&self, moments: &Vector3<f64>) -> Vector3<f64> {
         let [a, b, c] = (*moments).into();
         let growth = Vector3::new((b - c) / a, (c - a) / b, (a - b) / c);
@@ -224,7 +225,7 @@ impl Sums {
     }
 }
 
-/// The axes of the first part whose moments `free` sets.
+/// Returns the axes of the first part whose moments `free` sets.
 fn moment_axes(free: &Free) -> Vec<usize> {
     free.keys
         .iter()

@@ -1,4 +1,4 @@
-//! Whether the model fits, in one sentence.
+//! The verdict of a fit in one sentence, and remarks about its keys.
 
 use super::model::Model;
 use super::search::Fit;
@@ -7,26 +7,26 @@ use crate::engine::data::{DataKind, MeasuredPoint, is_counted};
 use crate::engine::text::number::{short, significant};
 use std::collections::BTreeSet;
 
-/// From this chi^2 a degree of freedom on, the search may have ended in a valley that is not the deepest.
+/// With a chi^2 per degree of freedom above this, the search may have ended in a local minimum.
 const VERY_POOR: f64 = 10.0;
-const AS_MANY: &str =
-    "Whether the model fits cannot be said: there are as many fitted values as data.";
-const ELSEWHERE: &str = " The search goes down from where it begins, and there may be a better fit elsewhere: begin at other values of the free keys by --set KEY=VALUE.";
-/// What is said instead where the data depend on no free key.
+const AS_MANY: &str = "The fit cannot be judged: there are as many fitted values as data.";
+const ELSEWHERE: &str = " There may be a better fit elsewhere: start the search at other values of the free keys with --set KEY=VALUE.";
+/// Replaces [`ELSEWHERE`] if the data depend on no free key.
 const NOWHERE: &str =
-    " No value of the free keys changes that: free a key on which what was measured depends.";
-/// Rows that are off by more than this many uncertainties are named.
+    " No value of the free keys improves it: free a key that the measured values depend on.";
+/// Rows with residuals above this number of uncertainties are named.
 const FAR_SIGMAS: f64 = 3.0;
-/// Times are even where they are whole multiples of one to this part of it.
+/// Times are evenly spaced if all intervals are multiples of the shortest, within this fraction of it.
 const EVEN_TIMES: f64 = 0.01;
-/// With more rows than this in a turn, another whole turn between two of them is too far from the fitted rate to be meant.
+/// With more rows per turn than this, an additional turn between two rows is too far from the fitted rate to be
+/// plausible.
 const MOST_ROWS: f64 = 10.0;
 const MOST_FAR_ROWS: usize = 5;
-/// From this correlation on, two keys are hardly told apart.
+/// Two keys with a correlation above this are difficult to distinguish.
 pub(super) const HARDLY: f64 = 0.99;
 
 impl Fit {
-    /// Whether the model fits, in one sentence.
+    /// Says in one sentence if the model fits.
     pub fn sentence(&self, model: &Model) -> String {
         let Quality {
             chi_squared,
@@ -73,7 +73,7 @@ impl Fit {
         let freedom = self.quality.degrees_of_freedom;
         match self.quality.scatter {
             Some(scatter) if freedom < LEAST_FREEDOM => format!(
-                "Whether the model fits cannot be said, since the data have no uncertainties; nor can uncertainties of the keys: {} too few to tell from their scatter of {} {unit} how good the data are. Measure {LEAST_FREEDOM} more than there are keys at least, or give the data their uncertainties.",
+                "The fit cannot be judged, since the data have no uncertainties, and {} too few to estimate them from the scatter of {} {unit}. The keys have no uncertainties either. Measure at least {LEAST_FREEDOM} more values than there are keys, or give the data uncertainties.",
                 match freedom {
                     1 => "1 datum more than fitted values is".to_owned(),
                     count => format!("{count} data more than fitted values are"),
@@ -81,11 +81,11 @@ impl Fit {
                 short(scatter)
             ),
             Some(scatter) => format!(
-                "Whether the model fits cannot be said, since the data have no uncertainties: they scatter about it by {} {unit}, of which the uncertainties of the keys are made, times {} (Student's factor for {freedom} degrees of freedom).",
+                "The fit cannot be judged, since the data have no uncertainties. They scatter about the model by {} {unit}. The uncertainties of the keys follow from this scatter times {} (Student's factor for {freedom} degrees of freedom).",
                 short(scatter),
                 significant(student(freedom), 3)
             ),
-            None => "Whether the model fits cannot be said: the data have no uncertainties, and there are as many fitted values as data.".to_owned(),
+            None => "The fit cannot be judged: the data have no uncertainties, and there are as many fitted values as data.".to_owned(),
         }
     }
 
@@ -124,13 +124,13 @@ impl Fit {
         }
     }
 
-    /// What cannot be told apart, and other things to know about the keys; a sentence each.
+    /// Returns remarks on the keys, such as keys that cannot be distinguished, one sentence each.
     pub fn remarks(&self) -> Vec<String> {
         let key = |index: usize| self.keys[index].free.key.as_str();
         let solution = &self.solution;
         let silent = solution.silent.iter().map(|&index| {
             let name = key(index);
-            format!("The data do not depend on {name}: they say nothing of it.")
+            format!("The data do not depend on {name} and cannot determine it.")
         });
         let alike = solution.alike.iter().map(|alike| {
             let names: Vec<_> = alike.iter().map(|(index, _)| key(*index)).collect();
@@ -145,7 +145,7 @@ impl Fit {
         });
         let held = self.edges.iter().map(|edge| edge.remark(&self.keys));
         let pairs = (0..self.keys.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
-        // Of two keys that one limit holds, each says what the other is.
+        // For two keys held by the same limit, one determines the other, so their correlation is not reported.
         let close = pairs.filter(|(i, j): &(usize, usize)| {
             let mut edges = self.edges.iter();
             !edges.any(|edge| edge.holds[*i] && edge.holds[*j])
@@ -153,17 +153,18 @@ impl Fit {
             let correlation = solution.correlation(i, j).filter(|c| c.abs() > HARDLY)?;
             let (one, other) = (key(j), key(i));
             Some(format!(
-                "{one} and {other} are hardly told apart: their correlation is {correlation:.4}."
+                "{one} and {other} are difficult to distinguish: their correlation is {correlation:.4}."
             ))
         });
-        let settings = "The uncertainties of the settings count: each datum is weighed by both.";
+        let settings =
+            "Each datum is weighted by its own uncertainty and by those of the settings.";
         let settings = self.weights.count_settings.then(|| settings.to_owned());
         let remarks = silent.chain(alike).chain(held).chain(close);
         remarks.chain(settings).collect()
     }
 
-    /// What is said of an azimuth that was measured as a direction at even times, where the model turns it so far from one
-    /// time to the next that other whole turns between them may be the true ones.
+    /// Returns a warning if an azimuth, measured as a direction at even times, turns so far between rows that another
+    /// number of turns would fit as well.
     pub(super) fn aliased(&self, model: &Model) -> Option<String> {
         let DataKind::Series(series) = &model.measured.data else {
             return None;
@@ -194,12 +195,12 @@ impl Fit {
             let rate = significant(360.0 / apart_s, 3);
             let apart_s = significant(apart_s, 3);
             format!(
-                "The azimuth is a direction, measured at even times, {apart_s} s apart: a precession faster or slower by {rate} deg/s makes whole turns more between them and fits as well. Begin near the right one by --set KEY=VALUE, or measure at uneven times."
+                "The azimuth is a direction, measured every {apart_s} s: a precession faster or slower by {rate} deg/s fits as well, because it adds whole turns between the rows. Start near the right value with --set KEY=VALUE, or measure at uneven times."
             )
         })
     }
 
-    /// A change of the `index`-th key by a part, such as "motion.gravity_m_per_s2 by +1 %".
+    /// Describes a relative change of the `index`-th key, such as "motion.gravity_m_per_s2 by +1 %".
     fn changed(&self, index: usize, part: f64) -> String {
         let fitted = &self.keys[index];
         let (key, scale) = (&fitted.free.key, fitted.free.scale);

@@ -1,9 +1,11 @@
-//! How much each datum counts: by its stated uncertainty, and by those of the settings that it was measured at; or, where
-//! nothing is stated, as much as any other.
+//! The weight of each datum.
 //!
-//! The uncertainty of a setting moves what the model says of its row. To first order that adds to the covariance of the
-//! row's data (J. Orear, Am. J. Phys. 50, 912 (1982)); since it depends on the fitted values, it is computed anew at each
-//! minimum until nothing changes any more.
+//! A weight follows from the stated uncertainties of the datum and of the settings in its row. Without stated
+//! uncertainties, all data have the same weight.
+//!
+//! The uncertainty of a setting changes the model's value for its row. To first order this adds to the covariance of
+//! the row's data (J. Orear, Am. J. Phys. 50, 912 (1982)). Since it depends on the fitted values, it is recomputed at
+//! each minimum until it no longer changes.
 
 use super::levenberg::Stop;
 use super::model::{FitProgress, Model, settings};
@@ -11,32 +13,35 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 #[derive(Clone, Debug)]
 pub struct Weights {
-    /// One standard uncertainty of each datum less the model, in the datum's unit; of unweighted data all the same.
+    /// One standard uncertainty of each residual, in the datum's unit; equal for all unweighted data.
     pub sigma: Vec<f64>,
     pub are_stated: bool,
     pub count_settings: bool,
-    /// A change of each datum that is small and well above rounding, in its unit.
+    /// A change of each datum that is small but well above rounding, in its unit.
     pub(super) resolution: Vec<f64>,
-    /// The data that the same uncertain settings move together.
+    /// Groups of data that share uncertain settings.
     together: Vec<Together>,
 }
 
-/// Data of one row, and the root of their covariance.
+/// Data of one row, and the Cholesky factor of their covariance matrix.
 #[derive(Clone, Debug)]
 struct Together {
     data: Vec<usize>,
     root: Cholesky<f64, Dyn>,
 }
 
-/// By this part of its uncertainty a setting is changed to see what it moves.
+/// Change of a setting, as a fraction of its uncertainty, to find its effect on the data.
 const SETTING_CHANGE: f64 = 0.25;
-/// The unit of unweighted residuals, of the size of the data, and a small change of them.
+/// Unit of unweighted residuals, and a small change of them, both relative to the size of the data.
 const UNWEIGHTED_UNIT: f64 = 1e-6;
 const RESIDUAL_CHANGE: f64 = 0.01;
-/// The relative change of the uncertainties at which the weights have settled.
+/// Relative change of the uncertainties below which the weights have settled.
 const SETTLED_WEIGHTS: f64 = 1e-7;
 
-/// Whether the uncertainties of `model`'s data are stated: of all, or of none.
+/// Returns true if all of `model`'s data have uncertainties, false if none has.
+///
+/// # Errors
+/// Returns an error if only some data have uncertainties, or if data without uncertainties have different units.
 pub fn are_stated(model: &Model) -> Result<bool, String> {
     let sigmas = model.data.iter().filter_map(|datum| datum.point.sigma);
     let stated = sigmas.count();
@@ -50,7 +55,7 @@ pub fn are_stated(model: &Model) -> Result<bool, String> {
         let name = model.columns[datum.column].readout.name;
         let own = crate::engine::text::unit::with_word(name, "uncertainty");
         return Err(format!(
-            "{name} has no uncertainty in {}, and others have: give all of them one, in {own}, or none",
+            "{name} has no uncertainty in {}, but other values do: give all of them one, in {own}, or none",
             model.row(datum.point.row)
         ));
     }
@@ -61,13 +66,13 @@ pub fn are_stated(model: &Model) -> Result<bool, String> {
     let first = units.next().unwrap_or_default();
     if let Some(other) = units.find(|unit| *unit != first) {
         return Err(format!(
-            "the measured columns have several units ({first}, {other}) and no uncertainties: without these nothing says how much one counts against the other"
+            "the measured columns have different units ({first}, {other}) and no uncertainties: give uncertainties so that the columns can be weighted"
         ));
     }
     Ok(false)
 }
 
-/// The settings with stated uncertainties, by their places.
+/// Returns the indices of the settings with stated uncertainties.
 fn uncertain_settings(model: &Model) -> impl Iterator<Item = usize> {
     settings(&model.measured.data)
         .iter()
@@ -76,8 +81,8 @@ fn uncertain_settings(model: &Model) -> impl Iterator<Item = usize> {
         .map(|(index, _)| index)
 }
 
-/// How far each datum moves with one uncertainty of the setting, which is changed up and down, or at the edge of its range
-/// only to the one side that is possible.
+/// Returns the change of each datum per uncertainty of the setting. The setting is changed up and down; at the edge of
+/// its range, only to the possible side.
 fn moved_by(
     setting: usize,
     model: &Model,
@@ -95,13 +100,13 @@ fn moved_by(
 }
 
 impl Weights {
-    /// The weights of the data of `model` at the values `p` of its free keys.
+    /// Computes the weights of the data of `model` at the values `p` of its free keys.
     pub fn at(model: &Model, p: &[f64], go_on: FitProgress<'_>) -> Result<Self, Stop> {
         if !are_stated(model).map_err(Stop::Impossible)? {
             return Ok(Self::alike(model));
         }
         let sigmas = model.data.iter().filter_map(|datum| datum.point.sigma);
-        let sigma: Vec<f64> = sigmas.collect(); // of all data
+        let sigma: Vec<f64> = sigmas.collect(); // all data have one here
         let mut weights = Self {
             resolution: sigma.clone(),
             are_stated: true,
@@ -109,7 +114,6 @@ impl Weights {
             together: Vec::new(),
             sigma,
         };
-        // How far each datum moves with one uncertainty of each setting.
         let settings = uncertain_settings(model);
         let moved = settings
             .map(|setting| moved_by(setting, model, p, go_on))
@@ -156,7 +160,7 @@ impl Weights {
         }
     }
 
-    /// `values`, one a datum, in units in which their uncertainties are 1 and independent.
+    /// Returns `values`, one per datum, in units in which their uncertainties are 1 and independent.
     pub(super) fn whitened(&self, values: &[f64]) -> DVector<f64> {
         let pairs = values.iter().zip(&self.sigma);
         let mut white =
@@ -173,7 +177,7 @@ impl Weights {
         white
     }
 
-    /// The weights at `p`, computed anew; `None` where these have settled.
+    /// Recomputes the weights at `p`. Returns `None` if they have settled.
     pub(super) fn renewed(
         &self,
         model: &Model,

@@ -3,7 +3,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// The half of all places p where normal . p is not below `least`.
+/// The half-space of all points p for which normal . p is at least `least`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limit {
     pub normal: DVector<f64>,
@@ -11,36 +11,36 @@ pub struct Limit {
 }
 
 impl Limit {
-    /// Returns how far `p` is inside, in the limit's own unit; negative outside.
+    /// Returns the distance of `p` from the limit, in the limit's own unit; negative outside.
     pub fn room(&self, p: &[f64]) -> f64 {
         let along = self.normal.iter().zip(p).map(|(normal, p)| normal * p);
         along.sum::<f64>() - self.least
     }
 
-    /// Returns the place of the only parameter that this limits; `None` where it limits several together.
+    /// Returns the index of the parameter, if the limit involves only one.
     pub fn only(&self) -> Option<usize> {
         let mut places = (0..self.normal.len()).filter(|&place| self.normal[place] != 0.0);
         places.next().filter(|_| places.next().is_none())
     }
 }
 
-/// The place of the least square within limits.
+/// Solution of a least-squares problem within limits.
 #[derive(Clone, Debug)]
 pub struct Within {
     pub y: DVector<f64>,
-    /// The limits that hold it, by their places: beyond each of them the square would be less.
+    /// Indices of the active limits: beyond each of them the sum of squares would be smaller.
     pub held: Vec<usize>,
 }
 
-/// Relative size below which a number is the rounding of others.
+/// Relative size below which a number is rounding error.
 const ROUNDING: f64 = 1e-12;
 
-/// Returns the y with the least |`a` y - `c`|^2 within `limits`, none of which 0 is outside of. Columns of `a` must be
-/// independent.
+/// Returns the y that minimizes |`a` y - `c`|^2 within `limits`. The point 0 must satisfy all limits, and the columns
+/// of `a` must be independent.
 pub fn least_squares(a: &DMatrix<f64>, c: &DVector<f64>, limits: &[Limit]) -> Within {
     let mut y = DVector::zeros(a.ncols());
     let mut held: Vec<usize> = Vec::new();
-    // Each round adds a limit or leaves one out; the bound ends a cycle between limits that meet in one place.
+    // Each round adds or removes one limit. The bound stops a cycle between limits that meet in one point.
     for _ in 0..4 * (limits.len() + 1) {
         let free = complement(held.iter().map(|&place| &limits[place].normal), a.ncols());
         let way = &free * solved(&(a * &free), &(c - a * &y));
@@ -59,7 +59,7 @@ pub fn least_squares(a: &DMatrix<f64>, c: &DVector<f64>, limits: &[Limit]) -> Wi
     Within { y, held }
 }
 
-/// Returns how much of `way`, at most all of it, leads from `y` to the first limit, and which limit that is.
+/// Returns the fraction of `way`, at most 1, that leads from `y` to the first limit, and the index of this limit.
 fn reach(
     y: &DVector<f64>,
     way: &DVector<f64>,
@@ -80,8 +80,8 @@ fn reach(
     (part, blocking)
 }
 
-/// Returns the one of the `held` limits that `pull` leads away from, to the inside, the most; `None` where it leads
-/// outside of all of them.
+/// Returns the index of the `held` limit that `pull` leaves fastest toward the inside; `None` if `pull` leads outside
+/// all of them.
 fn outward(pull: &DVector<f64>, limits: &[Limit], held: &[usize]) -> Option<usize> {
     if held.is_empty() {
         return None;
@@ -92,8 +92,8 @@ fn outward(pull: &DVector<f64>, limits: &[Limit], held: &[usize]) -> Option<usiz
     (inward[most] > ROUNDING * pull.norm()).then(|| held[most])
 }
 
-/// Returns an orthonormal basis of all directions that are across the independent `normals`: where these are none, the
-/// directions of the parameters.
+/// Returns an orthonormal basis of the directions perpendicular to the independent `normals`. Without normals, these
+/// are the directions of the parameters.
 pub fn complement<'a>(
     normals: impl Iterator<Item = &'a DVector<f64>>,
     count: usize,
@@ -118,7 +118,7 @@ pub fn complement<'a>(
     })
 }
 
-/// Returns the shortest x with the least |`a` x - `c`|^2.
+/// Returns the shortest x that minimizes |`a` x - `c`|^2.
 fn solved(a: &DMatrix<f64>, c: &DVector<f64>) -> DVector<f64> {
     if a.ncols() == 0 {
         return DVector::zeros(0);
@@ -129,7 +129,8 @@ fn solved(a: &DMatrix<f64>, c: &DVector<f64>) -> DVector<f64> {
         .unwrap_or_else(|_| DVector::zeros(a.ncols()))
 }
 
-/// The part of `vector` square to the `basis`; taken out twice, for rounding.
+/// Returns the component of `vector` perpendicular to the `basis`. The projection is repeated to reduce rounding
+/// errors.
 fn across(mut vector: DVector<f64>, basis: &[DVector<f64>]) -> DVector<f64> {
     for _ in 0..2 {
         basis.iter().for_each(|it| vector -= it * it.dot(&vector));
