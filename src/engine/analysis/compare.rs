@@ -82,11 +82,11 @@ pub fn compare(
         .iter()
         .map(|cell| cell.steps)
         .fold(0, u64::saturating_add);
-    let taken = AtomicU64::new(0);
+    let steps_taken = AtomicU64::new(0);
     let rows: Option<Vec<ComparisonRow>> = cores::map(&cells, |cell: &Arc<Scenario>| {
         let mut before = 0;
         let trial = ComparisonTrial::run(cell, until_s.unwrap_or(f64::INFINITY), |step| {
-            let now = taken.fetch_add(step - before, Ordering::Relaxed) + (step - before);
+            let now = steps_taken.fetch_add(step - before, Ordering::Relaxed) + (step - before);
             before = step;
             watch(now, total)
         });
@@ -144,9 +144,9 @@ impl ComparisonTrial {
         let mut states = Vec::new();
         let mut timed = (0, Duration::ZERO);
         while simulation.step_number() < scenario.steps && !trial.has_broken {
-            let looks = simulation.step_number() / steps_between + 1;
-            let next_look = scenario.steps.min(looks.saturating_mul(steps_between));
-            let next = next_look.min(simulation.step_number() + block);
+            let readings = simulation.step_number() / steps_between + 1;
+            let next_reading = scenario.steps.min(readings.saturating_mul(steps_between));
+            let next = next_reading.min(simulation.step_number() + block);
             states.clear();
             let begin = Instant::now();
             trial.has_broken = take_steps(&mut simulation, next, &mut states).is_err();
@@ -156,10 +156,10 @@ impl ComparisonTrial {
                 timed = (0, Duration::ZERO);
             }
             for state in states.iter().filter(|state| state.time_s <= until_s) {
-                trial.hold(state, &mut truth, scale);
+                trial.compare_step(state, &mut truth, scale);
             }
-            if next == next_look || trial.has_broken {
-                trial.read_off(simulation.now());
+            if next == next_reading || trial.has_broken {
+                trial.read_energy(simulation.now());
             }
             watch(simulation.step_number()).continue_value()?;
         }
@@ -198,7 +198,7 @@ impl ComparisonTrial {
     }
 
     /// Compares one step of the run with the exact motion.
-    fn hold(&mut self, state: &State, truth: &mut Truth, scale: f64) {
+    fn compare_step(&mut self, state: &State, truth: &mut Truth, scale: f64) {
         let off = Deviation::between(state, truth);
         self.end_distance_m = off.distance_m;
         self.most_distance_m = greater(self.most_distance_m, off.distance_m);
@@ -206,7 +206,7 @@ impl ComparisonTrial {
         self.lz_drift = greater(self.lz_drift, (off.lz / scale).abs());
     }
 
-    fn read_off(&mut self, step: &Step) {
+    fn read_energy(&mut self, step: &Step) {
         let drift = step.energy_drift().map(f64::abs);
         self.energy_drift = drift.map(|drift| drift.max(self.energy_drift.unwrap_or(0.0)));
     }

@@ -41,7 +41,7 @@ impl ExactReference {
             truth,
             companion: None,
             waiting: Vec::new(),
-            together: looked_at_together(scenario),
+            together: steps_at_once(scenario),
             farthest: None,
             most_m: 0.0,
             swings: Swings::new(&scenario.start),
@@ -51,7 +51,7 @@ impl ExactReference {
     /// Continues with the run of `scenario`, which has the same past.
     pub fn branch(&mut self, scenario: &Arc<Scenario>) {
         self.settle(); // the steps so far belong to the old forces
-        self.together = looked_at_together(scenario);
+        self.together = steps_at_once(scenario);
         match &mut self.truth {
             Some(truth) => truth.branch(scenario),
             None => {
@@ -73,7 +73,7 @@ impl ExactReference {
     /// Returns the number of exact motions that accompany the run: two with the companion, or none.
     pub fn motions(&self) -> u32 {
         match &self.truth {
-            Some(_) if !self.has_parted() => 2,
+            Some(_) if !self.has_separated() => 2,
             _ => 0,
         }
     }
@@ -96,22 +96,25 @@ impl ExactReference {
     /// Compares `state` later, at the latest when the run is [settled](Self::settle).
     #[inline]
     pub fn wait(&mut self, state: &State) {
-        if self.is_known() && !self.has_parted() {
+        if self.is_known() && !self.has_separated() {
             self.waiting.push(*state);
         }
     }
 
     /// Compares the waiting steps.
     fn look(&mut self) {
-        let _ = self.look_while(&mut || ControlFlow::Continue(()));
+        let _ = self.compare_waiting_while(&mut || ControlFlow::Continue(()));
     }
 
     /// Compares the waiting steps while `go_on`, which is called after every few steps, returns `Continue`. The steps
     /// that remain after a break are never compared.
-    fn look_while(&mut self, go_on: &mut dyn FnMut() -> ControlFlow<()>) -> ControlFlow<()> {
+    fn compare_waiting_while(
+        &mut self,
+        go_on: &mut dyn FnMut() -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
         let mut states = std::mem::take(&mut self.waiting);
         for together in states.chunks(self.together) {
-            self.look_at(together);
+            self.compare_steps(together);
             go_on()?;
         }
         states.clear();
@@ -119,7 +122,7 @@ impl ExactReference {
         ControlFlow::Continue(())
     }
 
-    fn look_at(&mut self, states: &[State]) {
+    fn compare_steps(&mut self, states: &[State]) {
         let near = self
             .truth
             .as_ref()
@@ -146,7 +149,7 @@ impl ExactReference {
                 let exact = truth.orientation_at(state.time_s);
                 self.swings.record(&[*state], &[height(exact.m33)]);
                 let off_m = distance_m(state, &exact, truth.scenario());
-                self.take_in(off_m);
+                self.record_distance(off_m);
             }
         }
     }
@@ -166,7 +169,7 @@ impl ExactReference {
     }
 
     /// Returns true if a step that was [compared](Self::settle) came after the motion had become unpredictable.
-    fn has_parted(&self) -> bool {
+    fn has_separated(&self) -> bool {
         let companion = self.companion.as_ref();
         companion.is_some_and(|companion| companion.until_s().is_some())
     }
@@ -186,7 +189,7 @@ impl ExactReference {
     /// Does the same as [`settle`](Self::settle) while `go_on` returns `Continue`, because each step may take long.
     /// After a break the run is compared no further.
     pub fn settle_while(&mut self, go_on: &mut dyn FnMut() -> ControlFlow<()>) -> ControlFlow<()> {
-        self.look_while(go_on)?;
+        self.compare_waiting_while(go_on)?;
         self.settle_farthest();
         ControlFlow::Continue(())
     }
@@ -195,13 +198,13 @@ impl ExactReference {
         if let (Some(state), Some(truth)) = (self.farthest.take(), &mut self.truth) {
             self.most_m = 0.0; // it was known only to within rounding
             let distance_m = Deviation::distance_of(&state, truth);
-            self.take_in(distance_m);
+            self.record_distance(distance_m);
         }
     }
 
     /// Records a distance, m, known to the last bit. A distance that is not finite ends the comparison, because the
     /// exact motion has left the range of numbers for good.
-    fn take_in(&mut self, distance_m: f64) {
+    fn record_distance(&mut self, distance_m: f64) {
         if !distance_m.is_finite() {
             self.truth = None;
         } else if distance_m > self.most_m {
@@ -213,11 +216,11 @@ impl ExactReference {
     /// motion can no longer be predicted.
     pub fn deviation(&mut self, state: &State) -> Option<Deviation> {
         self.settle();
-        if self.has_parted() {
+        if self.has_separated() {
             return None;
         }
         let deviation = Deviation::between(state, self.truth.as_mut()?);
-        self.take_in(deviation.distance_m);
+        self.record_distance(deviation.distance_m);
         self.truth.as_ref().map(|_| deviation)
     }
 
@@ -225,7 +228,7 @@ impl ExactReference {
     /// can no longer be predicted.
     pub fn exact_state(&mut self, time_s: f64) -> Option<State> {
         self.settle();
-        if self.has_parted() {
+        if self.has_separated() {
             return None;
         }
         let state = self.truth.as_mut()?.state_at(time_s);
@@ -247,7 +250,7 @@ impl ExactReference {
     }
 }
 
-fn looked_at_together(scenario: &Scenario) -> usize {
+fn steps_at_once(scenario: &Scenario) -> usize {
     if has_closed_form(scenario) {
         AT_ONCE
     } else {

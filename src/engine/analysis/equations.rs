@@ -103,7 +103,7 @@ fn sum(terms: &PowerSeries, step: f64) -> Vector3<f64> {
 struct Interpolation {
     ends: [Vector3<f64>; 2],
     /// Rates times the time between the rows.
-    ways: [Vector3<f64>; 2],
+    displacements: [Vector3<f64>; 2],
     step_s: f64,
 }
 
@@ -111,14 +111,14 @@ impl Interpolation {
     pub fn between(from: &TopMotion, to: &TopMotion, step_s: f64) -> Self {
         Self {
             ends: [from.axle, to.axle],
-            ways: [from, to].map(|swing| swing.momentum.cross(&swing.axle) * step_s),
+            displacements: [from, to].map(|swing| swing.momentum.cross(&swing.axle) * step_s),
             step_s,
         }
     }
 
     /// Returns the time after the first row at which the height has an extreme, s: a root of a quadratic.
     pub fn time_of_turn(&self, is_top: bool) -> f64 {
-        let [begin, end] = self.ways.map(|way| way.z);
+        let [begin, end] = self.displacements.map(|change| change.z);
         let rise = self.ends[1].z - self.ends[0].z;
         let (square, linear) = (
             3.0 * (begin + end) - 6.0 * rise,
@@ -138,7 +138,7 @@ impl Interpolation {
     pub fn at(&self, time_s: f64) -> TopMotion {
         let t = time_s / self.step_s;
         let [from, to] = self.ends;
-        let [begin, end] = self.ways;
+        let [begin, end] = self.displacements;
         let rise = to - from;
         let axle = from
             + t * (begin + t * ((3.0 * rise - 2.0 * begin - end) + t * (begin + end - 2.0 * rise)));
@@ -221,7 +221,7 @@ impl Equations {
             let at = seen.time_of_turn(is_top);
             (off_s, off) = (at - time, swing.azimuth_to(&seen.at(at)));
         }
-        let way = self.way(&from, time);
+        let change = self.azimuth_change(&from, time);
         let (bend, level) = (swing.bend(&self.pull), swing.level());
         let time_s = before.time_s + time + off_s;
         let rounding_s = f64::EPSILON * (self.rates[1] / bend.abs() + time_s.abs());
@@ -230,7 +230,7 @@ impl Equations {
             time_s,
             time_off_s: off_s,
             time_error_s: libm::hypot(rounding_s, 0.5 * apart_s),
-            azimuth: before.azimuth_rad() + TAU * crossing.missed as f64 + way + off,
+            azimuth: before.azimuth_rad() + TAU * crossing.missed as f64 + change + off,
             azimuth_off: off,
             azimuth_error: libm::hypot(rounding, 0.5 * apart),
             azimuth_rate: swing.azimuth_rate(),
@@ -240,16 +240,16 @@ impl Equations {
     }
 
     /// Returns the change of azimuth in the time `time_s` after `from`, rad, with all full turns.
-    fn way(&self, from: &TopMotion, time_s: f64) -> f64 {
+    fn azimuth_change(&self, from: &TopMotion, time_s: f64) -> f64 {
         let mut at = *from;
         let pieces = (4.0 * self.rates[1] * time_s.abs()).ceil().max(1.0);
-        let mut way = 0.0;
+        let mut change = 0.0;
         for _ in 0..pieces as u32 {
             let next = at.after(time_s / pieces, &self.pull);
-            way += at.azimuth_to(&next);
+            change += at.azimuth_to(&next);
             at = next;
         }
-        way
+        change
     }
 
     /// Returns the full turns of the azimuth from the row `before` to the next one, `now`, that the azimuths of the
@@ -267,9 +267,11 @@ impl Equations {
         };
         let rest = self.time_step_s - turn.0;
         let arrived = turn.1.after(rest, &self.pull);
-        let way = self.way(&from, turn.0) + self.way(&turn.1, rest) + arrived.azimuth_to(&to);
+        let change = self.azimuth_change(&from, turn.0)
+            + self.azimuth_change(&turn.1, rest)
+            + arrived.azimuth_to(&to);
         let seen = from.azimuth_to(&to);
-        ((way - seen) / TAU).round() as i64
+        ((change - seen) / TAU).round() as i64
     }
 }
 

@@ -276,7 +276,7 @@ pub fn advise(scenario: &Scenario) -> Advice {
 
 /// Does the same as [`advise`], but gives up soon after `is_wanted` returns false, and then returns `None`.
 pub fn advise_while(scenario: &Scenario, is_wanted: &dyn Fn() -> bool) -> Option<Advice> {
-    let advice = tried(scenario, is_wanted);
+    let advice = find_advice(scenario, is_wanted);
     // Trials that were given up have no result.
     is_wanted().then_some(advice)
 }
@@ -327,7 +327,7 @@ fn holds(
 }
 
 /// Returns the advice that trials of `scenario` lead to. Once `is_wanted` returns false, each trial counts as failed.
-fn tried(scenario: &Scenario, is_wanted: &dyn Fn() -> bool) -> Advice {
+fn find_advice(scenario: &Scenario, is_wanted: &dyn Fn() -> bool) -> Advice {
     let (own, scheme) = (scenario.motion.time_step_s, scenario.motion.scheme);
     if !is_affordable(scenario) || Clock::end_s(scenario) / own > most_steps(scenario) {
         return Advice::Nothing;

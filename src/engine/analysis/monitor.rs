@@ -192,8 +192,8 @@ impl Monitor {
         let body = &truth.scenario().body.mechanics;
         let (top, asymmetry) = SymmetricTop::nearly(body)?;
         let load = truth.loads().on_axle(body, &top)?;
-        let rubs = !truth.loads().friction.is_none();
-        let of = if asymmetry > 0.0 && !rubs {
+        let has_friction = !truth.loads().friction.is_none();
+        let of = if asymmetry > 0.0 && !has_friction {
             *truth.motion().begin()
         } else {
             state
@@ -213,7 +213,7 @@ impl Monitor {
             // The steady precessions belong to the present tilt.
             slow_precession: now.slow_precession,
             fast_precession: now.fast_precession,
-            is_of_a_moment: rubs,
+            is_of_a_moment: has_friction,
             asymmetry,
             ..Theory::new(&top, &load, &motion, &of)
         };

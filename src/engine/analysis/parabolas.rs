@@ -280,7 +280,7 @@ impl Parabolas {
             return None;
         }
         let Some(line) = self.line() else {
-            return self.way_of_the_azimuth();
+            return self.mean_azimuth_rate();
         };
         if self.is_lopsided && !self.has_seen_beat() {
             return None;
@@ -311,7 +311,7 @@ impl Parabolas {
     }
 
     /// Returns the mean rate of the azimuth over the whole time, for an axle that keeps its height.
-    fn way_of_the_azimuth(&self) -> Option<MeasuredNumber> {
+    fn mean_azimuth_rate(&self) -> Option<MeasuredNumber> {
         let now = self.looks[2];
         let [whole, later] = [&self.start, &self.half]
             .map(|from| (now.azimuth_rad() - from.azimuth_rad()) / (now.time_s - from.time_s));

@@ -64,8 +64,8 @@ impl ReportTheory {
         let body = &scenario.body.mechanics;
         let top =
             SymmetricTop::from_body(body).filter(|_| step.motion().scheme.name == "report")?;
-        let rubs = !step.loads().friction.is_none();
-        let load = step.loads().on_axle(body, &top).filter(|_| !rubs)?;
+        let has_friction = !step.loads().friction.is_none();
+        let load = step.loads().on_axle(body, &top).filter(|_| !has_friction)?;
         let (state, time_step_s) = (step.after(), step.motion().time_step_s);
         let size = state.momentum.norm();
         if load.x != 0.0 || load.y != 0.0 || !(size > 0.0 && size.is_finite()) {

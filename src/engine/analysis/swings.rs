@@ -33,7 +33,7 @@ const MOST_SWING_BINS: usize = 128;
 /// Follows the swings of the run and of the exact motion. It must receive every step.
 #[derive(Clone, Debug)]
 pub(super) struct Swings {
-    blocks: Vec<SwingBin>,
+    bins: Vec<SwingBin>,
     /// Steps per bin, at least the number that is recorded at once.
     steps: u64,
     /// Number of steps in the last, unfinished bin.
@@ -48,7 +48,7 @@ struct SwingBin {
     from_s: f64,
     to_s: f64,
     /// Ranges of the run and of the exact motion.
-    ways: [HeightRange; 2],
+    ranges: [HeightRange; 2],
 }
 
 /// Minimum and maximum [height], and the sum of its absolute changes.
@@ -114,7 +114,7 @@ impl Swings {
     pub fn new(start: &State) -> Self {
         let last = [height_in(start); 2];
         Self {
-            blocks: vec![SwingBin::new(start.time_s, last)],
+            bins: vec![SwingBin::new(start.time_s, last)],
             steps: AT_ONCE as u64,
             last_steps: 0,
             last,
@@ -128,21 +128,21 @@ impl Swings {
         let run = states.each_ref().map(height_in);
         let room = (self.steps - self.last_steps).min(N as u64) as usize;
         if room == N {
-            self.take_in(states, [&run, exact]);
+            self.add_steps(states, [&run, exact]);
         } else {
-            self.take_in(&states[..room], [&run[..room], &exact[..room]]);
-            self.begin_block();
-            self.take_in(&states[room..], [&run[room..], &exact[room..]]);
+            self.add_steps(&states[..room], [&run[..room], &exact[..room]]);
+            self.begin_bin();
+            self.add_steps(&states[room..], [&run[room..], &exact[room..]]);
         }
     }
 
     #[inline]
-    fn take_in(&mut self, states: &[State], heights: [&[f64]; 2]) {
-        let (Some(block), Some(last)) = (self.blocks.last_mut(), states.last()) else {
+    fn add_steps(&mut self, states: &[State], heights: [&[f64]; 2]) {
+        let (Some(bin), Some(last)) = (self.bins.last_mut(), states.last()) else {
             return;
         };
-        block.to_s = last.time_s;
-        for ((way, previous), values) in block.ways.iter_mut().zip(&mut self.last).zip(heights) {
+        bin.to_s = last.time_s;
+        for ((way, previous), values) in bin.ranges.iter_mut().zip(&mut self.last).zip(heights) {
             for height in values {
                 way.least = way.least.min(*height);
                 way.greatest = way.greatest.max(*height);
@@ -154,38 +154,38 @@ impl Swings {
     }
 
     #[cold]
-    fn begin_block(&mut self) {
-        if self.blocks.len() == MOST_SWING_BINS {
+    fn begin_bin(&mut self) {
+        if self.bins.len() == MOST_SWING_BINS {
             self.steps *= 2;
-            self.blocks = self
-                .blocks
+            self.bins = self
+                .bins
                 .chunks(2)
                 .map(|two| two[1..].iter().fold(two[0], SwingBin::and))
                 .collect();
         }
         self.last_steps = 0;
-        let from_s = self.blocks.last().map_or(0.0, |block| block.to_s);
-        self.blocks.push(SwingBin::new(from_s, self.last));
+        let from_s = self.bins.last().map_or(0.0, |bin| bin.to_s);
+        self.bins.push(SwingBin::new(from_s, self.last));
     }
 
     /// Returns the comparison of the window in which the swings differ most.
     pub fn worst(&self) -> Option<SwingComparison> {
-        let mut stretches: Vec<SwingBin> = Vec::new();
-        for block in &self.blocks {
-            match stretches.last_mut() {
-                Some(last) if last.ways[1].swings() < SWINGS_PER_WINDOW => *last = last.and(block),
-                _ => stretches.push(*block),
+        let mut windows: Vec<SwingBin> = Vec::new();
+        for bin in &self.bins {
+            match windows.last_mut() {
+                Some(last) if last.ranges[1].swings() < SWINGS_PER_WINDOW => *last = last.and(bin),
+                _ => windows.push(*bin),
             }
         }
         // Swings that remain at the end belong to the window before.
-        if let [.., before, rest] = &mut stretches[..]
-            && rest.ways[1].swings() < SWINGS_PER_WINDOW
+        if let [.., before, rest] = &mut windows[..]
+            && rest.ranges[1].swings() < SWINGS_PER_WINDOW
         {
             *before = before.and(rest);
-            stretches.pop();
+            windows.pop();
         }
-        let is_whole_run = stretches.len() == 1;
-        let swings = stretches.iter().map(|block| block.swing(is_whole_run));
+        let is_whole_run = windows.len() == 1;
+        let swings = windows.iter().map(|bin| bin.swing(is_whole_run));
         swings.reduce(|worst, swing| {
             if swing.worst > worst.worst {
                 swing
@@ -198,7 +198,7 @@ impl Swings {
 
 impl SwingBin {
     fn new(from_s: f64, heights: [f64; 2]) -> Self {
-        let ways = heights.map(|height| HeightRange {
+        let ranges = heights.map(|height| HeightRange {
             least: height,
             greatest: height,
             length: 0.0,
@@ -206,22 +206,22 @@ impl SwingBin {
         Self {
             from_s,
             to_s: from_s,
-            ways,
+            ranges,
         }
     }
 
     /// Merges two consecutive bins.
     fn and(self, next: &Self) -> Self {
-        let [run, exact] = self.ways;
+        let [run, exact] = self.ranges;
         Self {
             to_s: next.to_s,
-            ways: [run.and(&next.ways[0]), exact.and(&next.ways[1])],
+            ranges: [run.and(&next.ranges[0]), exact.and(&next.ranges[1])],
             ..self
         }
     }
 
     fn swing(&self, is_whole_run: bool) -> SwingComparison {
-        let [run, exact] = self.ways;
+        let [run, exact] = self.ranges;
         let (run_deg, exact_deg) = (run.tilts_deg(), exact.tilts_deg());
         let most_deg = allowed_deg(exact_deg);
         let off_deg = (run_deg.0 - exact_deg.0)
@@ -229,7 +229,7 @@ impl SwingBin {
             .max((run_deg.1 - exact_deg.1).abs());
         let way = run.length / exact.length;
         let is_there = swings(exact_deg) && exact.swings() >= FEW_SWINGS;
-        let of_way = if is_there {
+        let path_error = if is_there {
             (way - 1.0).abs() / SWING_TOLERANCE
         } else {
             0.0
@@ -240,7 +240,7 @@ impl SwingBin {
             exact_deg,
             way,
             tilts_differ: off_deg > most_deg,
-            worst: (off_deg / most_deg).max(of_way),
+            worst: (off_deg / most_deg).max(path_error),
         }
     }
 }

@@ -143,21 +143,21 @@ impl TurningPoints {
         if away <= self.confirmed_by {
             return;
         }
-        let Some(taken) = self.candidate.take() else {
+        let Some(confirmed) = self.candidate.take() else {
             return;
         };
         if self
             .last
-            .is_some_and(|(_, last)| last.is_top == taken.is_top)
+            .is_some_and(|(_, last)| last.is_top == confirmed.is_top)
         {
             return;
         }
         if self.turns.wants(self.count) {
-            let turn = self.equations.turn(&taken);
+            let turn = self.equations.turn(&confirmed);
             self.least_level = self.least_level.min(turn.level);
             self.turns.keep(self.count, turn);
         }
-        self.last = Some((self.count, taken));
+        self.last = Some((self.count, confirmed));
         self.count += 1;
     }
 

@@ -15,7 +15,7 @@ pub struct Marks {
 impl Marks {
     pub fn new(scenario: &Scenario) -> Self {
         let mut edits = Vec::new();
-        let mut stretches = Vec::new();
+        let mut intervals = Vec::new();
         let (mut begin_s, mut pushes) = (0.0, &scenario.pushes);
         for (time_s, edit) in Clock::edits(scenario) {
             if edits.last() != Some(&time_s) {
@@ -23,14 +23,14 @@ impl Marks {
             }
             if !edit.set_pushes.is_empty() {
                 let acting = pushes.iter();
-                stretches.extend(acting.filter_map(|push| acts(push, scenario, begin_s, time_s)));
+                intervals.extend(acting.filter_map(|push| acts(push, scenario, begin_s, time_s)));
                 (begin_s, pushes) = (time_s, &edit.pushes);
             }
         }
         let last = pushes.iter();
-        stretches.extend(last.filter_map(|push| acts(push, scenario, begin_s, f64::INFINITY)));
+        intervals.extend(last.filter_map(|push| acts(push, scenario, begin_s, f64::INFINITY)));
         Self {
-            pushes: joined(stretches),
+            pushes: joined(intervals),
             edits,
         }
     }
@@ -43,10 +43,10 @@ fn acts(push: &Push, scenario: &Scenario, from_s: f64, to_s: f64) -> Option<(f64
     (begin < end && push.force.norm() > 0.0).then_some((begin, end))
 }
 
-fn joined(mut stretches: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
-    stretches.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut joined: Vec<(f64, f64)> = Vec::with_capacity(stretches.len());
-    for (begin, end) in stretches {
+fn joined(mut intervals: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+    intervals.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut joined: Vec<(f64, f64)> = Vec::with_capacity(intervals.len());
+    for (begin, end) in intervals {
         match joined.last_mut() {
             Some(last) if begin <= last.1 => last.1 = last.1.max(end),
             _ => joined.push((begin, end)),
@@ -88,10 +88,10 @@ mod tests {
         ] {
             let marks = marks("wobble-push", edits);
             assert_eq!(marks.pushes.len(), pushes.len(), "{edits:?}: {marks:?}");
-            for (stretch, expected) in marks.pushes.iter().zip(pushes) {
-                let off_s = (stretch.0 - expected.0)
+            for (interval, expected) in marks.pushes.iter().zip(pushes) {
+                let off_s = (interval.0 - expected.0)
                     .abs()
-                    .max((stretch.1 - expected.1).abs());
+                    .max((interval.1 - expected.1).abs());
                 assert!(off_s < 1e-9, "{edits:?}: {marks:?}");
             }
             assert_eq!(marks.edits, edits_s, "{edits:?}");

@@ -30,7 +30,7 @@ pub struct Simulation {
     safe_below: f64,
     /// True if the workings of every step are kept.
     keeps_workings: bool,
-    rubs: bool,
+    has_friction: bool,
 }
 
 /// Error: the numbers of a run are no longer finite.
@@ -81,7 +81,7 @@ impl Simulation {
             unchanged: None,
             safe_below: safe_below(&scenario, motion.gravity),
             keeps_workings: false,
-            rubs: !scenario.friction.is_none(),
+            has_friction: !scenario.friction.is_none(),
             now: Step {
                 number: 0,
                 segment: 0,
@@ -268,7 +268,7 @@ impl Simulation {
                 });
             }
         }
-        if self.rubs {
+        if self.has_friction {
             self.now.energy.friction += self.scheme.friction_work();
         }
     }

@@ -245,7 +245,7 @@ impl Document {
     }
 
     /// Describes the entries that the file has, if only `--set` created the entry (a push, a point) that lacks a key.
-    fn that_are_there(problem: &Problem, written: &toml::Table) -> Option<String> {
+    fn existing_entries(problem: &Problem, written: &toml::Table) -> Option<String> {
         let (entry, _) = problem.key.rsplit_once('.')?;
         let (list, number) = entry.rsplit_once('.')?;
         number.parse::<usize>().ok()?;
@@ -291,7 +291,7 @@ impl Document {
                 }
                 _ => problem
                     .rule
-                    .extend(Self::that_are_there(&problem, &written)),
+                    .extend(Self::existing_entries(&problem, &written)),
             }
             placed.push((usize::MAX, problem));
         }

@@ -220,11 +220,11 @@ pub(super) fn prepare(table: &mut Table, key: &str, value: &Value) {
         }
         ("shape", Some(shape)) => {
             let old: Result<PartFile, _> = part.clone().try_into();
-            let told = old.map_or(Table::new(), |old| dimensions(&old, shape));
-            if !told.is_empty() {
+            let new_dimensions = old.map_or(Table::new(), |old| dimensions(&old, shape));
+            if !new_dimensions.is_empty() {
                 part.retain(|dimension, _| !DIMENSIONS.contains(&dimension));
             }
-            part.extend(told);
+            part.extend(new_dimensions);
         }
         _ => {}
     }
