@@ -132,7 +132,7 @@ impl Recording {
         until_s: f64,
         column: Option<impl Fn(f64) -> usize>,
     ) -> impl Iterator<Item = RecordingBin> {
-        let (size, numbers) = self.stretch(since_s, until_s);
+        let (size, numbers) = self.bins_covering(since_s, until_s);
         let mut next = numbers.start;
         let covering = std::iter::from_fn(move || {
             let (bin, count) = self.largest(size, &numbers, next, column.as_ref())?;
@@ -144,7 +144,7 @@ impl Recording {
     }
 
     /// Returns the size of the bins that cover a time interval (s), and their numbers.
-    fn stretch(&self, since_s: f64, until_s: f64) -> (usize, Range<u64>) {
+    fn bins_covering(&self, since_s: f64, until_s: f64) -> (usize, Range<u64>) {
         let levels = self.levels.iter().enumerate();
         let mut suitable = levels.filter_map(|(size, level)| {
             let numbers = level.between(since_s, until_s);
@@ -344,7 +344,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_step_is_in_exactly_one_block_of_a_stretch(length in 1usize..20_000, share in 0.0..1.0f64) {
+        fn bins_cover_every_step_exactly_once(length in 1usize..20_000, share in 0.0..1.0f64) {
             let recording = recorded(&vec![0.0; length]);
             let since = (share * length as f64).floor();
             let bins: Vec<_> = recording.since(since).collect();
@@ -353,7 +353,7 @@ mod tests {
         }
 
         #[test]
-        fn columns_have_the_same_moments_in_fewer_blocks(
+        fn columns_have_the_same_samples_in_fewer_bins(
             length in 1usize..40_000, columns in 1usize..300, ends in (0.0..1.0f64, 0.0..1.2f64)
         ) {
             let values: Vec<f64> = (0..length).map(|step| libm::sin(step as f64 * 0.37)).collect();
@@ -395,7 +395,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(64))]
         #[test]
-        fn cut_back_and_filled_it_is_as_fine_as_ever(
+        fn a_refilled_recording_is_as_fine_as_before(
             length in 1u64..200_000, shares in prop::collection::vec(0.0..1.0f64, 1..4), at in 0.0..1.0f64
         ) {
             let value = |step: u64| if step == (at * length as f64) as u64 { 7.0 } else { libm::sin(step as f64 * 0.01) };
@@ -430,7 +430,7 @@ mod tests {
     }
 
     #[test]
-    fn a_block_knows_how_often_the_curve_turns() {
+    fn bins_count_the_turns_of_a_curve() {
         let turns = |recording: &Recording| recording.whole().unwrap().turns(RecordedCurve::X);
         // Ten swings of a triangle about 5, from 0 to 10 and back in 20 steps each.
         let values: Vec<f64> = (0..=200)
@@ -446,7 +446,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stretch_long_ago_has_more_blocks_than_a_part_of_all() {
+    fn an_early_interval_has_finer_bins_than_the_whole_run() {
         let values: Vec<f64> = (0..100_000).map(f64::from).collect();
         let recording = recorded(&values);
         let bins: Vec<_> = recording.between(10_000.0, 11_000.0).collect();

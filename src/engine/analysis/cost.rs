@@ -74,7 +74,7 @@ mod tests {
     use crate::scenario::preset as scenario;
 
     #[test]
-    fn strong_friction_is_as_dear_as_fast_turning() {
+    fn strong_friction_costs_as_much_as_fast_turning() {
         for (set, is_cheap) in [
             ("friction.spin_viscous_Nms=10.0", true),
             ("friction.spin_viscous_Nms=1e6", false),
@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn a_push_as_near_to_the_axle_as_the_closed_form_takes_costs_no_integration() {
+    fn a_push_near_the_axle_needs_no_integration() {
         for (aside_m, is_free) in [(0.0, true), (1e-12, true), (1e-3, false)] {
             let point = format!("body.point.2={{name='aside',at_m=[{aside_m:e},0,1.5],mass_kg=0}}");
             let push = "push.0={point='aside',force_N=[1,0,0],from_s=1,for_s=1}";

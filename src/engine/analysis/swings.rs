@@ -356,7 +356,7 @@ mod tests {
     }
 
     #[test]
-    fn size_place_and_period_of_the_swing_count_and_its_phase_does_not() {
+    fn size_position_and_period_of_a_swing_count_but_not_its_phase() {
         let is_right = |tilt_of: fn(f64) -> f64| beside(tilt_of).is_right();
         assert!(is_right(|time| 30.0 + wave(time)));
         assert!(is_right(|time| 30.0 + wave(time + 0.3)));

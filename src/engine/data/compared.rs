@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn directions_are_taken_at_the_nearest_turn_and_counted_turns_stay_counted() {
+    fn directions_use_the_nearest_turn_and_counted_turns_stay() {
         for (measured, model, expected) in [
             (
                 [352.0, 171.0, 349.0, 172.0],

@@ -78,7 +78,7 @@ mod tests {
     use crate::data::read;
 
     #[test]
-    fn tilt_and_azimuth_tell_the_place_from_above() {
+    fn tilt_and_azimuth_give_the_position_from_above() {
         let measured = read(
             "test.csv",
             "t_s,tilt_deg,tilt_uncertainty_deg,azimuth_deg,azimuth_uncertainty_deg\n0,30,1,90,2\n1,,,90,2\n2,90,1,180,\n",

@@ -158,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn operators_bind_as_in_arithmetic_and_what_is_not_known_decides_nothing() {
+    fn operators_have_the_usual_precedence_and_unknown_values_propagate() {
         for (text, known) in [
             ("1 + 2 * 3", Some(7.0)),
             ("(1 + 2) * 3", Some(9.0)),
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn a_condition_is_taken_apart() {
+    fn a_condition_splits_into_conjuncts() {
         let that =
             "t_s >= 5 and (tilt_deg < 0 and 1 < 2) and abs(tilt_deg) < 2 and abs(tilt_deg - 1) < 2";
         let parts = Expression::parse(that)

@@ -356,7 +356,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_suggestion_is_the_scenarios_own_push_or_a_strong_one() {
+    fn the_suggested_push_is_the_scenarios_own_or_a_strong_one() {
         let own = NextPush::suggested_for(&scenario("wobble-push"));
         assert_eq!(own.in_words(), "100 N on top, down, for 20 s");
         let default = NextPush::suggested_for(&scenario("method-2"));
@@ -365,7 +365,7 @@ mod tests {
     }
 
     #[test]
-    fn shown_values_can_be_typed_and_invalid_ones_are_refused() {
+    fn shown_values_parse_and_invalid_ones_are_rejected() {
         let scenario = scenario("method-2");
         let push = NextPush::suggested_for(&scenario);
         for field in PushField::ALL {
@@ -391,7 +391,7 @@ mod tests {
     }
 
     #[test]
-    fn every_direction_is_a_unit_vector_as_named() {
+    fn named_directions_are_unit_vectors() {
         let at = Vector3::new(3.0, 4.0, 1.0);
         for (name, toward) in Toward::NAMED {
             let direction = toward.direction(&at).unwrap();

@@ -275,7 +275,7 @@ mod tests {
     }
 
     #[test]
-    fn edits_keep_their_seconds_and_those_of_the_time_step_go() {
+    fn a_rerun_keeps_edit_times_and_drops_edits_of_the_time_step() {
         let run = run(
             "\n[[edit]]\nstep = 40\nset = { 'motion.time_step_s' = 0.05 }\n\
              [[edit]]\nstep = 60\nset = { 'motion.scheme' = 'rk4', 'motion.gravity_m_per_s2' = 1 }\n",
@@ -294,7 +294,7 @@ mod tests {
     }
 
     #[test]
-    fn another_gravity_leaves_every_other_edit_at_its_step() {
+    fn a_rerun_with_another_gravity_keeps_other_edits() {
         let run = run(
             "\n[[edit]]\nstep = 40\nset = { 'motion.time_step_s' = 0.05, 'motion.gravity_m_per_s2' = 3 }\n\
              [[edit]]\nstep = 60\nset = { 'motion.gravity_m_per_s2' = 1 }\n",
@@ -310,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_counted_in_steps_is_refused() {
+    fn a_rerun_with_another_time_step_rejects_step_counts() {
         let run = run("\n[[edit]]\nstep = 40\nset = { 'push.0.steps' = 7 }\n");
         let own = run.motion.time_step_s;
         assert!(rerun_with(&run, &one(TIME_STEP, 0.5 * own), 30.0).is_err());

@@ -86,7 +86,7 @@ fn an_act_drops_entries_at_later_steps_until_it_is_undone() {
 }
 
 #[test]
-fn the_run_up_to_a_step_ends_there_and_has_its_description() {
+fn a_run_up_to_a_step_ends_there_and_keeps_its_title() {
     let mut journal = after([5, 10, 10, 20].map(|step| (step, gravity(step as f64))));
     perform(&mut journal, 30, push(5.0)).unwrap();
     perform(&mut journal, 40, title("Mine")).unwrap();
@@ -110,7 +110,7 @@ fn the_run_up_to_a_step_ends_there_and_has_its_description() {
 }
 
 #[test]
-fn an_act_that_passes_a_limit_is_refused() {
+fn acts_beyond_a_limit_are_rejected() {
     let mut file = journal("method-2").file();
     file.edit = (0..limits::MOST_EDITS as u64)
         .map(|step| EditFile {
@@ -150,7 +150,7 @@ fn pushes_added_at_one_step_keep_their_order() {
 }
 
 #[test]
-fn edits_at_one_step_are_joined_unless_the_file_had_them_apart() {
+fn edits_at_one_step_are_merged_unless_the_file_separates_them() {
     let scheme = edit("motion.scheme", "rk4");
     let journal = after([gravity(1.0), gravity(2.0), scheme].map(|act| (10, act)));
     let mut file = journal.file();
@@ -238,7 +238,7 @@ fn undone(journal: &mut Journal) -> Option<u64> {
 }
 
 #[test]
-fn undo_and_redo_go_through_all_acts_and_runs_in_order() {
+fn undo_and_redo_traverse_all_acts_and_runs_in_order() {
     let mut journal = self::journal("method-2");
     set(&mut journal, 40, "motion.time_step_s", 0.05);
     begin_with_tilt(&mut journal, 90, 30.0, false);
@@ -262,7 +262,7 @@ fn undo_and_redo_go_through_all_acts_and_runs_in_order() {
 }
 
 #[test]
-fn undo_takes_the_advice_back_before_the_edits_that_it_kept() {
+fn undo_reverts_an_advice_before_the_edits_it_kept() {
     let mut journal = self::journal("method-2");
     let edited = set(&mut journal, 40, "motion.gravity_m_per_s2", 5.0);
     leave(&mut journal, 90);
@@ -279,7 +279,7 @@ fn undo_takes_the_advice_back_before_the_edits_that_it_kept() {
 }
 
 #[test]
-fn a_new_act_leaves_nothing_to_redo() {
+fn a_new_act_clears_redo() {
     let mut journal = self::journal("method-2");
     begin_with_tilt(&mut journal, 90, 30.0, false);
     journal.undo();
@@ -288,7 +288,7 @@ fn a_new_act_leaves_nothing_to_redo() {
 }
 
 #[test]
-fn nudging_a_run_again_replaces_it() {
+fn a_repeated_nudge_replaces_the_run() {
     let mut journal = self::journal("method-2");
     begin_with_tilt(&mut journal, 90, 30.0, false);
     begin_with_tilt(&mut journal, 5, 31.0, true);
@@ -305,7 +305,7 @@ fn earlier_runs(journal: &Journal) -> usize {
 }
 
 #[test]
-fn few_runs_with_large_bodies_are_kept_and_small_ones_stay_behind_a_large_one() {
+fn earlier_runs_are_limited_by_their_total_points() {
     let points = |count: usize| {
         let mut scenario = opened_scenario("method-2");
         let top = scenario.file.body.point[0].clone();
@@ -322,7 +322,7 @@ fn few_runs_with_large_bodies_are_kept_and_small_ones_stay_behind_a_large_one() 
 }
 
 #[test]
-fn several_acts_at_once_are_done_all_or_none() {
+fn several_acts_succeed_or_fail_together() {
     let mut journal = self::journal("method-2");
     let before = journal.clone();
     let wrong = vec![gravity(5.0), edit("motion.time_step_s", -1.0)];

@@ -71,7 +71,7 @@ mod tests {
     }
 
     #[test]
-    fn pushes_have_the_seconds_of_their_steps_over_all_edits() {
+    fn push_times_in_seconds_allow_for_edits() {
         let endless = [(0.0, f64::INFINITY)];
         assert_eq!(marks("wobble-push-accumulating", &[]).pushes, endless);
         // Step 40 is at 4 s; from there on a step is 0.05 s long.

@@ -236,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn the_next_change_is_inside_the_step_only() {
+    fn the_next_change_lies_inside_the_step() {
         let grown = steps(2, 3, true);
         let seconds_of = Counting::Seconds { written_for_s: 0.1 };
         let times = [0.1, 0.2, 0.1 * 3.0, 0.4];

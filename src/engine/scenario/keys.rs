@@ -240,7 +240,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn labels_are_short_units_are_told_and_defaults_are_allowed() {
+    fn keys_have_short_labels_documented_units_and_valid_defaults() {
         for key in KEYS {
             let default = key.default.map(Value::from);
             let is_allowed = |value: Value| key.kind.check(&value).is_ok();
@@ -248,15 +248,15 @@ mod tests {
             let Some(lab) = key.lab else { continue };
             assert!(lab.label.len() <= 12, "{}", key.path);
             let about = key.about.replace("^2", "2").replace("degrees", "deg");
-            let is_told = about.contains(key.unit) || key.unit == "s/s";
-            assert!(is_told, "{}: {}", key.path, key.unit);
+            let is_documented = about.contains(key.unit) || key.unit == "s/s";
+            assert!(is_documented, "{}: {}", key.path, key.unit);
         }
         let default = |path: &str| Value::from(find(path).unwrap().0.default.unwrap());
         assert_eq!(default("motion.scheme"), scheme::SCHEMES[0].name.into());
     }
 
     #[test]
-    fn no_path_stands_twice_in_the_table() {
+    fn paths_in_the_table_are_unique() {
         let mut paths: Vec<_> = KEYS.iter().map(|key| key.path).collect();
         paths.sort_unstable();
         paths.dedup();

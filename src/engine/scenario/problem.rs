@@ -332,7 +332,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_nearest_name_is_offered() {
+    fn the_nearest_name_is_suggested() {
         let keys = ["radius_m", "height_m", "points"];
         let readouts = "t_s Lx_Js Lz_Js L_axle_Js predicted_lowest_tilt_deg".split(' ');
         let presets = ["method-1", "method-2-slow", "method-2"];

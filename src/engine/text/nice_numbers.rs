@@ -40,7 +40,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn there_is_1_2_and_5_in_every_decade() {
+    fn every_decade_has_1_2_and_5() {
         for (value, times, next) in [
             (0.1, 1, 0.2),
             (0.1, -1, 0.05),
@@ -61,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn the_number_below_is_the_nearest_of_the_ladder() {
+    fn at_or_below_finds_the_nearest_rung_below() {
         let values = [1.0, 0.01 * 100.0, 1.99, 4.9, 9.99, 0.3, 7e-11, 0.0];
         let below = [1.0, 1.0, 1.0, 2.0, 5.0, 0.2, 5e-11, 0.0];
         assert_eq!(values.map(at_or_below), below);

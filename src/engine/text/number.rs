@@ -222,7 +222,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn numbers_are_short_and_what_is_rounded_to_zero_has_no_minus() {
+    fn numbers_are_short_and_a_rounded_zero_has_no_minus() {
         let zeros = [-0.0, -1e-300, -4e-7].map(|n| [fixed(n, 6), signed(n, 6), decimal(n)]);
         assert_eq!(zeros, [["0.000000", "+0.000000", "0"]; 3]);
         for (text, expected) in [
@@ -258,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn an_uncertainty_has_two_digits_and_the_number_ends_with_them() {
+    fn an_uncertainty_has_two_digits_and_aligns_with_the_number() {
         let cases = [
             (0.886_033_098, 2.4e-5, "0.886033(24)"),
             (0.886_033_098, 0.000_099_6, "0.88603(10)"),
@@ -297,7 +297,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_number_is_long_or_no_number(bits in any::<u64>()) {
+        fn formatted_numbers_are_short_and_finite(bits in any::<u64>()) {
             let number = f64::from_bits(bits);
             for text in NUMBER_FORMATS.map(|way| way(number)) {
                 prop_assert!(text.len() <= 24, "{text}");
@@ -307,7 +307,7 @@ mod tests {
         }
 
         #[test]
-        fn the_shortest_reads_back(number in any::<f64>().prop_filter("finite", |n| n.is_finite())) {
+        fn shortest_round_trips(number in any::<f64>().prop_filter("finite", |n| n.is_finite())) {
             prop_assert_eq!(shortest(number).parse::<f64>().unwrap(), number);
         }
     }

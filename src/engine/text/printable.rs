@@ -90,7 +90,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nothing_printed_steers_or_hides() {
+    fn printable_text_has_no_steering_or_hidden_characters() {
         let nasty = "a\u{1b}]0;x\u{7}b\u{202e}c\rd\u{9b}e\u{200b}\u{2028}\u{feff}\u{e0041}\u{7f}\n";
         for safe in [
             printable(nasty).into_owned(),
@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn ordinary_text_stays_as_it_is() {
+    fn ordinary_text_is_unchanged() {
         for text in "Kreisel, 3 µm|速い独楽|Ω = I⁻¹L|e\u{301}|\u{2600}\u{fe0f}".split('|')
         {
             assert_eq!(printable(text), text);
@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_cut_has_dots() {
+    fn shortened_text_ends_with_dots() {
         assert_eq!(brief("abcdef", 3), "abc...");
         assert_eq!(brief("abc", 3), "abc");
         assert_eq!(brief("\n\nc", 2), "\\n\\n...");

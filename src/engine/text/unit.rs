@@ -309,7 +309,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_longest_end_is_the_unit() {
+    fn the_longest_ending_is_the_unit() {
         for (name, unit) in [
             ("wx_rad_per_s", "rad/s"),
             ("motion.gravity_m_per_s2", "m/s2"),
@@ -328,7 +328,7 @@ mod tests {
     }
 
     #[test]
-    fn a_column_states_its_unit_in_many_ways() {
+    fn units_of_columns_are_recognized_in_many_forms() {
         for (name, stem, unit) in [
             ("x (cm)", "x", "cm"),
             ("Gyr X (°/s)", "Gyr X", "deg/s"),
@@ -365,7 +365,7 @@ mod tests {
     }
 
     #[test]
-    fn a_name_in_another_unit_is_known() {
+    fn names_in_other_units_are_recognized() {
         let known = |name| {
             in_known_unit(name, |name| {
                 ["t_s", "x_m", "body.point.0.at_m.2"].contains(&name)
@@ -379,7 +379,7 @@ mod tests {
     }
 
     #[test]
-    fn one_unit_becomes_another_of_its_kind() {
+    fn units_of_one_kind_convert() {
         let times = |from: &str, to: &str| Unit::anybodys(from)?.times(Unit::from_name(to)?);
         assert_eq!(times("t_min", "t_s"), Some(60.0));
         assert_eq!(times("spin_Hz", "spin_rpm"), Some(60.0));
@@ -388,7 +388,7 @@ mod tests {
     }
 
     #[test]
-    fn a_word_stands_before_the_unit() {
+    fn a_word_is_inserted_before_the_unit() {
         for (name, with) in [
             ("tilt_deg", "tilt_uncertainty_deg"),
             ("Lx_Js", "Lx_uncertainty_Js"),

@@ -33,7 +33,7 @@ mod tests {
     }
 
     #[test]
-    fn japanese_keeps_its_end() {
+    fn japanese_text_wraps_without_loss() {
         let text = "速い独楽は倒れずにゆっくりと首を振り、その円は時間の刻みによらない。";
         let lines = wrapped(text, 20);
         assert!(lines.iter().all(|line| columns(line) <= 20), "{lines:?}");
