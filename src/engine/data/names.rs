@@ -213,7 +213,7 @@ fn kind_is_whole(columns: &[NamedColumn], is_series: bool) -> Option<Problem> {
             "has no measured column: besides keys of the scenario, a table of runs needs a readout (gyrolab readouts lists them)".to_owned()
         }
         _ => format!(
-            "is neither a time series, which needs the time {TIME_COLUMN}, nor a table of runs, which needs a key of the scenario, such as start.spin_rpm, or a number of a whole run"
+            "is neither a time series (with the time {TIME_COLUMN}) nor a table of runs (with a key of the scenario, such as start.spin_rpm, or a number of a whole run)"
         ),
     };
     Some(Problem::at("", rule))

@@ -41,7 +41,7 @@ pub const PRESETS: &[Preset] = presets![
     "falling": "e, then |L|: at 30 J s it falls less far, at 60 much less."
     "torque-free": "e, then gravity: at 9.8 m/s2 a torque acts, and the tilt no longer stays."
     "life-of-a-top": "e, then viscous under friction: ten times as much, and how soon does it fall?"
-    "first-dip": "e, then on swing under friction: at 0 the dips last, at 10 there is hardly one."
+    "first-dip": "e, then on swing under friction: at 0 the dips last, at 10 there is almost none."
     "lab-gyroscope": "e, then dry under friction: at 0.004 the wheel stops and the axle falls."
     "heavy-top": "e, then scheme; t draws the exact motion: which schemes keep to it at this dt?"
     "wing-nut": "e, then tilt: at 0.1 degrees it waits longer, and then turns over as fast."
