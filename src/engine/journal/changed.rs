@@ -162,7 +162,7 @@ fn changes(before: &Scenario, now: &Scenario) -> Vec<String> {
         .chain(others.into_iter().flatten())
         .collect();
     if changes.is_empty() && new_file.edit != old_file.edit {
-        changes.push("edits on the way".to_owned());
+        changes.push("edits during the run".to_owned());
     }
     changes
 }
