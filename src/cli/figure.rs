@@ -16,6 +16,7 @@ use crate::plot::chart::MOST_CURVES;
 use crate::plot::{PT_PER_MM, PageFormat};
 use crate::report::figure::kind::{FIGURE_KIND_NAMES, FigureKind};
 use crate::report::figure::of_runs::FigureRun;
+use crate::report::figure::of_table::TABLE_KIND_NAMES;
 use crate::report::figure::{FigureSource, FigureSpec, WIDTHS_MM};
 use crate::studies::sweep::axis;
 use crate::studies::table::TableSource;
@@ -42,6 +43,18 @@ pub(super) struct FigureArgs {
 
     #[arg(long, value_name = "KIND", help = kind_help(), long_help = long_kind_help())]
     kind: Option<String>,
+
+    /// Draw a table over this column: a key that varied, or a readout
+    #[arg(long, value_name = "COLUMN")]
+    x: Option<String>,
+
+    /// Draw these columns of a table, as --kind COLUMN,... does; with --kind map as colors
+    #[arg(long, value_name = "COLUMN,...", value_delimiter = ',')]
+    y: Vec<String>,
+
+    /// Show this range of the axis below of a table, such as 0..1
+    #[arg(long, value_name = "A..B", allow_hyphen_values = true, value_parser = range)]
+    x_range: Option<(f64, f64)>,
 
     /// Begin at this time of the run, s
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = time)]
@@ -106,8 +119,8 @@ struct LabelArgs {
     #[arg(long, value_name = "TEXT", allow_hyphen_values = true)]
     y_label: Vec<String>,
 
-    /// Make these axes logarithmic
-    #[arg(long, value_name = "AXES", value_parser = ["x", "y", "xy"])]
+    /// Make these axes logarithmic: x, y, or z for the colors of a map, or several of them
+    #[arg(long, value_name = "AXES", value_parser = axes)]
     log: Option<String>,
 
     /// Show this range of the axis at the left, such as 0..1
@@ -134,7 +147,10 @@ impl LabelArgs {
 
 fn kind_help() -> String {
     let kinds = FIGURE_KIND_NAMES.join(", ");
-    format!("What to draw: {kinds}, or columns with commas between them")
+    let of_tables = TABLE_KIND_NAMES.join(", ");
+    format!(
+        "What to draw: {kinds}, or columns with commas between them; of a table {of_tables}, or columns"
+    )
 }
 
 fn long_kind_help() -> String {
@@ -143,6 +159,15 @@ fn long_kind_help() -> String {
          [default: traces, or with --measured what was measured].",
         kind_help()
     )
+}
+
+/// Axes, each at most once: x, xy.
+fn axes(text: &str) -> Result<String, String> {
+    let is_axis = |axis: char| "xyz".contains(axis) && text.matches(axis).count() == 1;
+    if text.is_empty() || !text.chars().all(is_axis) {
+        return Err("must be x, y or z, or several of them, such as xy".to_owned());
+    }
+    Ok(text.to_owned())
 }
 
 /// Two numbers, the lower one first: 0..1.
@@ -227,8 +252,11 @@ fn read_source(args: &FigureArgs) -> anyhow::Result<FigureSource> {
     }
     if source.table.is_some() {
         refuse_for_table(args)?;
-    } else if let Some(kind) = &args.kind {
-        FigureKind::named(kind).unwrap_or_else(|refusal| no_kind(args, &refusal));
+    } else {
+        refuse_for_runs(args)?;
+        if let Some(kind) = &args.kind {
+            FigureKind::named(kind).unwrap_or_else(|refusal| no_kind(args, &refusal));
+        }
     }
     if let Some(name) = &args.measured {
         let data = measured(name, &args.columns)?;
@@ -324,10 +352,11 @@ fn combinations(vary: &[String]) -> anyhow::Result<Vec<Vec<String>>> {
         let axis = axis::axis(argument)?;
         let mut longer = Vec::new();
         for before in &all {
-            for value in axis.values.iter().take(MOST_CURVES + 1) {
-                let mut values: Vec<String> = before.clone();
-                values.push(format!("{}={value}", axis.key));
-                longer.push(values);
+            for values in axis.points.iter().take(MOST_CURVES + 1) {
+                let mut all_values: Vec<String> = before.clone();
+                let pairs = axis.keys.iter().zip(values);
+                all_values.extend(pairs.map(|(key, value)| format!("{key}={value}")));
+                longer.push(all_values);
             }
         }
         longer.truncate(MOST_CURVES + 1); // more are refused
@@ -339,6 +368,11 @@ fn combinations(vary: &[String]) -> anyhow::Result<Vec<Vec<String>>> {
 /// Writes what the command line asks for over `spec`.
 fn ask(args: &FigureArgs, spec: &mut FigureSpec) {
     spec.kind = args.kind.clone().or(spec.kind.take());
+    spec.x = args.x.clone().or(spec.x.take());
+    if !args.y.is_empty() {
+        spec.y.clone_from(&args.y);
+    }
+    spec.x_range = args.x_range.or(spec.x_range);
     spec.from_s = args.from.unwrap_or(spec.from_s);
     spec.to_s = args.to.or(spec.to_s);
     spec.exact |= args.exact;
@@ -357,6 +391,7 @@ fn ask(args: &FigureArgs, spec: &mut FigureSpec) {
     }
     if let Some(log) = &given.log {
         labels.is_log = ["x", "y"].map(|axis| log.contains(axis));
+        labels.is_log_color = log.contains('z');
     }
     labels.y_range = given.y_range.or(labels.y_range);
 }
@@ -376,7 +411,21 @@ fn refuse_for_table(args: &FigureArgs) -> anyhow::Result<()> {
         || args.length.is_some();
     ensure!(
         !is_changed,
-        "{}: the numbers of a table are drawn as they are: of a figure's options, --kind, --width, --force, --title, --text and those of its axes are for it",
+        "{}: the numbers of a table are drawn as they are: of a figure's options, --kind, --x, --y, --x-range, --width, --force, --title, --text and those of its axes are for it",
+        args.runs[0]
+    );
+    Ok(())
+}
+
+fn refuse_for_runs(args: &FigureArgs) -> anyhow::Result<()> {
+    ensure!(
+        args.x.is_none() && args.y.is_empty(),
+        "{}: --x and --y are for tables, such as the CSV of a sweep: --kind COLUMN,... draws columns of a run over time",
+        args.runs[0]
+    );
+    ensure!(
+        args.x_range.is_none(),
+        "{}: --x-range is for tables: --from and --to choose a time of a run",
         args.runs[0]
     );
     Ok(())

@@ -169,7 +169,7 @@ fn described_sweep(sweep: &Sweep) -> String {
     let axes: Vec<_> = sweep
         .axes
         .iter()
-        .map(|axis| format!("{} ({})", axis.key, axis.values.len()))
+        .map(|axis| format!("{} ({})", axis.keys.join(" + "), axis.points.len()))
         .collect();
     let (rows, measured) = (sweep.rows(), sweep.measure.len());
     format!(

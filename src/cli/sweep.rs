@@ -12,7 +12,7 @@ use crate::engine::text::printable::{PrintablePath, printable_lines};
 use crate::studies::sweep::in_order::in_order;
 use crate::studies::sweep::join::join;
 use crate::studies::sweep::part::{Opened, PartialSweep, SweepFileError};
-use crate::studies::sweep::{self, EmptyRows, SWEEPS, Shard, Sweep, SweepFile, axis};
+use crate::studies::sweep::{self, RowTally, SWEEPS, Shard, Sweep, SweepFile, axis};
 use anyhow::bail;
 use clap::Args;
 use clap::error::ErrorKind;
@@ -35,8 +35,10 @@ pub(super) struct SweepArgs {
 
     /// Vary a key over N values from A to B, or over these values; may be repeated
     ///
-    /// A and B are among the N values. The last key that varies runs fastest.
-    #[arg(long, value_name = "KEY=A..B:N|V1,V2", requires = "scenario")]
+    /// A and B are among the N values, which have equal distances, or with A..B:N:log equal ratios. Keys with + between them
+    /// vary together: KEY+KEY=V1,V2 gives each of them the same value, KEY+KEY=[A1,B1],[A2,B2] each its own. The last key
+    /// that varies runs fastest.
+    #[arg(long, value_name = "KEY=A..B:N[:log]|V1,V2", requires = "scenario")]
     pub(super) vary: Vec<String>,
 
     /// The readouts to write, of those that gyrolab readouts lists [default: those of the sweep file, or every number]
@@ -69,8 +71,8 @@ pub(super) fn sweep(args: &SweepArgs) -> anyhow::Result<ExitCode> {
     match (&args.scenario, &args.output) {
         (Some(name), Some(output)) => run(&sweep_of(name, args)?, output, args.force),
         (None, Some(output)) if !args.join.is_empty() => {
-            let (sweep, empty) = join(&args.join, output, args.force)?;
-            tell_of_empty(&empty, &sweep, &progress::interruption()?);
+            let (sweep, tally) = join(&args.join, output, args.force)?;
+            tell_of(&tally, &sweep, &progress::interruption()?);
             tell_of_rows(sweep.rows(), output);
             Ok(ExitCode::SUCCESS)
         }
@@ -139,6 +141,7 @@ fn sweep_of(name: &str, args: &SweepArgs) -> Result<Sweep, Problems> {
     }
     if !args.measure.is_empty() {
         file.measure = Some(args.measure.clone());
+        file.gyrolab = None; // it is another sweep than that of a header
     }
     if let Some(shard) = args.shard {
         file.shard = Some(shard.to_string());
@@ -160,12 +163,10 @@ fn place(problem: &mut Problem, keys: &[String], args: &SweepArgs) {
     let key = number
         .and_then(|number| keys.get(number))
         .unwrap_or(&problem.key);
-    if let Some(argument) = args
-        .vary
-        .iter()
-        .rev()
-        .find(|argument: &&String| argument.split('=').next().map(str::trim) == Some(key))
-    {
+    if let Some(argument) = args.vary.iter().rev().find(|argument: &&String| {
+        let keys = argument.split('=').next().unwrap_or_default();
+        keys.trim() == key || axis::split_keys(keys).any(|own| own == key)
+    }) {
         return axis::place(problem, argument);
     }
     let option = match problem.key.as_str() {
@@ -183,8 +184,8 @@ fn place(problem: &mut Problem, keys: &[String], args: &SweepArgs) {
 fn run(sweep: &Sweep, output: &Path, may_replace: bool) -> anyhow::Result<ExitCode> {
     let interruption = progress::interruption()?;
     let mut part = match PartialSweep::open(output, sweep, may_replace)? {
-        Opened::Whole(empty) => {
-            tell_of_empty(&empty, sweep, &interruption);
+        Opened::Whole(tally) => {
+            tell_of(&tally, sweep, &interruption);
             let rows = counted(sweep.rows(), "row");
             tell(format_args!(
                 "gyrolab: {} is whole, {rows} of this very sweep",
@@ -197,7 +198,7 @@ fn run(sweep: &Sweep, output: &Path, may_replace: bool) -> anyhow::Result<ExitCo
     tell_of_part(sweep, &part);
     let added = add_rows(sweep, &mut part, &interruption);
     let (rows, all) = (part.rows, sweep.rows());
-    tell_of_empty(&part.empty, sweep, &interruption);
+    tell_of(&part.tally, sweep, &interruption);
     if added.is_err() || rows < all {
         tell(format_args!(
             "gyrolab: {rows} of {} are in {}: the same command goes on behind them",
@@ -218,7 +219,7 @@ fn tell_of_part(sweep: &Sweep, part: &PartialSweep) {
         return;
     }
     let (rows, all, path) = (part.rows, sweep.rows(), PrintablePath(&part.path));
-    let empty = match part.empty.count {
+    let empty = match part.tally.empty.count {
         0 => String::new(),
         empty => format!(", {empty} of them without readouts"),
     };
@@ -227,13 +228,16 @@ fn tell_of_part(sweep: &Sweep, part: &PartialSweep) {
     ));
 }
 
-/// Says how many rows hold no readouts, and of the first few which points they are, and why.
-fn tell_of_empty(empty: &EmptyRows, sweep: &Sweep, interruption: &Interruption) {
-    let count = empty.count;
-    if count == 0 {
+/// Says how many runs are reliable, how many rows hold no readouts, and of the first few of these which points they are, and why.
+fn tell_of(tally: &RowTally, sweep: &Sweep, interruption: &Interruption) {
+    if let Some(words) = tally.reliability.in_words() {
+        tell(format_args!("gyrolab: {words}"));
+    }
+    let empty = &tally.empty;
+    if empty.count == 0 {
         return;
     }
-    let all = sweep.rows();
+    let (count, all) = (empty.count, sweep.rows());
     tell(format_args!(
         "gyrolab: rows without readouts: {count} of {all}"
     ));

@@ -205,7 +205,11 @@ impl PageScene {
     }
 
     pub fn mark(&mut self, mark: PointMark, middle: Point, color: Color) {
-        let r = MARK_PT;
+        self.mark_of_size(mark, MARK_PT, middle, color);
+    }
+
+    /// Draws a mark whose dot would have the radius `r`, pt.
+    pub fn mark_of_size(&mut self, mark: PointMark, r: f64, middle: Point, color: Color) {
         let (x, y) = (1.2 * r, 0.9 * r);
         let (path, is_filled) = match mark {
             PointMark::Cross => {
@@ -258,7 +262,7 @@ impl PageScene {
             return self.fill(path, color);
         }
         self.fill(path.clone(), WHITE);
-        self.stroke(path, pen(0.6, color), None);
+        self.stroke(path, pen(0.6 * r / MARK_PT, color), None);
     }
 
     /// Draws the two lines of a mark about `middle`.

@@ -6,6 +6,8 @@ use crate::engine::scenario::head::Head;
 use crate::engine::scenario::{Problem, Problems};
 use crate::engine::text::io_errors::unread;
 use crate::engine::text::number::NOT_AVAILABLE;
+use crate::studies::sweep::SweepFigure;
+use crate::studies::sweep::axis::split_keys;
 use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::io::BufReader;
@@ -16,18 +18,38 @@ const MOST_TABLE_VALUES: usize = 4_000_000;
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum TableSubject {
-    Comparison,
+    Comparison(ComparisonSource),
     Sweep(SweepTable),
     /// Measured values and the values of the fitted model.
     Fit(FitTable),
 }
 
+/// The run whose schemes were compared.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ComparisonSource {
+    /// Its run file; empty if the table has none.
+    pub run_file: String,
+}
+
 #[derive(Clone, Debug, PartialEq)]
 pub struct SweepTable {
-    /// The varied keys, slowest first.
-    pub varied: Vec<String>,
+    /// The varied keys, slowest first; keys that vary together form one axis.
+    pub axes: Vec<Vec<String>>,
     /// The scenario that the varied keys belong to.
     pub scenario: toml::Table,
+    /// How the table is drawn by default.
+    pub figure: SweepFigure,
+}
+
+impl SweepTable {
+    /// Returns the varied keys in the order of their columns.
+    pub fn varied(&self) -> impl DoubleEndedIterator<Item = &String> {
+        self.axes.iter().flatten()
+    }
+
+    pub fn has_varied(&self, name: &str) -> bool {
+        self.varied().any(|key| key == name)
+    }
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -153,7 +175,8 @@ fn subject(head: &Head) -> Option<(TableSubject, String)> {
     let of_comparison = ["scheme", "time_step_s", "error_m"];
     if of_comparison.iter().all(|name| names.contains(name)) {
         let title = parsed.as_ref().map(title_in).unwrap_or_default();
-        return Some((TableSubject::Comparison, title));
+        let source = ComparisonSource { run_file: header };
+        return Some((TableSubject::Comparison(source), title));
     }
     let table = parsed?;
     if let Some(settings) = settings_of_fit(&names) {
@@ -166,14 +189,21 @@ fn subject(head: &Head) -> Option<(TableSubject, String)> {
     }
     let vary = table.get("vary")?.as_array()?;
     let keys = vary.iter().filter_map(|vary| vary.get("key")?.as_str());
-    let varied: Vec<String> = keys.map(str::to_owned).collect();
+    let axes = keys.map(|key| split_keys(key).map(str::to_owned).collect());
+    let figure = table.get("figure").cloned();
+    let figure = figure.and_then(|figure| figure.try_into().ok());
     let of_scenario = table.get("scenario").and_then(toml::Value::as_table);
     let title = match title_in(&table) {
         own if own.is_empty() => of_scenario.map(title_in).unwrap_or_default(),
         own => own,
     };
     let scenario = of_scenario.cloned().unwrap_or_default();
-    Some((TableSubject::Sweep(SweepTable { varied, scenario }), title))
+    let sweep = SweepTable {
+        axes: axes.collect(),
+        scenario,
+        figure: figure.unwrap_or_default(),
+    };
+    Some((TableSubject::Sweep(sweep), title))
 }
 
 /// Returns the title in `table`, or an empty text.

@@ -1,8 +1,9 @@
 //! A chart drawn on its page.
 
 use super::curve::Squares;
-use super::layout::{self, ChartLayout, PAGE_EDGE, PlacedPanel, TICK_LABEL_GAP};
+use super::layout::{self, ChartLayout, PAGE_EDGE, PlacedPanel, TICK_LENGTH};
 use super::legend::{Legend, longest_name};
+use super::map::ColorMap;
 use super::ticks::{Ticks, with_minus};
 use super::{Chart, ChartSeries, Panel};
 use crate::engine::text::number::significant;
@@ -13,11 +14,13 @@ use std::collections::HashSet;
 
 /// The most marks in a panel.
 const MOST_MARKS: f64 = 10_000.0;
-const FRAME_PT: f64 = 0.5;
-/// Length of a tick with a label and of one without, pt.
-const TICK_LENGTH: f64 = 3.0;
+pub const FRAME_PT: f64 = 0.5;
+/// Length of a tick without a label, pt.
 const MINOR_TICK: f64 = 1.7;
 const BAR_END: f64 = 1.7;
+/// Marks that are nearer to each other on the mean are smaller, pt, and the smallest of them, of the size of others.
+const MARK_SPACING_PT: f64 = 2.5;
+const LEAST_MARK_SHARE: f64 = 0.5;
 /// An error bar from end to end that the lowest of the marks covers, pt.
 const COVERED_PT: f64 = 2.8;
 
@@ -109,6 +112,7 @@ impl Chart {
     /// The chart in its places; `bare` leaves no room for a legend above the panels.
     fn placed(&self, bare: ChartLayout) -> PageScene {
         let remarks = self.remark(&bare).into_iter().chain(self.magnified());
+        let remarks = remarks.chain(self.remark_of_gaps());
         let legend = Legend::from_chart(self, remarks);
         let corner = legend.free_corner(self, &bare);
         let layout = match corner {
@@ -151,6 +155,13 @@ impl Chart {
         let remark = format!("right: {from} to {to}{unit}, magnified");
         let room = self.width_pt - 2.0 * PAGE_EDGE;
         Some(letters::shortened(&remark, LABEL_PT, room))
+    }
+
+    /// What the legend says of the cells of a map that have no color.
+    fn remark_of_gaps(&self) -> Option<String> {
+        let mut maps = self.panels.iter().filter_map(|panel| panel.map.as_ref());
+        maps.any(ColorMap::has_gaps)
+            .then(|| "crossed: no value".to_owned())
     }
 
     /// Whether something measured has marks without a known error.
@@ -204,6 +215,7 @@ impl PlacedPanel {
     /// Leaves out those points of `series`, which are marks, that stand where another one does: marks that are nearer to each
     /// other than half of their width cannot be told apart.
     fn thin_marks(&self, series: &mut ChartSeries) {
+        self.shrink_marks(series);
         let area = self.frame.width() * self.frame.height();
         let cell_pt = MARK_PT.max((area / MOST_MARKS).sqrt());
         if series.style.mark.is_none() || (series.points.len() as f64) <= MOST_MARKS {
@@ -224,6 +236,14 @@ impl PlacedPanel {
             errors.copied().collect()
         });
         series.points = kept.iter().map(|&index| series.points[index]).collect();
+    }
+
+    /// Makes the marks of `series` smaller where many stand beside each other.
+    fn shrink_marks(&self, series: &mut ChartSeries) {
+        let places = series.points.iter().map(|point| self.place(point));
+        let count = places.filter(|place| self.frame.holds(*place)).count();
+        let apart_pt = self.frame.width() / count.max(1) as f64;
+        series.style.mark_share = (apart_pt / MARK_SPACING_PT).clamp(LEAST_MARK_SHARE, 1.0);
     }
 
     /// The ends of the error bars along an axis of those points of `series` that are in the panel, cut off at its frame.
@@ -271,6 +291,9 @@ impl Panel {
             .series
             .iter()
             .partition(|series| series.style.is_behind);
+        if let Some(map) = &self.map {
+            map.draw(placed, scene);
+        }
         for series in self.series.iter().rev() {
             placed.fill_band(series, scene);
         }
@@ -285,7 +308,13 @@ impl Panel {
         for (place, series) in self.series.iter().enumerate() {
             placed.draw_sparse_marks(series, place, scene);
         }
-        draw_frame(placed, scene);
+        match &placed.bar {
+            Some(bar) => {
+                draw_frame_outwards(placed, scene);
+                bar.draw(scene);
+            }
+            None => draw_frame(placed, scene),
+        }
         for series in &before {
             draw_points(series, placed, scene);
         }
@@ -299,7 +328,7 @@ impl Panel {
         let label = ink::height(LABEL_PT);
         for tick in &placed.ticks.major {
             let place = at(
-                frame.left - TICK_LABEL_GAP,
+                frame.left - layout.tick_gap,
                 placed.y.place(tick.at) + 0.5 * label,
             );
             scene.write(&tick.label, LABEL_PT, place, 1.0);
@@ -325,6 +354,25 @@ fn draw_frame(placed: &PlacedPanel, scene: &mut PageScene) {
     }
 }
 
+/// Draws the frame and its ticks, below and at the left, outwards: on the colors of a map they would not be seen.
+fn draw_frame_outwards(placed: &PlacedPanel, scene: &mut PageScene) {
+    let frame = &placed.frame;
+    scene.stroke(frame.outline(), pen(FRAME_PT, BLACK), None);
+    for (value, length) in lengths(&placed.below) {
+        let x = placed.x.place(value);
+        let ends = [at(x, frame.bottom), at(x, frame.bottom + length)];
+        scene.line(ends, FRAME_PT, BLACK);
+    }
+    for (value, length) in lengths(&placed.ticks) {
+        let y = placed.y.place(value);
+        scene.line(
+            [at(frame.left, y), at(frame.left - length, y)],
+            FRAME_PT,
+            BLACK,
+        );
+    }
+}
+
 /// The value of each tick and its length on paper, pt.
 fn lengths(ticks: &Ticks) -> impl Iterator<Item = (f64, f64)> {
     let major = ticks.major.iter().map(|tick| (tick.at, TICK_LENGTH));
@@ -347,6 +395,6 @@ fn draw_points(series: &ChartSeries, placed: &PlacedPanel, scene: &mut PageScene
     }
     let places = series.points.iter().map(|point| placed.place(point));
     for place in places.filter(|place| placed.frame.holds(*place)) {
-        scene.mark(mark, place, color);
+        scene.mark_of_size(mark, series.style.mark_share * MARK_PT, place, color);
     }
 }

@@ -1,6 +1,7 @@
 //! Where the parts of a chart stand on the page. Every label is measured, so that none is cut and none overlaps another.
 
 use super::axis::{AxisScale, BESIDE, widest};
+use super::map::PlacedBar;
 use super::ticks::{Tick, Ticks};
 use super::{Chart, Panel};
 use crate::plot::COLUMN_PT;
@@ -11,7 +12,7 @@ pub const PAGE_EDGE: f64 = 2.0;
 /// Between an axis and the labels of its ticks, pt.
 pub const TICK_LABEL_GAP: f64 = 3.0;
 /// Between the labels of an axis and its title, at the left and below, pt.
-const AXIS_TITLE_GAP: f64 = 6.0;
+pub const AXIS_TITLE_GAP: f64 = 6.0;
 const TITLE_BELOW: f64 = 4.5;
 /// Between two panels, pt, beside the height of a label: the labels at their ends must not touch.
 const PANEL_GAP: f64 = 2.5;
@@ -20,6 +21,8 @@ const LEAST_TITLE_PT: f64 = 5.5;
 /// On a page as wide as a column: height of one panel alone, of each of two, of each of more, pt.
 const HEIGHTS: [f64; 3] = [140.0, 88.0, 66.0];
 
+/// Length of a tick with a label, pt.
+pub const TICK_LENGTH: f64 = 3.0;
 /// Many decades need a higher panel.
 const LOG: f64 = 1.25;
 
@@ -33,6 +36,8 @@ pub struct PlacedPanel {
     pub below: Ticks,
     /// The title of the axis y and the size of its letters, pt.
     pub title: (String, f64),
+    /// The bar that explains the colors of its map, if it has one.
+    pub bar: Option<PlacedBar>,
 }
 
 /// A chart with everything but its legend in its place. The legend is put in afterwards, and where it stands above the panels
@@ -45,17 +50,33 @@ pub struct ChartLayout {
     /// Where the titles of the axes at the left have their baseline, pt.
     pub titles_at: f64,
     pub height_pt: f64,
+    /// Between the axes and the labels of their ticks, pt.
+    pub tick_gap: f64,
+}
+
+/// Returns the gap between the axes of `chart` and the labels of their ticks, which point outwards beside a map, pt.
+fn tick_gap(chart: &Chart) -> f64 {
+    let has_map = chart.panels.iter().any(|panel| panel.map.is_some());
+    TICK_LABEL_GAP + if has_map { TICK_LENGTH } else { 0.0 }
 }
 
 impl PlacedPanel {
-    fn new(chart: &Chart, x: AxisScale, y: AxisScale, ticks: Ticks, title: (String, f64)) -> Self {
+    fn new(
+        chart: &Chart,
+        panel: &Panel,
+        [x, y]: [AxisScale; 2],
+        ticks: Ticks,
+        title: (String, f64),
+    ) -> Self {
+        let frame = PageRectangle {
+            left: x.places.0,
+            top: y.places.1,
+            right: x.places.1,
+            bottom: y.places.0,
+        };
         Self {
-            frame: PageRectangle {
-                left: x.places.0,
-                top: y.places.1,
-                right: x.places.1,
-                bottom: y.places.0,
-            },
+            bar: panel.map.as_ref().map(|map| map.bar(&frame)),
+            frame,
             below: x.ticks_below(&chart.x),
             x,
             y,
@@ -70,6 +91,7 @@ impl ChartLayout {
     pub fn new(chart: &Chart, above: f64) -> Self {
         let label = ink::height(LABEL_PT);
         let y_ranges: Vec<_> = chart.panels.iter().map(y_range).collect();
+        let tick_gap = tick_gap(chart);
         let (left, right, height) = sides(chart, x_range(chart), &y_ranges);
         let top = above + PAGE_EDGE + 0.5 * label;
         let [x, beside] = columns(chart, left, right);
@@ -78,22 +100,18 @@ impl ChartLayout {
         let magnified = chart.magnified.iter();
         Self {
             titles_at: PAGE_EDGE + ink::height(TITLE_PT) + 1.0,
-            height_pt: bottom
-                + TICK_LABEL_GAP
-                + 1.5 * label
-                + TITLE_BELOW
-                + title_height()
-                + PAGE_EDGE,
+            height_pt: bottom + tick_gap + 1.5 * label + TITLE_BELOW + title_height() + PAGE_EDGE,
             magnified: magnified
                 .flat_map(|beside_it| placed(beside_it, beside, &y_ranges, top, height))
                 .collect(),
             panels,
+            tick_gap,
         }
     }
 
     pub fn labels_at(&self) -> f64 {
         let bottom = self.panels.last().map_or(0.0, |panel| panel.frame.bottom);
-        bottom + TICK_LABEL_GAP + 1.5 + ink::height(LABEL_PT)
+        bottom + self.tick_gap + 1.5 + ink::height(LABEL_PT)
     }
 
     pub fn title_at(&self) -> f64 {
@@ -120,14 +138,17 @@ fn placed(
             let own_top = top + index as f64 * (height + label + PANEL_GAP);
             let y = AxisScale::new(&panel.y, *range, (own_top + height, own_top));
             let title = fitted(panel.y.title(&ticks), height + 0.7 * (label + PANEL_GAP));
-            PlacedPanel::new(part, x, y, ticks, title)
+            PlacedPanel::new(part, panel, [x, y], ticks, title)
         })
         .collect()
 }
 
 fn x_range(chart: &Chart) -> (f64, f64) {
+    let maps = chart.panels.iter().filter_map(|panel| panel.map.as_ref());
+    let mut of_maps = maps.filter_map(|map| map.range(0, chart.x.is_log));
     let all = chart.panels.iter().flat_map(|panel| &panel.series);
-    chart.x.range_of(all.flat_map(|series| series.reach(0)))
+    let of_map = of_maps.next().filter(|_| chart.x.range.is_none());
+    of_map.unwrap_or_else(|| chart.x.range_of(all.flat_map(|series| series.reach(0))))
 }
 
 /// The axes x of `chart` and of what it magnifies, from `left` to `right`: so far apart that their labels do not touch.
@@ -171,7 +192,10 @@ fn sides(chart: &Chart, x_range: (f64, f64), y_ranges: &[(f64, f64)]) -> (f64, f
     for _ in 0..3 {
         let ticks = ticks_of(chart, y_ranges, height);
         let widest = ticks.iter().map(widest).fold(0.0, f64::max);
-        left = PAGE_EDGE + title_height() + AXIS_TITLE_GAP + widest + TICK_LABEL_GAP;
+        left = PAGE_EDGE + title_height() + AXIS_TITLE_GAP + widest + tick_gap(chart);
+        let maps = chart.panels.iter().filter_map(|panel| panel.map.as_ref());
+        let bar = maps.map(|map| map.bar_room(height)).fold(0.0, f64::max);
+        right = right.min(chart.width_pt - PAGE_EDGE - bar);
         right = right.min(right_edge(chart, x_range, left, right));
         if let Some(magnified) = &chart.magnified {
             let half = 0.5 * (left + right);
@@ -187,7 +211,7 @@ fn sides(chart: &Chart, x_range: (f64, f64), y_ranges: &[(f64, f64)]) -> (f64, f
 }
 
 /// Height of a title with what hangs below its baseline, pt.
-fn title_height() -> f64 {
+pub fn title_height() -> f64 {
     1.35 * ink::height(TITLE_PT)
 }
 
@@ -214,8 +238,10 @@ fn panel_height(chart: &Chart) -> f64 {
 }
 
 fn y_range(panel: &Panel) -> (f64, f64) {
+    let map = panel.map.as_ref().filter(|_| panel.y.range.is_none());
+    let of_map = map.and_then(|map| map.range(1, panel.y.is_log));
     let values = panel.series.iter().flat_map(|series| series.reach(1));
-    panel.y.range_of(values)
+    of_map.unwrap_or_else(|| panel.y.range_of(values))
 }
 
 fn ticks_of(chart: &Chart, ranges: &[(f64, f64)], height: f64) -> Vec<Ticks> {

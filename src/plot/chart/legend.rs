@@ -100,6 +100,9 @@ impl Legend {
         else {
             return None;
         };
+        if panel.map.is_some() {
+            return None;
+        }
         let widest = self.entries.iter().map(|entry| entry.width_pt);
         let width = widest.fold(0.0, f64::max);
         let height = self.entries.len() as f64 * LEGEND_ROW_PT - 1.0;

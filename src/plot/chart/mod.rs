@@ -1,18 +1,20 @@
 //! What a figure with axes shows, before anything of it has a place: panels one above the other over one axis.
 //!
 //! [`axis`] and [`ticks`] say what stands at an axis, [`layout`] gives the parts their places, and [`draw`] puts them on a
-//! page: [`curve`] the curves, [`legend`] their names.
+//! page: [`curve`] the curves, [`map`] colors, [`legend`] the names of the curves.
 
 pub mod axis;
 pub mod curve;
 pub mod draw;
 pub mod layout;
 pub mod legend;
+pub mod map;
 pub mod ticks;
 
 use crate::plot::extent;
 use crate::plot::ink::{BLACK, PointMark, grey};
 use crate::plot::scene::{Color, StrokeStyle};
+use map::ColorMap;
 use ticks::{Ticks, power_of_ten};
 
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -49,11 +51,17 @@ pub struct ChartAxis {
 pub struct Panel {
     pub y: ChartAxis,
     pub series: Vec<ChartSeries>,
+    /// A quantity over both axes, as colors behind the series.
+    pub map: Option<ColorMap>,
 }
 
 impl Panel {
     pub fn new(y: ChartAxis, series: Vec<ChartSeries>) -> Self {
-        Self { y, series }
+        Self {
+            y,
+            series,
+            map: None,
+        }
     }
 }
 
@@ -96,6 +104,15 @@ impl ChartSeries {
                 .map(|time| [time, everything[0], everything[1]])
                 .into(),
             ..Self::new("push", Vec::new(), SeriesStyle::push())
+        }
+    }
+
+    /// The values from 0 to `limit` of the axis y, all along the axis x.
+    pub fn below(name: &str, limit: f64) -> Self {
+        let ends = [f64::MIN_POSITIVE, f64::INFINITY];
+        Self {
+            band: ends.map(|x| [x, f64::MIN_POSITIVE, limit]).into(),
+            ..Self::new(name, Vec::new(), SeriesStyle::push())
         }
     }
 
@@ -145,6 +162,8 @@ pub struct SeriesStyle {
     /// Lengths of strokes and gaps, pt; empty for a solid line.
     pub dash_pt: &'static [f64],
     pub mark: Option<PointMark>,
+    /// The size of its marks, of the usual one.
+    pub mark_share: f64,
     /// Whether it is drawn behind the others, and behind those of its kind that come before it.
     pub is_behind: bool,
     /// Whether its line is a dot at each of its points, which are not joined.
@@ -153,6 +172,8 @@ pub struct SeriesStyle {
     pub is_band: bool,
     /// The mark at a few places along its line, which tells it from others without color.
     pub sparse_mark: Option<PointMark>,
+    /// Whether its line has a white edge, so that it is seen on the marks behind it.
+    pub has_halo: bool,
 }
 
 impl Default for SeriesStyle {
@@ -162,10 +183,12 @@ impl Default for SeriesStyle {
             width_pt: 0.7,
             dash_pt: &[],
             mark: None,
+            mark_share: 1.0,
             is_behind: false,
             is_dots: false,
             is_band: false,
             sparse_mark: None,
+            has_halo: false,
         }
     }
 }

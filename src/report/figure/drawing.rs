@@ -2,7 +2,7 @@
 
 use super::job::{DrawnFigure, KnownNumbers};
 use super::of_runs;
-use super::of_table;
+use super::of_table::{self, TableView};
 use super::source::FigureSource;
 use super::spec::FigureSpec;
 use crate::studies::table::TableSource;
@@ -35,13 +35,7 @@ impl FigureSource {
 
 /// The figure of `table` that is asked for.
 fn of_table(table: &TableSource, spec: &FigureSpec) -> Result<DrawnFigure, String> {
-    let columns: Vec<_> = spec
-        .kind
-        .iter()
-        .flat_map(|kind| kind.split(','))
-        .map(str::trim)
-        .collect();
-    let mut chart = of_table::chart(table, &columns, spec.page_width_pt())?;
+    let mut chart = of_table::chart(table, &TableView::new(table, spec))?;
     let without_point = of_table::warning(table, &chart);
     let hidden = spec.labels.apply(&mut chart)?;
     let mut figure = DrawnFigure::without_remarks(chart.scene());

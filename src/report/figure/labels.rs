@@ -18,6 +18,9 @@ pub struct FigureLabels {
     pub y: Vec<String>,
     /// Whether the axes x and y are logarithmic.
     pub is_log: [bool; 2],
+    /// Whether the colors of a map are logarithmic.
+    #[serde(default)]
+    pub is_log_color: bool,
     pub y_range: Option<(f64, f64)>,
 }
 

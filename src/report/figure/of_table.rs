@@ -1,42 +1,58 @@
-//! Figures of tables: error over time step with its slope; readouts over what was varied, measured beside predicted; what
-//! was measured on the model that was fitted, and what is left of it.
+//! Figures of tables: error over time step with its slope, or over its cost; readouts over what was varied, measured beside
+//! predicted, or as colors on a map; what was measured on the model that was fitted, and what is left of it.
 
 mod comparison;
 mod fit;
 mod sweep;
+mod view;
 
 use crate::engine::scenario::problem;
 use crate::plot::chart::Chart;
 use crate::plot::ink::{self, LABEL_PT};
 use crate::plot::letters;
 use crate::studies::table::{TableSource, TableSubject};
+pub use view::{TABLE_KIND_NAMES, TableKind, TableView};
 
 /// A list of rows, by their places.
 type RowIndices = Vec<usize>;
 
-/// The chart of `table` on a page of that width, pt; `columns` are the ones that are asked for, all that make sense where
-/// there are none.
-pub fn chart(table: &TableSource, columns: &[&str], width_pt: f64) -> Result<Chart, String> {
-    for column in columns {
-        if !table.names().iter().any(|name| name == column) {
+/// Draws `table` as `view` says.
+///
+/// # Errors
+/// When the table has not what is asked for, or that cannot be drawn.
+pub fn chart(table: &TableSource, view: &TableView) -> Result<Chart, String> {
+    for column in view.y.iter().chain(&view.x) {
+        if !table.names().contains(column) {
             let near = problem::nearest(column, table.names().iter().map(String::as_str));
             return Err(format!("{column} is no column of this table: {near}"));
         }
     }
-    let (x, panels) = match &table.subject {
-        TableSubject::Comparison => comparison::drawn(table, columns, width_pt)?,
-        TableSubject::Fit(fit) => fit::drawn(table, fit, columns, width_pt)?,
-        TableSubject::Sweep(swept) => sweep::drawn(table, swept, columns, width_pt)?,
+    let (x, panels) = match (&table.subject, view.kind) {
+        (
+            TableSubject::Comparison(source),
+            kind @ (TableKind::Curves | TableKind::WorkPrecision),
+        ) => comparison::drawn(table, source, view, kind)?,
+        (TableSubject::Sweep(swept), TableKind::Curves) => sweep::drawn(table, swept, view)?,
+        (TableSubject::Sweep(swept), TableKind::Map) => sweep::map::drawn(table, swept, view)?,
+        (TableSubject::Fit(fit), TableKind::Curves) => fit::drawn(table, fit, view)?,
+        (TableSubject::Comparison(_) | TableSubject::Fit(_), TableKind::Map) => {
+            return Err("--kind map is for the table of a sweep over two keys".to_owned());
+        }
+        (TableSubject::Sweep(_) | TableSubject::Fit(_), TableKind::WorkPrecision) => {
+            return Err("--kind work-precision is for the table of gyrolab compare".to_owned());
+        }
     };
-    Ok(Chart {
+    let mut chart = Chart {
         title: table.title.clone(),
-        width_pt,
+        width_pt: view.width_pt,
         x,
         panels,
         is_true_to_scale: false,
         are_read_off: matches!(table.subject, TableSubject::Sweep(_)),
         ..Chart::default()
-    })
+    };
+    view.set_axes(&mut chart)?;
+    Ok(chart)
 }
 
 /// How many values of the `chart` of `table` have no point, where some have none.
@@ -71,7 +87,7 @@ pub(super) fn within_room(markup: String, plain: &str, room_pt: f64) -> String {
     }
 }
 
-/// The points of those of `rows` that have a place along the axis below, from left to right.
+/// Returns the points of those of `rows` that have a place along the axis below, from left to right.
 fn points(rows: &RowIndices, along: &[f64], values: &[f64]) -> Vec<[f64; 2]> {
     let mut points: Vec<_> = rows
         .iter()

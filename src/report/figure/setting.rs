@@ -2,13 +2,13 @@
 
 use super::of_table::within_room;
 use super::quantity;
-use crate::engine::text::number::shortest;
+use crate::engine::text::number::significant;
 use crate::plot::chart::ticks::with_minus;
 use crate::plot::letters;
 use toml::{Table, Value};
 
 /// The key whose values are names.
-const SCHEME_KEY: &str = "motion.scheme";
+pub(super) const SCHEME_KEY: &str = "motion.scheme";
 /// The keys of a scenario file that say nothing of its motion, and those that a name tells in other ways.
 const NOT_NAMED: [&str; 8] = [
     "gyrolab",
@@ -29,8 +29,27 @@ pub(super) struct CurveSetting {
     plain: String,
 }
 
+/// Fewest digits of a value, and most: as many as a number has.
+const FEWEST_DIGITS: usize = 4;
+const MOST_DIGITS: usize = 17;
+
+/// Returns how many digits tell those of `values` apart that are different numbers.
+pub(super) fn telling_digits<'a>(values: impl Iterator<Item = &'a str>) -> usize {
+    let mut numbers: Vec<f64> = values.filter_map(|text| text.parse().ok()).collect();
+    numbers.sort_by(f64::total_cmp);
+    numbers.dedup();
+    let are_told = |digits: &usize| {
+        let mut pairs = numbers.windows(2);
+        pairs.all(|pair| significant(pair[0], *digits) != significant(pair[1], *digits))
+    };
+    (FEWEST_DIGITS..MOST_DIGITS)
+        .find(are_told)
+        .unwrap_or(MOST_DIGITS)
+}
+
 impl CurveSetting {
-    pub fn new(scenario: &Table, key: &str, value: &str) -> Self {
+    /// Returns the setting of `key` in `scenario` to `value`, a number with so many `digits`.
+    pub fn new(scenario: &Table, key: &str, value: &str, digits: usize) -> Self {
         if key == SCHEME_KEY {
             return Self {
                 markup: letters::escape(value),
@@ -46,7 +65,7 @@ impl CurveSetting {
                 } else {
                     " "
                 };
-                format!("{}{space}{unit}", with_minus(&shortest(number)))
+                format!("{}{space}{unit}", with_minus(&significant(number, digits)))
             }
             Err(_) => letters::escape(value),
         };
@@ -68,9 +87,15 @@ impl CurveSetting {
                 keys.push(key);
             }
         }
+        let digits = keys.iter().map(|key| {
+            let entries = (0..all.len()).filter_map(|of| entry(of, key));
+            telling_digits(entries.map(|(_, value)| value.as_str()))
+        });
+        let digits: Vec<usize> = digits.collect();
         let of_one = scenarios.iter().enumerate().map(|(of, scenario)| {
-            let here = keys.iter().filter_map(|key| entry(of, key));
-            here.map(|(key, value)| Self::new(scenario, key, value))
+            let here = keys.iter().zip(&digits);
+            let here = here.filter_map(|(key, digits)| Some((entry(of, key)?, *digits)));
+            here.map(|((key, value), digits)| Self::new(scenario, key, value, digits))
                 .collect()
         });
         of_one.collect()

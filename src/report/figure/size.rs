@@ -41,3 +41,11 @@ fn of_run(scenario: &Scenario, name: &str) -> f64 {
         _ => 0.0,
     }
 }
+
+/// A distance from the exact motion below this part of the arm is rounding, and not the error of a scheme.
+const DISTANCE_ROUNDING: f64 = 1e-12;
+
+/// Returns the distance of the traced point from the exact motion, m, below which it is rounding in a run of `scenario`.
+pub(super) fn rounding_m(scenario: &Scenario) -> f64 {
+    DISTANCE_ROUNDING * scenario.arm_m()
+}

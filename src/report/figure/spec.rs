@@ -15,6 +15,12 @@ pub const WIDTHS_MM: RangeInclusive<f64> = 30.0..=1000.0;
 pub struct FigureSpec {
     /// The name of a [`FigureKind`](super::kind::FigureKind), or the columns of a table; what is usual where there is none.
     pub kind: Option<String>,
+    /// The columns of a table that are drawn, where `kind` does not name them.
+    pub y: Vec<String>,
+    /// The column of a table along the axis below.
+    pub x: Option<String>,
+    /// From where to where that axis goes.
+    pub x_range: Option<(f64, f64)>,
     pub from_s: f64,
     /// Until when, s; `None`: to the end of the longest run.
     pub to_s: Option<f64>,
@@ -44,9 +50,11 @@ impl FigureSpec {
             && self
                 .width_pt
                 .is_none_or(|pt| WIDTHS_MM.contains(&((pt / PT_PER_MM * 1e6).round() / 1e6)))
-            && self
-                .labels
-                .y_range
-                .is_none_or(|(low, high)| low < high && (high - low).is_finite())
+            && self.labels.y_range.is_none_or(is_range)
+            && self.x_range.is_none_or(is_range)
     }
+}
+
+fn is_range((low, high): (f64, f64)) -> bool {
+    low < high && (high - low).is_finite()
 }

@@ -11,31 +11,40 @@ use crate::engine::text::number::rounded;
 use crate::engine::text::printable::{brief, is_steering};
 use toml::Value;
 
-/// A key that varies, and its values in their order.
+/// Keys that vary together, mostly one, and their values in order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SweepAxis {
-    pub key: String,
-    pub values: Vec<Value>,
+    pub keys: Vec<String>,
+    /// The values at each point of the axis, one for each key.
+    pub points: Vec<Vec<Value>>,
 }
+
+/// Separates keys that vary together.
+pub const KEY_SEPARATOR: char = '+';
 
 const MOST_AXIS_VALUES: u64 = 10_000_000;
 
 /// Digits of a value between two ends: one less than rounding spoils.
 const AXIS_VALUE_DIGITS: usize = 15;
+/// Digits of a value between two ends with equal ratios, which is a root: as many as are ever set by hand.
+const LOG_VALUE_DIGITS: usize = 6;
+/// The logarithm of the ratio of two such values from which on these digits tell them apart.
+const LEAST_LOG_STEP: f64 = 1e-4;
 
 impl SweepAxis {
     pub(super) fn new(vary: &VaryFile, place: &str) -> Result<Self, Vec<Problem>> {
-        let kind = kind_of(&vary.key).map_err(|rule| {
-            let key = Value::String(vary.key.clone());
+        let kinds = kinds_of(&vary.key).map_err(|(key, rule)| {
+            let key = Value::String(key);
             vec![Problem::with_value(join(place, "key"), &key, rule)]
         })?;
+        let is_log = vary.log == Some(true);
         let values = match (&vary.values, vary.from, vary.to, vary.count) {
-            (Some(values), None, None, None) => values.clone(),
+            (Some(values), None, None, None) if vary.log.is_none() => values.clone(),
             (None, Some(from), Some(to), Some(count)) => {
-                range(from, to, count).map_err(|rule| vec![Problem::at(place, rule)])?
+                range(from, to, count, is_log).map_err(|rule| vec![Problem::at(place, rule)])?
             }
             _ => {
-                let rule = "must hold either values = [...], or from, to and count";
+                let rule = "must hold either values = [...], or from, to and count, and log = true for equal ratios";
                 return Err(vec![Problem::at(place, rule)]);
             }
         };
@@ -43,20 +52,56 @@ impl SweepAxis {
             let rule = "must hold at least one value";
             return Err(vec![Problem::at(join(place, "values"), rule)]);
         }
+        let keys: Vec<String> = split_keys(&vary.key).map(str::to_owned).collect();
+        let points = values.into_iter().map(|value| point(&kinds, value));
         let axis = Self {
-            key: vary.key.clone(),
-            values: values
-                .into_iter()
-                .map(|value| as_kind(kind, value))
-                .collect(),
+            keys,
+            points: points.collect(),
         };
         let mut problems = Vec::new();
-        for value in &axis.values {
-            if let Err(rule) = check_value(kind, value) {
-                problems.push(Problem::with_value(axis.key.clone(), value, rule));
+        for values in &axis.points {
+            for ((key, kind), value) in axis.keys.iter().zip(&kinds).zip(values) {
+                if let Err(rule) = check_value(*kind, value) {
+                    problems.push(Problem::with_value(key.clone(), value, rule));
+                }
             }
         }
         problems.is_empty().then_some(axis).ok_or(problems)
+    }
+
+    /// Returns its keys with their values at its first point.
+    pub(super) fn first_values(&self) -> impl Iterator<Item = (&str, &Value)> {
+        let keys = self.keys.iter().map(String::as_str);
+        keys.zip(self.points.iter().take(1).flatten())
+    }
+}
+
+/// Returns the keys that the key of a `[[vary]]` or `--vary` names: those between its `+`.
+pub fn split_keys(key: &str) -> impl Iterator<Item = &str> {
+    key.split(KEY_SEPARATOR).map(str::trim)
+}
+
+/// Returns the kinds of the keys in `key`, or the first that cannot vary, and why.
+fn kinds_of(key: &str) -> Result<Vec<ValueKind>, (String, String)> {
+    let kinds = split_keys(key).map(|key| kind_of(key).map_err(|rule| (key.to_owned(), rule)));
+    kinds.collect()
+}
+
+/// Returns the values of the keys of these `kinds` for `value`: one in a list for each key, or the same for all of them.
+fn point(kinds: &[ValueKind], value: Value) -> Vec<Value> {
+    match value {
+        Value::Array(list)
+            if kinds.len() > 1
+                && list.len() == kinds.len()
+                && !matches!(kinds, [ValueKind::Vector, ..]) =>
+        {
+            let each = kinds.iter().zip(list);
+            each.map(|(kind, value)| as_kind(*kind, value)).collect()
+        }
+        same => {
+            let each = kinds.iter();
+            each.map(|kind| as_kind(*kind, same.clone())).collect()
+        }
     }
 }
 
@@ -70,8 +115,12 @@ pub(super) fn read_axes(files: &[VaryFile], problems: &mut Vec<Problem>) -> Vec<
         let place = format!("vary.{index}");
         match SweepAxis::new(file, &place) {
             Ok(axis) => {
-                let clash = axes.iter().find_map(|other| clash(&axis.key, &other.key));
-                problems.extend(clash.map(|rule| Problem::at(axis.key.clone(), rule)));
+                let mut earlier: Vec<&String> = axes.iter().flat_map(|axis| &axis.keys).collect();
+                for key in &axis.keys {
+                    let clash = earlier.iter().find_map(|other| clash(key, other));
+                    problems.extend(clash.map(|rule| Problem::at(key.clone(), rule)));
+                    earlier.push(key);
+                }
                 axes.push(axis);
             }
             Err(mut wrong) => problems.append(&mut wrong),
@@ -113,10 +162,14 @@ fn check_value(kind: ValueKind, value: &Value) -> Result<(), String> {
     Ok(())
 }
 
-/// `count` values from `from` to `to`, both among them, evenly spaced, without the last digits that only rounding makes.
-fn range(from: f64, to: f64, count: u64) -> Result<Vec<Value>, String> {
+/// Returns `count` values from `from` to `to`, both among them, without the last digits that only rounding makes: at equal
+/// distances, or, if `is_log`, with equal ratios.
+fn range(from: f64, to: f64, count: u64, is_log: bool) -> Result<Vec<Value>, String> {
     if !(from.is_finite() && to.is_finite() && (to - from).is_finite()) {
         return Err("must have finite ends".to_owned());
+    }
+    if is_log && (from <= 0.0 || to <= 0.0) {
+        return Err("must have ends above 0: its values have equal ratios".to_owned());
     }
     match count {
         1 if from == to => Ok(vec![Value::Float(from)]),
@@ -127,9 +180,20 @@ fn range(from: f64, to: f64, count: u64) -> Result<Vec<Value>, String> {
         )),
         count => {
             let last = count - 1;
+            let is_coarse = is_log && libm::log(to / from).abs() > LEAST_LOG_STEP * last as f64;
+            let digits = if is_coarse {
+                LOG_VALUE_DIGITS
+            } else {
+                AXIS_VALUE_DIGITS
+            };
             let inner = (1..last).map(|index| {
                 let share = index as f64 / last as f64;
-                rounded(from + (to - from) * share, AXIS_VALUE_DIGITS)
+                let value = if is_log {
+                    libm::exp(libm::log(from) * (1.0 - share) + libm::log(to) * share)
+                } else {
+                    from + (to - from) * share
+                };
+                rounded(value, digits)
             });
             let values = std::iter::once(from).chain(inner).chain([to]);
             Ok(values.map(Value::Float).collect())
@@ -151,7 +215,7 @@ fn as_kind(kind: ValueKind, value: Value) -> Value {
     }
 }
 
-/// What `--vary` is given: `KEY=A..B:N` or `KEY=V1,V2,...`.
+/// Parses what `--vary` is given: `KEY=A..B:N`, `KEY=A..B:N:log` or `KEY=V1,V2,...`; several keys have `+` between them.
 pub fn parse(argument: &str) -> Result<VaryFile, Problems> {
     read(argument).map_err(|rule| {
         let mut problem = Problem::at("", rule);
@@ -182,20 +246,24 @@ fn read(argument: &str) -> Result<VaryFile, String> {
         ..VaryFile::default()
     };
     let text = written.trim();
-    let is_number = matches!(
-        kind_of(&vary.key),
-        Ok(ValueKind::Number(_) | ValueKind::Whole(..))
-    );
-    let Some((from, rest)) = text.split_once("..").filter(|_| is_number) else {
+    let are_numbers = kinds_of(&vary.key).is_ok_and(|kinds| {
+        let mut kinds = kinds.iter();
+        kinds.all(|kind| matches!(kind, ValueKind::Number(_) | ValueKind::Whole(..)))
+    });
+    let Some((from, rest)) = text.split_once("..").filter(|_| are_numbers) else {
         vary.values = Some(listed(text)?);
         return Ok(vary);
     };
     let (to, count) = rest.split_once(':').unwrap_or_default();
+    let (count, log) = count
+        .split_once(':')
+        .map_or((count, None), |(count, log)| (count, Some(log.trim())));
     vary.from = from.trim().parse().ok();
     vary.to = to.trim().parse().ok();
     vary.count = count.trim().parse().ok();
-    if vary.from.and(vary.to).and(vary.count).is_none() {
-        return Err("must be A..B:N: two numbers and how many values, both ends among them".into());
+    vary.log = log.map(|log| log == "log");
+    if vary.from.and(vary.to).and(vary.count).is_none() || vary.log == Some(false) {
+        return Err("must be A..B:N, or A..B:N:log for equal ratios: two numbers and how many values, both ends among them".into());
     }
     Ok(vary)
 }
@@ -243,7 +311,11 @@ mod tests {
         let axis = read(argument).and_then(|vary| {
             SweepAxis::new(&vary, "vary.0").map_err(|problems| problems[0].to_string())
         })?;
-        Ok(axis.values.iter().map(ToString::to_string).collect())
+        let written = |values: &Vec<Value>| {
+            let texts: Vec<_> = values.iter().map(ToString::to_string).collect();
+            texts.join(" and ")
+        };
+        Ok(axis.points.iter().map(written).collect())
     }
 
     #[test]
@@ -263,6 +335,23 @@ mod tests {
             ("motion.time_step_s=1, 0.5", "1.0; 0.5"),
             (forces, "[0, 0, -50]; [0, 0, 50]"),
             ("title=\"a,b\",c", "\"a,b\"; \"c\""),
+            (
+                "motion.time_step_s=0.001..0.1:5:log",
+                "0.001; 0.00316228; 0.01; 0.0316228; 0.1",
+            ),
+            ("body.rim.points=4..64:5:log", "4; 8; 16; 32; 64"),
+            (
+                "start.tilt_deg+start.turn_deg=0..90:3",
+                "0.0 and 0.0; 45.0 and 45.0; 90.0 and 90.0",
+            ),
+            (
+                "motion.scheme+motion.time_step_s=[report,0.1],[rk4,1]",
+                "\"report\" and 0.1; \"rk4\" and 1.0",
+            ),
+            (
+                "push.0.force_N+push.1.force_N=[0,0,1]",
+                "[0, 0, 1] and [0, 0, 1]",
+            ),
         ] {
             assert_eq!(axis(argument).unwrap().join("; "), values, "{argument}");
         }

@@ -2,8 +2,10 @@
 //! several machines.
 
 use crate::engine::scenario::document::Document;
+use crate::engine::scenario::float;
 use crate::engine::scenario::kind::Range;
-use crate::engine::scenario::kind::ValueKind::{By, Line, Lines, Number, Paragraph, Whole};
+use crate::engine::scenario::kind::ValueKind::{By, Flag, Line, Lines, Number, Paragraph, Whole};
+use crate::engine::scenario::problem::nearest;
 use crate::engine::scenario::schema::{Schema, may, must};
 use crate::engine::scenario::{Problem, Problems, ScenarioFile};
 use serde::{Deserialize, Serialize};
@@ -25,6 +27,8 @@ pub struct SweepFile {
     pub shard: Option<String>,
     /// The readouts; without any, every number.
     pub measure: Option<Vec<String>>,
+    /// How its table is drawn where the command line says nothing else.
+    pub figure: Option<SweepFigure>,
     #[serde(default)]
     pub vary: Vec<VaryFile>,
     pub scenario: Base,
@@ -46,12 +50,70 @@ pub enum Base {
 /// A key that varies, a table `[[vary]]` of a sweep's file.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct VaryFile {
+    /// The dotted key, or several with `+` between them, which vary together.
     pub key: String,
     pub values: Option<Vec<Value>>,
     /// The first of evenly spaced values, where `values` has none.
     pub from: Option<f64>,
     pub to: Option<f64>,
     pub count: Option<u64>,
+    /// Whether these have equal ratios, not equal distances.
+    pub log: Option<bool>,
+}
+
+/// How the table of a sweep is drawn, the table `[figure]` of a sweep's file; the options of `gyrolab figure` have the same
+/// names.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct SweepFigure {
+    /// `map`; without it, curves.
+    pub kind: Option<String>,
+    /// The column along the axis below: a key that varies, or a readout.
+    pub x: Option<String>,
+    /// The readouts, a panel for each quantity.
+    pub y: Option<Vec<String>>,
+    /// The logarithmic axes: `x`, `y`, or `z` for the colors of a map.
+    pub log: Option<String>,
+    pub x_range: Option<[f64; 2]>,
+}
+
+/// The kind of a figure that shows two keys as a map of colors.
+pub const MAP: &str = "map";
+
+impl SweepFigure {
+    /// Returns what is wrong with it in a sweep of the keys `varied` and the readouts `measured`.
+    pub(super) fn problems(&self, varied: &[&str], measured: &[&str]) -> Vec<Problem> {
+        let mut problems = Vec::new();
+        if self.kind.as_ref().is_some_and(|kind| kind != MAP) {
+            problems.push(Problem::at(
+                "figure.kind",
+                "must be map, or is left out for curves",
+            ));
+        }
+        let x = self.x.iter().map(|name| ("figure.x", name));
+        let y = self.y.iter().flatten().map(|name| ("figure.y", name));
+        for (key, name) in x.chain(y) {
+            let mut columns = varied.iter().chain(measured);
+            if !columns.any(|column| column == name) {
+                let near = nearest(name, varied.iter().chain(measured).copied());
+                let rule = format!("is no column of this sweep: {near}");
+                problems.push(Problem::with_value(key, &Value::String(name.clone()), rule));
+            }
+        }
+        let is_log = |text: &String| text.chars().all(|axis| "xyz".contains(axis));
+        if !self.log.iter().all(is_log) {
+            problems.push(Problem::at(
+                "figure.log",
+                "must be x, y, z, or several of them, such as xy",
+            ));
+        }
+        if self.x_range.is_some_and(|[low, high]| low >= high) {
+            problems.push(Problem::at(
+                "figure.x_range",
+                "must be two numbers, the lower one first",
+            ));
+        }
+        problems
+    }
 }
 
 #[rustfmt::skip]
@@ -62,11 +124,17 @@ const SWEEP_SCHEMA: Schema = Schema(&[&[
     may("source", Paragraph, ""),
     may("shard", Line, "K/N: only the rows of this shard"),
     may("measure", Lines, "the readouts"),
-    must("vary.*.key", Line, "the dotted key that varies"),
+    must("vary.*.key", Line, "the dotted key that varies, or several with + between them"),
     may("vary.*.values", By(is_list), "its values"),
     may("vary.*.from", Number(Range::Any), "the first of evenly spaced values"),
     may("vary.*.to", Number(Range::Any), "the last of them"),
     may("vary.*.count", Whole(0, i64::MAX), "how many there are"),
+    may("vary.*.log", Flag, "whether they have equal ratios"),
+    may("figure.kind", Line, "map for a map of colors; curves without it"),
+    may("figure.x", Line, "the column along the axis below"),
+    may("figure.y", Lines, "the readouts that are drawn"),
+    may("figure.log", Line, "the logarithmic axes: x, y, z for the colors of a map"),
+    may("figure.x_range", By(is_range), "from where to where the axis below goes"),
     must("scenario", By(is_scenario), "a preset's name, a file's path, or a table [scenario] with the scenario itself"),
 ]]);
 
@@ -74,6 +142,16 @@ fn is_list(value: &Value) -> Result<(), String> {
     match value {
         Value::Array(_) => Ok(()),
         _ => Err("must be a list in brackets".to_owned()),
+    }
+}
+
+fn is_range(value: &Value) -> Result<(), String> {
+    let numbers: Option<Vec<f64>> = value
+        .as_array()
+        .and_then(|list| list.iter().map(float).collect());
+    match numbers {
+        Some(numbers) if numbers.len() == 2 && numbers.iter().all(|it| it.is_finite()) => Ok(()),
+        _ => Err("must be two numbers in brackets, such as [0, 1]".to_owned()),
     }
 }
 

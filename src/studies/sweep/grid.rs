@@ -31,8 +31,22 @@ pub struct SweepRow {
     pub line: String,
     /// Why it holds no readouts; `None` where it holds some.
     pub empty: Option<String>,
+    pub reliability: Reliability,
     pub has_failed: bool,
 }
+
+/// Whether the numbers of a row's run hold, as its column `reliable` says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reliability {
+    /// The sweep has no such column.
+    NotAsked,
+    Reliable,
+    Unreliable,
+    Unknown,
+}
+
+/// The readout that a sweep has on its own accord.
+const RELIABLE: &str = "reliable";
 
 /// A grid of runs whose keys, values and readouts have been checked.
 #[derive(Clone, Debug)]
@@ -63,13 +77,22 @@ impl Sweep {
     ) -> Result<Self, Problems> {
         let mut problems = Vec::new();
         let axes = read_axes(&file.vary, &mut problems);
-        let measure = measured(file.measure.as_deref(), &axes, &mut problems);
+        let mut measure = measured(file.measure.as_deref(), &axes, &mut problems);
+        // The header of a CSV, also of an older version, names all columns.
+        if file.gyrolab.is_none() {
+            measure.extend(reliable(&measure));
+        }
+        if let Some(figure) = &file.figure {
+            let varied = axes.iter().flat_map(|axis| &axis.keys).map(String::as_str);
+            let names: Vec<&str> = measure.iter().map(|readout| readout.name).collect();
+            problems.extend(figure.problems(&varied.collect::<Vec<_>>(), &names));
+        }
         let stated = file.shard.as_deref().map_or(Ok(Shard::WHOLE), str::parse);
         let shard = stated.unwrap_or_else(|rule| {
             problems.push(Problem::at("shard", rule));
             Shard::WHOLE
         });
-        let counts = axes.iter().map(|axis| axis.values.len() as u64);
+        let counts = axes.iter().map(|axis| axis.points.len() as u64);
         let points = counts.fold(1, u64::saturating_mul);
         if points > MOST_GRID_POINTS {
             let rule =
@@ -137,18 +160,18 @@ impl Sweep {
     /// Whether every key has a place in the scenario: the key of a push that is not there, say, has none.
     fn keys_lead_somewhere(&self) -> Result<(), Problem> {
         let mut document = self.base.clone();
-        for axis in &self.axes {
-            let names: Vec<_> = axis.key.split('.').collect();
+        for (key, value) in self.axes.iter().flat_map(SweepAxis::first_values) {
+            let names: Vec<_> = key.split('.').collect();
             let number = names.iter().position(|name| name.parse::<usize>().is_ok());
             let entry = number.map(|at| names[..=at].join("."));
             if let Some(entry) = entry.filter(|entry| find(self.base.table(), entry).is_none()) {
                 let rule = format!("leads nowhere: the scenario has no {entry}");
-                return Err(Problem::at(axis.key.clone(), rule));
+                return Err(Problem::at(key, rule));
             }
-            if let Some(rule) = self.counts_otherwise(&axis.key) {
-                return Err(Problem::at(axis.key.clone(), rule));
+            if let Some(rule) = self.counts_otherwise(key) {
+                return Err(Problem::at(key, rule));
             }
-            document.set_value(&axis.key, axis.values[0].clone())?;
+            document.set_value(key, value.clone())?;
         }
         Ok(())
     }
@@ -186,21 +209,27 @@ impl Sweep {
 
     /// The sweep file in `# ` lines, and the line of the columns' names.
     pub fn header(&self) -> String {
-        let keys = self.axes.iter().map(|axis| axis.key.as_str());
+        let keys = self.keys();
         let readouts = self.measure.iter().map(|readout| readout.name);
         commented(&self.file.to_toml()) + &line(&keys.chain(readouts).collect::<Vec<_>>())
     }
 
-    /// The values of the point behind the `row`-th row, from 0, one of each axis.
+    /// Returns the keys that vary, in the order of their columns.
+    pub fn keys(&self) -> impl Iterator<Item = &str> {
+        let keys = self.axes.iter().flat_map(|axis| &axis.keys);
+        keys.map(String::as_str)
+    }
+
+    /// Returns the values of the point of the `row`-th row, from 0, one for each of the [keys](Self::keys).
     pub fn values(&self, row: u64) -> Vec<&Value> {
         let mut rest = self.shard.range(self.points).start + row;
-        let mut values = Vec::new();
+        let mut of_axes = Vec::new();
         for axis in self.axes.iter().rev() {
-            let count = axis.values.len() as u64;
-            values.insert(0, &axis.values[(rest % count) as usize]);
+            let count = axis.points.len() as u64;
+            of_axes.push(&axis.points[(rest % count) as usize]);
             rest /= count;
         }
-        values
+        of_axes.into_iter().rev().flatten().collect()
     }
 
     /// Returns the readouts in `text`, the line of the `row`-th row, from 0, with its end; `None` where it is not such a line:
@@ -230,19 +259,19 @@ impl Sweep {
 
     /// The point behind the `row`-th row in words: `motion.time_step_s = 0.1, motion.scheme = "rk4"`.
     pub fn point_in_words(&self, row: u64) -> String {
-        let values = self.axes.iter().zip(self.values(row));
-        let pairs = values.map(|(axis, value)| format!("{} = {}", axis.key, in_words(value)));
+        let values = self.keys().zip(self.values(row));
+        let pairs = values.map(|(key, value)| format!("{key} = {}", in_words(value)));
         pairs.collect::<Vec<_>>().join(", ")
     }
 
     pub fn scenario(&self, row: u64) -> Result<Scenario, String> {
         let mut document = self.base.clone();
         let mut time_step_s = None;
-        for (axis, value) in self.axes.iter().zip(self.values(row)) {
-            if axis.key == TIME_STEP {
+        for (key, value) in self.keys().zip(self.values(row)) {
+            if key == TIME_STEP {
                 time_step_s = value.as_float();
             } else {
-                document.set_value(&axis.key, value.clone())?;
+                document.set_value(key, value.clone())?;
             }
         }
         let scenario = document.scenario()?;
@@ -261,8 +290,9 @@ impl Sweep {
             Ok(cells) => (cells?, None),
             Err(why) => (vec![Readable::Nothing; self.measure.len()], Some(why)),
         };
-        let is_empty = cells.iter().all(|cell| *cell == Readable::Nothing);
+        let is_empty = self.lacks_readouts(&cells);
         Some(SweepRow {
+            reliability: self.reliability(&cells),
             line: line(&(self.labels(row), cells)),
             has_failed: failure.is_some(),
             empty: is_empty.then(|| {
@@ -270,6 +300,46 @@ impl Sweep {
             }),
         })
     }
+
+    /// Returns whether none of the `cells` of a row, one for each readout, holds a value of its run; whether the run is
+    /// reliable is none.
+    pub(super) fn lacks_readouts(&self, cells: &[Readable]) -> bool {
+        let are_all = self.measure.iter().all(|readout| readout.name == RELIABLE);
+        let mut of_run = self
+            .measure
+            .iter()
+            .zip(cells)
+            .filter(|(readout, _)| are_all || readout.name != RELIABLE);
+        of_run.all(|(_, cell)| *cell == Readable::Nothing)
+    }
+
+    /// Returns what the `cells` of a row, one for each readout, say of the numbers of its run.
+    pub(super) fn reliability(&self, cells: &[Readable]) -> Reliability {
+        let place = self
+            .measure
+            .iter()
+            .position(|readout| readout.name == RELIABLE);
+        match place.map(|place| &cells[place]) {
+            None => Reliability::NotAsked,
+            Some(Readable::Flag(true)) => Reliability::Reliable,
+            Some(Readable::Flag(false)) => Reliability::Unreliable,
+            Some(_) => Reliability::Unknown,
+        }
+    }
+}
+
+/// Returns the readout `reliable` where `measure` reads a number off the runs and lacks it.
+fn reliable(measure: &[&'static Readout]) -> Option<&'static Readout> {
+    let reads_runs = measure.iter().any(|readout| match readout.source {
+        ReadoutSource::Scenario | ReadoutSource::Scheme | ReadoutSource::Theory => false,
+        ReadoutSource::State
+        | ReadoutSource::EveryStep
+        | ReadoutSource::Measured
+        | ReadoutSource::Exact
+        | ReadoutSource::Clock => true,
+    });
+    let has_it = measure.iter().any(|readout| readout.name == RELIABLE);
+    readouts::find(RELIABLE).filter(|_| reads_runs && !has_it)
 }
 
 /// The readouts called `names`; without any, every number that is the same each time.
@@ -298,7 +368,11 @@ fn measured(
             Some(readout) if found.iter().any(|other| other.name == readout.name) => {
                 "is named twice".to_owned()
             }
-            Some(readout) if axes.iter().any(|axis| axis.key == readout.name) => {
+            Some(readout)
+                if axes
+                    .iter()
+                    .any(|axis| axis.keys.iter().any(|key| key == readout.name)) =>
+            {
                 "varies, and has its column already".to_owned()
             }
             Some(readout) => {

@@ -3,7 +3,7 @@
 use super::file::Shard;
 use super::grid::Sweep;
 use super::part::{
-    EmptyRows, FoundRows, SweepFileError, cannot_read, cannot_write, first_difference, refused,
+    FoundRows, RowTally, SweepFileError, cannot_read, cannot_write, first_difference, refused,
     whole,
 };
 use crate::engine::export::Destination;
@@ -15,44 +15,44 @@ use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// Writes to `path` the sweep whose shards are `parts`, in any order; the bytes are those of the sweep made at once. A file
-/// that is there and has them already is left as it is. Gives the sweep and its rows without readouts.
+/// that is there and has them already is left as it is. Gives the sweep and what is to be said of its rows.
 pub fn join(
     parts: &[PathBuf],
     path: &Path,
     may_replace: bool,
-) -> Result<(Sweep, EmptyRows), SweepFileError> {
+) -> Result<(Sweep, RowTally), SweepFileError> {
     let mut shards = Vec::new();
     for part in parts {
         shards.push((Sweep::open(&Document::read(part)?)?, part.as_path()));
     }
     shards.sort_by_key(|(sweep, _)| sweep.shard.number);
     let sweep = of_one_sweep(&shards)?;
-    if let Some(empty) = whole(path, &sweep, may_replace)? {
-        return Ok((sweep, empty));
+    if let Some(tally) = whole(path, &sweep, may_replace)? {
+        return Ok((sweep, tally));
     }
     let mut output = Destination::open_file(path, may_replace)?;
     let written = output.write_all(sweep.header().as_bytes());
     written.map_err(|error| cannot_write(path, &error))?;
-    let (mut rows, mut empty) = (0, EmptyRows::default());
+    let (mut rows, mut tally) = (0, RowTally::default());
     for (shard, part) in &shards {
         let (of_shard, mut lines) = rows_of(shard, part)?;
-        empty.append(of_shard, rows);
+        tally.append(of_shard, rows);
         rows += shard.rows();
         io::copy(&mut lines, &mut output).map_err(|error| cannot_write(path, &error))?;
     }
     output.keep()?;
-    Ok((sweep, empty))
+    Ok((sweep, tally))
 }
 
-/// The rows without readouts in the file `path` of the whole `shard`, and a reader of its lines.
-fn rows_of(shard: &Sweep, path: &Path) -> Result<(EmptyRows, impl Read), SweepFileError> {
+/// What is to be said of the rows in the file `path` of the whole `shard`, and a reader of its lines.
+fn rows_of(shard: &Sweep, path: &Path) -> Result<(RowTally, impl Read), SweepFileError> {
     let (file, rows) = open_rows(path, shard).map_err(|error| cannot_read(path, &error))?;
-    let empty = rows.whole(shard).map_err(|why| {
+    let tally = rows.whole(shard).map_err(|why| {
         let number = shard.shard;
         let rule = format!("is not the whole shard {number}: {why}; run its command again");
         refused(path, rule)
     })?;
-    Ok((empty, file))
+    Ok((tally, file))
 }
 
 /// Opens `path` at its first row, and compares its rows with those of `shard`.

@@ -14,9 +14,9 @@ pub mod join;
 pub mod part;
 
 use crate::engine::text::shipped::{Shipped, shipped};
-pub use file::{Shard, SweepFile};
-pub use grid::{Sweep, SweepRow};
-pub use part::EmptyRows;
+pub use file::{MAP, Shard, SweepFigure, SweepFile};
+pub use grid::{Reliability, Sweep, SweepRow};
+pub use part::{EmptyRows, ReliabilityCount, RowTally};
 
 /// The sweeps that come with the program, compiled in.
 pub const SWEEPS: &[Shipped] = shipped!["../../../presets/sweeps", "toml":

@@ -4,12 +4,12 @@
 //! beginning of the whole file, and perhaps a torn line at its end. The same command goes on behind the last line that is
 //! a row: it drops what follows. When all are there the file gets its name.
 
-use super::grid::{Sweep, SweepRow};
-use crate::engine::analysis::readouts::ReadoutValue;
+use super::grid::{Reliability, Sweep, SweepRow};
 use crate::engine::export::Destination;
 use crate::engine::export::destination::{DestinationError, is_workbook};
 use crate::engine::scenario::Problems;
 use crate::engine::text::io_errors::{unread, unwritten};
+use crate::engine::text::number::counted;
 use crate::engine::text::printable::{PrintablePath, brief};
 use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -51,6 +51,73 @@ pub(super) fn cannot_write(path: &Path, error: &io::Error) -> SweepFileError {
 /// Time for finding out why a row is empty: a file does not say it.
 const EMPTY_ROW_LIMIT: Duration = Duration::from_secs(1);
 
+/// What is to be said of the rows of a sweep when they are all there.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct RowTally {
+    pub empty: EmptyRows,
+    pub reliability: ReliabilityCount,
+}
+
+/// How many rows say that the numbers of their runs hold, do not hold, and that this is not known.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ReliabilityCount {
+    pub reliable: u64,
+    pub unreliable: u64,
+    pub unknown: u64,
+}
+
+impl RowTally {
+    /// Counts the row of that number, from 0; `why` says why it is empty, where it is and that is known.
+    pub(super) fn add(
+        &mut self,
+        row: u64,
+        is_empty: bool,
+        why: Option<String>,
+        reliability: Reliability,
+    ) {
+        if is_empty {
+            self.empty.add(row, why);
+        }
+        let count = match reliability {
+            Reliability::NotAsked => return,
+            Reliability::Reliable => &mut self.reliability.reliable,
+            Reliability::Unreliable => &mut self.reliability.unreliable,
+            Reliability::Unknown => &mut self.reliability.unknown,
+        };
+        *count += 1;
+    }
+
+    /// Adds those of another shard, whose first row is the row `begin` of all.
+    pub(super) fn append(&mut self, shard: Self, begin: u64) {
+        self.empty.append(shard.empty, begin);
+        self.reliability.reliable += shard.reliability.reliable;
+        self.reliability.unreliable += shard.reliability.unreliable;
+        self.reliability.unknown += shard.reliability.unknown;
+    }
+}
+
+impl ReliabilityCount {
+    /// Returns the counts in words; `None` where the rows do not say it.
+    pub fn in_words(&self) -> Option<String> {
+        let all = self.reliable + self.unreliable + self.unknown;
+        let others = [
+            ("not reliable", self.unreliable),
+            ("not known", self.unknown),
+        ];
+        let others = others.iter().filter(|(_, count)| *count > 0);
+        let others: String = others
+            .map(|(words, count)| format!("; {words}: {count}"))
+            .collect();
+        (all > 0).then(|| {
+            format!(
+                "reliable: {} of {}{others}",
+                self.reliable,
+                counted(all, "run")
+            )
+        })
+    }
+}
+
 /// How many rows hold no readouts, and the first few, counted from 0, with their reasons where these are known.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct EmptyRows {
@@ -62,7 +129,7 @@ impl EmptyRows {
     /// How many rows are named one by one.
     const MOST: usize = 8;
 
-    pub fn add(&mut self, row: u64, why: Option<String>) {
+    fn add(&mut self, row: u64, why: Option<String>) {
         self.count += 1;
         if self.first.len() < Self::MOST {
             self.first.push((row, why));
@@ -70,7 +137,7 @@ impl EmptyRows {
     }
 
     /// Adds those of another shard, whose first row is the row `begin` of all.
-    pub(super) fn append(&mut self, shard: Self, begin: u64) {
+    fn append(&mut self, shard: Self, begin: u64) {
         let count = self.count + shard.count;
         for (row, why) in shard.first {
             self.add(begin + row, why);
@@ -101,7 +168,7 @@ impl EmptyRows {
 #[derive(Debug)]
 pub enum Opened {
     /// It is there, whole, and of this sweep.
-    Whole(EmptyRows),
+    Whole(RowTally),
     /// Rows are to be added.
     Part(PartialSweep),
 }
@@ -115,8 +182,8 @@ pub struct PartialSweep {
     last: PathBuf,
     may_replace: bool,
     pub rows: u64,
-    /// Those without readouts.
-    pub empty: EmptyRows,
+    /// What is to be said of them.
+    pub tally: RowTally,
     synced: Instant,
 }
 
@@ -126,8 +193,8 @@ impl PartialSweep {
     /// # Errors
     /// When there is something else and may not be replaced, somebody else is writing, or the system reports an error.
     pub fn open(path: &Path, sweep: &Sweep, may_replace: bool) -> Result<Opened, SweepFileError> {
-        if let Some(empty) = whole(path, sweep, may_replace)? {
-            return Ok(Opened::Whole(empty));
+        if let Some(tally) = whole(path, sweep, may_replace)? {
+            return Ok(Opened::Whole(tally));
         }
         // A symbolic link is kept: the file to which it leads is replaced.
         let last = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
@@ -135,9 +202,9 @@ impl PartialSweep {
         is_writable(&part_path)?;
         let file = locked(&part_path)?;
         // Another process may have made it whole meanwhile.
-        if let Some(empty) = whole(&last, sweep, may_replace)? {
+        if let Some(tally) = whole(&last, sweep, may_replace)? {
             let _ = fs::remove_file(&part_path); // an empty file
-            return Ok(Opened::Whole(empty));
+            return Ok(Opened::Whole(tally));
         }
         let there =
             FoundRows::read(&file, sweep).map_err(|error| cannot_read(&part_path, &error))?;
@@ -151,7 +218,7 @@ impl PartialSweep {
             last,
             may_replace,
             rows: there.rows,
-            empty: there.empty,
+            tally: there.tally,
             synced: Instant::now(),
         };
         let cut = part.file.set_len(there.bytes);
@@ -167,9 +234,8 @@ impl PartialSweep {
         let lines: String = rows.iter().map(|row| row.line.as_str()).collect();
         self.write(&lines)?;
         for row in rows {
-            if row.empty.is_some() {
-                self.empty.add(self.rows, row.empty);
-            }
+            self.tally
+                .add(self.rows, row.empty.is_some(), row.empty, row.reliability);
             self.rows += 1;
         }
         if self.synced.elapsed() >= SYNC {
@@ -218,13 +284,13 @@ fn is_writable(path: &Path) -> Result<(), SweepFileError> {
     Ok(())
 }
 
-/// The rows without readouts in the file `path`, where it has all rows of `sweep`; `None` where it is not there, or is
+/// What is to be said of the rows in the file `path`, where it has all rows of `sweep`; `None` where it is not there, or is
 /// something else that may be replaced.
 pub(super) fn whole(
     path: &Path,
     sweep: &Sweep,
     may_replace: bool,
-) -> Result<Option<EmptyRows>, SweepFileError> {
+) -> Result<Option<RowTally>, SweepFileError> {
     is_writable(path)?;
     if !path.exists() {
         return Ok(None);
@@ -233,7 +299,7 @@ pub(super) fn whole(
         .and_then(|file| FoundRows::read(&file, sweep))
         .map_err(|error| cannot_read(path, &error))?;
     match found.whole(sweep) {
-        Ok(empty) => Ok(Some(empty)),
+        Ok(tally) => Ok(Some(tally)),
         Err(_) if may_replace => Ok(None),
         Err(why) => {
             let why = format!("is not the whole of this sweep: {why}; --force replaces it");
@@ -267,7 +333,7 @@ fn locked(part: &Path) -> Result<File, SweepFileError> {
 pub(super) struct FoundRows {
     /// How many rows at its beginning are those of the sweep.
     pub rows: u64,
-    empty: EmptyRows,
+    tally: RowTally,
     /// How many bytes they and the header take.
     bytes: u64,
     /// How many bytes there are.
@@ -305,23 +371,20 @@ impl FoundRows {
             let Some(readouts) = parsed.flatten() else {
                 return Ok(there);
             };
-            if readouts
-                .iter()
-                .all(|readout| *readout == ReadoutValue::Nothing)
-            {
-                there.empty.add(there.rows, None);
-            }
+            let is_empty = sweep.lacks_readouts(&readouts);
+            let reliability = sweep.reliability(&readouts);
+            there.tally.add(there.rows, is_empty, None, reliability);
             there.rows += 1;
         }
     }
 
-    /// The rows without readouts, where all rows are there and nothing else.
-    pub(super) fn whole(self, sweep: &Sweep) -> Result<EmptyRows, String> {
+    /// What is to be said of the rows, where all are there and nothing else.
+    pub(super) fn whole(self, sweep: &Sweep) -> Result<RowTally, String> {
         let (rows, all) = (self.rows, sweep.rows());
         let line = sweep.header().lines().count() as u64 + rows + 1;
         match self.other {
             Some(why) => Err(why),
-            None if self.bytes == self.length && rows == all && self.bytes > 0 => Ok(self.empty),
+            None if self.bytes == self.length && rows == all && self.bytes > 0 => Ok(self.tally),
             None if rows == all => Err("it has more than the rows of the sweep".to_owned()),
             None if self.bytes == self.length => Err(format!("it has {rows} of the {all} rows")),
             None => Err(format!("its line {line} is not row {} of {all}", rows + 1)),

@@ -118,7 +118,7 @@ impl CsvRecipe {
                 comparison.keys = 1;
                 comparison.delimiter = if layout.file().excel { b';' } else { b',' };
             }
-            Self::Sweep(sweep) => comparison.keys = sweep.axes.len(),
+            Self::Sweep(sweep) => comparison.keys = sweep.keys().count(),
             Self::Comparison { .. } => {
                 comparison.keys = 2;
                 comparison.left_out = &BY_THE_CLOCK;

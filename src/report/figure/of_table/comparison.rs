@@ -1,42 +1,86 @@
-//! Errors of schemes over their time steps, with their slopes.
+//! Errors of schemes over their time steps, with their slopes, or over their cost.
 
+use super::view::{TableKind, TableView};
 use super::{grouped, numbers, points};
+use crate::engine::scenario::Document;
 use crate::engine::text::number::significant;
 use crate::plot::chart::legend::longest_name;
 use crate::plot::chart::ticks;
 use crate::plot::chart::{ChartAxis, ChartSeries, Panel, SeriesStyle};
 use crate::plot::ink::{self, LABEL_PT};
 use crate::plot::letters;
-use crate::report::figure::quantity;
-use crate::studies::table::TableSource;
+use crate::report::figure::{quantity, size};
+use crate::studies::table::{ComparisonSource, TableSource};
 
-/// The axis of the time step, and a panel for each column.
+const TIME_STEP: &str = "time_step_s";
+const ERROR: &str = "error_m";
+
+/// Returns the axis of the time step, of the cost, or of the column that is asked for, and a panel for each column.
 pub(super) fn drawn(
     table: &TableSource,
-    columns: &[&str],
-    width_pt: f64,
+    source: &ComparisonSource,
+    view: &TableView,
+    kind: TableKind,
 ) -> Result<(ChartAxis, Vec<Panel>), String> {
-    let steps = numbers(table, "time_step_s")?;
+    let (x, along) = along(table, view, kind)?;
     let groups = grouped(&table.texts("scheme").unwrap_or_default());
-    let columns = columns_or_default(columns);
+    let error = [ERROR.to_owned()];
+    let columns = if view.y.is_empty() {
+        &error
+    } else {
+        &view.y[..]
+    };
+    let is_order = view.x.is_none() && kind == TableKind::Curves;
     let mut panels = Vec::new();
     for column in columns {
         let values = numbers(table, column)?;
         let curves = groups.iter().enumerate().map(|(index, (scheme, rows))| {
-            let points = points(rows, &steps, &values);
+            let points = points(rows, &along, &values);
             let name = if points.iter().any(|point| point[1] > 0.0) {
                 // Panels beside each other share their names.
-                let slope = slope(&points).filter(|_| columns.len() == 1);
-                named(scheme, slope, width_pt)
+                let slope = slope(&points).filter(|_| is_order && columns.len() == 1);
+                named(scheme, slope, view.width_pt)
             } else {
                 String::new()
             };
             ChartSeries::new(name, points, SeriesStyle::marked_line(index))
         });
-        let y = logarithmic(of_comparison(column));
-        panels.push(Panel::new(y, curves.collect()));
+        let mut series: Vec<ChartSeries> = curves.collect();
+        if column.starts_with(ERROR) || column == "error_at_end_m" {
+            series.extend(rounding(source, &values));
+        }
+        panels.push(Panel::new(logarithmic(of_comparison(column)), series));
     }
-    Ok((logarithmic(quantity::axis("time_step_s")), panels))
+    Ok((logarithmic(x), panels))
+}
+
+/// Returns the axis below, and the numbers along it.
+fn along(
+    table: &TableSource,
+    view: &TableView,
+    kind: TableKind,
+) -> Result<(ChartAxis, Vec<f64>), String> {
+    match (&view.x, kind) {
+        (Some(column), _) => Ok((of_comparison(column), numbers(table, column)?)),
+        (None, TableKind::WorkPrecision) => {
+            // Where stepping went fastest: other work on the machine has cost nothing there.
+            let [steps, step_ns] = ["steps", "ns_per_step"].map(|name| numbers(table, name));
+            let costs = steps?.into_iter().zip(step_ns?);
+            let axis = ChartAxis::new("computing time", "s");
+            Ok((axis, costs.map(|(steps, ns)| 1e-9 * steps * ns).collect()))
+        }
+        (None, TableKind::Curves | TableKind::Map) => {
+            Ok((of_comparison(TIME_STEP), numbers(table, TIME_STEP)?))
+        }
+    }
+}
+
+/// Returns the stripe in which errors are those of rounding, where one of `errors_m` is.
+fn rounding(source: &ComparisonSource, errors_m: &[f64]) -> Option<ChartSeries> {
+    let document = Document::parse_header("", &source.run_file).ok()?;
+    let floor_m = size::rounding_m(&document.scenario().ok()?);
+    let is_below = errors_m.iter().any(|error_m| *error_m < floor_m);
+    is_below.then(|| ChartSeries::below("rounding", floor_m))
 }
 
 fn logarithmic(axis: ChartAxis) -> ChartAxis {
@@ -54,22 +98,15 @@ fn named(scheme: &str, slope: Option<f64>, width_pt: f64) -> String {
     letters::shortened(scheme, LABEL_PT, room) + &markup
 }
 
-/// The columns that are drawn where `columns` were asked for.
-fn columns_or_default<'a>(columns: &'a [&'a str]) -> &'a [&'a str] {
-    if columns.is_empty() {
-        &["error_m"]
-    } else {
-        columns
-    }
-}
-
 fn of_comparison(name: &str) -> ChartAxis {
     match name {
         "error_m" => ChartAxis::new("largest error", "m"),
         "energy_drift" => ChartAxis::new("relative energy drift", ""),
         "L_axle_drift" => ChartAxis::new("relative drift of *L*_{3}", ""),
         "Lz_drift" => ChartAxis::new("relative drift of *L*_{*z*}", ""),
+        "error_at_end_m" => ChartAxis::new("error at the end", "m"),
         "ns_per_step" => ChartAxis::new("cost of a step", "ns"),
+        "wall_s" => ChartAxis::new("computing time", "s"),
         name => quantity::axis(name),
     }
 }

@@ -1,5 +1,6 @@
 //! What was measured, on the model that was fitted to it; below, what is left of it.
 
+use super::view::TableView;
 use super::{RowIndices, grouped, numbers, points, within_room};
 use crate::engine::data::quantity::TIME_COLUMN;
 use crate::engine::data::{self, MeasuredCurve, MeasuredPoint, RunQuantity};
@@ -16,6 +17,8 @@ use std::sync::Arc;
 
 /// Points on the curve of a model over time: several for each dot of a column's width.
 const MODEL_CURVE_POINTS: u32 = 1500;
+/// The column that counts the rows of the measured data.
+const ROW_COLUMN: &str = "row";
 /// The most runs under several settings that can be distinguished.
 const MOST_GROUPS: usize = 6;
 
@@ -36,21 +39,23 @@ struct FitFigure<'a> {
 pub(super) fn drawn(
     table: &TableSource,
     fit: &FitTable,
-    columns: &[&str],
-    width_pt: f64,
+    view: &TableView,
 ) -> Result<(ChartAxis, Vec<Panel>), String> {
-    let (along, x) = along(table, &fit.settings)?;
+    let (along, x) = match &view.x {
+        Some(column) => (column.as_str(), numbers(table, column)?),
+        None => along(table, &fit.settings)?,
+    };
     let drawing = FitFigure {
         table,
         fit,
         scenario: fit.run_file.parse().unwrap_or_default(),
-        room_pt: longest_name(width_pt),
+        room_pt: longest_name(view.width_pt),
         along,
         x,
     };
     let mut panels = Vec::new();
     for (name, rows) in grouped(&table.texts("quantity").unwrap_or_default()) {
-        if columns.is_empty() || columns.contains(&name.as_str()) {
+        if view.y.is_empty() || view.y.contains(&name) {
             let groups = drawing.groups(rows);
             panels.push(drawing.values(&name, &groups)?);
             panels.push(drawing.residuals(&name, &groups)?);
@@ -115,21 +120,25 @@ fn stated(found: &FittedKey) -> String {
     }
 }
 
-/// The column over which a fit is drawn, the one with the most different numbers, and these.
+/// Returns the column over which a fit is drawn, the setting with the most different numbers, and these; the number of the
+/// row where no setting is a number.
 fn along<'a>(table: &TableSource, settings: &'a [String]) -> Result<(&'a str, Vec<f64>), String> {
-    let numbers = settings.iter().rev().filter_map(|name| {
+    let settings = settings.iter().rev().filter_map(|name| {
         let numbers = table.numbers(name)?;
         let is_whole = numbers.iter().all(|number| number.is_finite());
         is_whole.then_some((name.as_str(), numbers))
     });
     // Of columns with as many, the first.
-    let most = numbers.max_by_key(|(_, numbers)| {
+    let most = settings.max_by_key(|(_, numbers)| {
         let mut distinct = numbers.clone();
         distinct.sort_by(f64::total_cmp);
         distinct.dedup();
         distinct.len()
     });
-    most.ok_or_else(|| "no column that says where its values were measured is a number".to_owned())
+    match most {
+        Some(most) => Ok(most),
+        None => Ok((ROW_COLUMN, numbers(table, ROW_COLUMN)?)),
+    }
 }
 
 /// The fitted run's own curve of the quantity `name` over the times that `x` spans.

@@ -2,10 +2,13 @@
 
 mod columns;
 mod curves;
+pub(super) mod map;
 
+use super::view::TableView;
 use super::{numbers, points, within_room};
+use crate::engine::text::number::counted;
 use crate::plot::chart::legend::longest_name;
-use crate::plot::chart::{ChartAxis, ChartSeries, Panel, SeriesStyle};
+use crate::plot::chart::{ChartAxis, ChartSeries, MOST_CURVES, Panel, SeriesStyle};
 use crate::plot::extent;
 use crate::report::figure::quantity;
 use crate::report::figure::setting::{self, CurveSetting};
@@ -15,29 +18,20 @@ use curves::SweepCurve;
 
 /// Panels on a page where none was asked for by name.
 const MOST_PANELS: usize = 7;
-/// The most series of one quantity that can be distinguished.
-const MOST_SWEEP_SERIES: usize = 12;
 
-/// The axis of what was varied, and a panel for each quantity.
+/// Returns the axis of what was varied, or of the column that is asked for, and a panel for each quantity.
 pub(super) fn drawn(
     table: &TableSource,
     swept: &SweepTable,
-    columns: &[&str],
-    width_pt: f64,
+    view: &TableView,
 ) -> Result<(ChartAxis, Vec<Panel>), String> {
-    let varied = &swept.varied[..];
-    // The key that runs fastest and is a number goes to the right; the others make curves.
-    let along = varied.iter().rev().find_map(|key| {
-        let values = table.numbers(key)?;
-        Some((key, values))
-    });
-    let (key, along) = along
-        .ok_or_else(|| format!("none of the varied keys is a number: {}", varied.join(", ")))?;
-    let curves = curves::curves(table, swept, key);
-    if curves.len() > MOST_SWEEP_SERIES {
-        return Err(too_many_curves(curves.len(), varied, key));
+    let columns: Vec<&str> = view.y.iter().map(String::as_str).collect();
+    let along = Along::new(table, swept, view.x.as_deref())?;
+    let curves = curves::curves(table, swept, &along.key);
+    if curves.len() > MOST_CURVES {
+        return Err(too_many_curves(table, swept, curves.len(), &along.key));
     }
-    let quantities = columns::quantities(table, varied, columns);
+    let quantities = columns::quantities(table, swept, &columns);
     if columns.is_empty() && quantities.len() > MOST_PANELS {
         return Err(too_many(&quantities));
     }
@@ -45,14 +39,15 @@ pub(super) fn drawn(
     let has_measured = roles.contains(&QuantityOwner::Measured);
     let drawing = SweepFigure {
         table,
-        along: &along,
+        along: &along.x,
+        has_lines: along.has_lines(&curves),
         curves: &curves,
-        room_pt: longest_name(width_pt),
-        width_pt,
+        room_pt: longest_name(view.width_pt),
+        width_pt: view.width_pt,
         has_theory: roles.contains(&QuantityOwner::Theory),
         has_measured,
         has_points: has_measured || roles.contains(&QuantityOwner::Value),
-        has_gaps: has_gaps(table, columns, varied),
+        has_gaps: has_gaps(table, &columns, swept),
     };
     let mut panels = quantities
         .iter()
@@ -62,17 +57,97 @@ pub(super) fn drawn(
         return Err("no column of this sweep is a number that can be drawn".to_owned());
     };
     first.series.extend(drawing.failed(&quantities)?);
-    let x = ChartAxis {
-        is_log: spans_decades(along.iter().copied(), 30.0) && is_geometric(&along),
-        ..quantity::axis_in(&swept.scenario, key)
-    };
-    Ok((x, panels))
+    Ok((along.axis(swept), panels))
 }
 
-fn too_many_curves(count: usize, varied: &[String], along: &str) -> String {
-    let others: Vec<_> = varied.iter().filter(|key| *key != along).cloned().collect();
+/// What a sweep is drawn over.
+struct Along {
+    /// The key whose values follow each other on a curve, and these.
+    key: String,
+    values: Vec<f64>,
+    /// The column along the axis below: that key, or a readout; and its numbers.
+    column: String,
+    x: Vec<f64>,
+}
+
+impl Along {
+    /// Returns the key, or the readout, with the name `asked`. Without one it is the key that runs fastest of those with
+    /// numbers; the other keys make curves.
+    fn new(table: &TableSource, swept: &SweepTable, asked: Option<&str>) -> Result<Self, String> {
+        let column = asked.filter(|name| !swept.has_varied(name));
+        let key = asked.filter(|name| swept.has_varied(name));
+        let (key, values) = match key {
+            Some(key) => (key, numbers(table, key)?),
+            None => fastest(table, swept)?,
+        };
+        let x = match column {
+            Some(column) => numbers(table, column)?,
+            None => values.clone(),
+        };
+        Ok(Self {
+            key: key.to_owned(),
+            column: column.unwrap_or(key).to_owned(),
+            values,
+            x,
+        })
+    }
+
+    /// Whether lines may join the points of `curves`: along each the axis below goes one way as the key does.
+    fn has_lines(&self, curves: &[SweepCurve]) -> bool {
+        self.column == self.key
+            || curves.iter().all(|curve| {
+                let mut rows = curve.rows.clone();
+                rows.sort_by(|a, b| self.values[*a].total_cmp(&self.values[*b]));
+                let x = rows.iter().map(|row| self.x[*row]);
+                let x: Vec<f64> = x.filter(|x| x.is_finite()).collect();
+                x.is_sorted() || x.iter().rev().is_sorted()
+            })
+    }
+
+    fn axis(&self, swept: &SweepTable) -> ChartAxis {
+        ChartAxis {
+            is_log: spans_decades(self.x.iter().copied(), 30.0) && is_geometric(&self.x),
+            ..quantity::axis_in(&swept.scenario, &self.column)
+        }
+    }
+}
+
+/// Returns the key that runs fastest of those whose values are numbers, those with a single value last, and its values.
+fn fastest<'a>(table: &TableSource, swept: &'a SweepTable) -> Result<(&'a str, Vec<f64>), String> {
+    let keys = swept.varied().rev();
+    let keys = keys.filter_map(|key| Some((key.as_str(), table.numbers(key)?)));
+    let keys: Vec<(&str, Vec<f64>)> = keys.collect();
+    let varies = |values: &[f64]| values.iter().any(|value| *value != values[0]);
+    let fastest = keys.iter().find(|(_, values)| varies(values));
+    fastest.or(keys.first()).cloned().ok_or_else(|| {
+        let keys: Vec<_> = swept.varied().map(String::as_str).collect();
+        format!("none of the varied keys is a number: {}", keys.join(", "))
+    })
+}
+
+fn too_many_curves(table: &TableSource, swept: &SweepTable, count: usize, along: &str) -> String {
+    let others: Vec<_> = swept
+        .varied()
+        .filter(|key| *key != along)
+        .cloned()
+        .collect();
+    let longer = others.iter().find(|key| {
+        let curves = table
+            .numbers(key)
+            .map(|_| curves::curves(table, swept, key).len());
+        curves.is_some_and(|count| count <= MOST_CURVES)
+    });
+    let map = if swept.axes.len() == 2 {
+        "--kind map draws both keys with colors for the values; "
+    } else {
+        ""
+    };
+    let turned = longer.map_or(String::new(), |key| {
+        format!("--x {key} makes fewer curves; ")
+    });
     format!(
-        "{count} curves would stand beside each other, and {MOST_SWEEP_SERIES} can be told apart: vary {} at fewer values, or name the key with the most values last, which makes it the horizontal axis",
+        "{} are too many to be told apart, {MOST_CURVES} at most: {map}{turned}or vary {} over fewer values",
+        counted(count as u64, "curve"),
         others.join(", ")
     )
 }
@@ -100,11 +175,11 @@ const IN_GAPS: &str = " (gaps: no prediction)";
 const SIMULATED_LABEL: &str = "simulated, without error";
 
 /// The rows of `table` whose runs did not fail.
-fn rows_run(table: &TableSource, varied: &[String]) -> Vec<usize> {
+fn rows_run(table: &TableSource, swept: &SweepTable) -> Vec<usize> {
     let readouts: Vec<_> = table
         .names()
         .iter()
-        .filter(|name| !varied.contains(name))
+        .filter(|name| !swept.has_varied(name) && *name != columns::RELIABLE)
         .filter_map(|name| table.texts(name))
         .collect();
     (0..table.count())
@@ -113,8 +188,8 @@ fn rows_run(table: &TableSource, varied: &[String]) -> Vec<usize> {
 }
 
 /// Whether a line of theory lacks a value where the run gave numbers.
-fn has_gaps(table: &TableSource, columns: &[&str], varied: &[String]) -> bool {
-    let rows = rows_run(table, varied);
+fn has_gaps(table: &TableSource, columns: &[&str], swept: &SweepTable) -> bool {
+    let rows = rows_run(table, swept);
     let mut lines = columns::theory(table, columns).filter_map(|name| table.numbers(name));
     lines.any(|values| {
         let missing = rows.iter().filter(|row| values[**row].is_nan()).count();
@@ -126,6 +201,8 @@ fn has_gaps(table: &TableSource, columns: &[&str], varied: &[String]) -> bool {
 struct SweepFigure<'a> {
     table: &'a TableSource,
     along: &'a [f64],
+    /// Whether lines may join its points.
+    has_lines: bool,
     curves: &'a [SweepCurve],
     /// The longest name in the legend, pt.
     room_pt: f64,
@@ -140,14 +217,25 @@ struct SweepFigure<'a> {
 
 impl SweepFigure<'_> {
     fn panel(&self, quantity: &QuantityColumns) -> Result<Panel, String> {
-        let mut series = Vec::new();
+        let mut series: Vec<ChartSeries> = Vec::new();
+        let is_theory = |part: &QuantityColumn| part.role == QuantityOwner::Theory;
+        let has_both = quantity.iter().any(is_theory) && !quantity.iter().all(is_theory);
         for (place, part) in quantity.iter().enumerate() {
             let values = numbers(self.table, &part.name)?;
-            if part.role == QuantityOwner::Theory {
-                series.extend(self.theory(part, &values, place, quantity.len() == 1));
+            let mut of_part = if is_theory(part) {
+                self.theory(part, &values, place, quantity.len() == 1)
             } else {
-                series.extend(self.points(part, &values)?);
+                self.points(part, &values)?
+            };
+            for one in &mut of_part {
+                // Theory is drawn over the points: many of them would hide its line.
+                one.style.is_behind = has_both && !is_theory(part);
+                one.style.has_halo = has_both && is_theory(part);
+                if !self.has_lines {
+                    one.style.width_pt = 0.0;
+                }
             }
+            series.extend(of_part);
         }
         let values = series.iter().flat_map(|series| &series.points);
         let y = ChartAxis {
@@ -174,7 +262,7 @@ impl SweepFigure<'_> {
             let (name, style) = match part.role {
                 _ if is_other => (
                     self.name(SIMULATED_LABEL, &[]),
-                    SeriesStyle::specks(curve.index),
+                    curve.style(SeriesStyle::specks(curve.index)),
                 ),
                 role => {
                     let word = self.has_theory.then(|| part.word(false));
@@ -183,7 +271,7 @@ impl SweepFigure<'_> {
                         _ => SeriesStyle::marked_line(curve.index),
                     };
                     let name = self.name(&word.unwrap_or_default(), &curve.settings);
-                    (name, style)
+                    (name, curve.style(style))
                 }
             };
             let errors = errors.iter();

@@ -4,10 +4,12 @@ use crate::engine::analysis::readouts::{self, ReadoutSource};
 use crate::engine::text::unit::Unit;
 use crate::plot::chart::ChartAxis;
 use crate::report::figure::quantity::{self, MEASURED_PREFIX, SIMULATED};
-use crate::studies::table::TableSource;
+use crate::studies::table::{SweepTable, TableSource};
 
 const PREDICTED_PREFIX: &str = "predicted_";
 const UNCERTAINTY_INFIX: &str = "_uncertainty";
+/// The column that says whether the other numbers of a row hold.
+pub(super) const RELIABLE: &str = "reliable";
 
 /// Whose number a column holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,15 +55,18 @@ fn bare(name: &str) -> &str {
 /// The quantities of a sweep in the order of its columns: all of them, or those that are asked for.
 pub(super) fn quantities(
     table: &TableSource,
-    varied: &[String],
+    swept: &SweepTable,
     columns: &[&str],
 ) -> Vec<QuantityColumns> {
     let names: Vec<&String> = table
         .names()
         .iter()
         .filter(|name| {
-            let is_asked = columns.is_empty() || columns.contains(&name.as_str());
-            !varied.contains(name) && is_asked && !name.contains(UNCERTAINTY_INFIX)
+            let is_asked = match columns {
+                [] => *name != RELIABLE,
+                columns => columns.contains(&name.as_str()),
+            };
+            !swept.has_varied(name) && is_asked && !name.contains(UNCERTAINTY_INFIX)
         })
         .filter(|name| {
             let numbers = table.numbers(name);

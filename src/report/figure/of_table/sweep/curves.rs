@@ -2,15 +2,18 @@
 //! curves of which it says the same.
 
 use crate::plot::COLUMN_PT;
-use crate::plot::chart::SeriesStyle;
+use crate::plot::chart::{EXACT_COLOR, SeriesStyle};
 use crate::report::figure::of_table::{RowIndices, grouped};
-use crate::report::figure::setting::CurveSetting;
+use crate::report::figure::setting::{CurveSetting, SCHEME_KEY, telling_digits};
 use crate::studies::table::{SweepTable, TableSource};
 
 /// Numbers that differ by no more than this part of themselves are the same.
 const SAME_NUMBER: f64 = 1e-6;
 /// From this many rows on a line looks smooth at the width of a column; with fewer its points are marked.
 const SMOOTH_CURVE_ROWS: f64 = 40.0;
+
+/// The scheme that is the exact motion.
+const EXACT: &str = "exact";
 
 /// The rows of one curve.
 #[derive(Clone, Debug)]
@@ -21,14 +24,30 @@ pub(super) struct SweepCurve {
     pub rows: RowIndices,
     /// The values of what else was varied.
     pub settings: Vec<CurveSetting>,
+    /// Whether its runs are by the scheme `exact`.
+    pub is_exact: bool,
 }
 
-/// The curves of a sweep, of whose keys `along` is on the axis below.
+impl SweepCurve {
+    /// Returns `style` in the color of the exact motion, if its runs are that.
+    pub fn style(&self, style: SeriesStyle) -> SeriesStyle {
+        SeriesStyle {
+            color: if self.is_exact {
+                EXACT_COLOR
+            } else {
+                style.color
+            },
+            ..style
+        }
+    }
+}
+
+/// Returns the curves of a sweep, along which the key `along`, and what varies together with it, varies.
 pub(super) fn curves(table: &TableSource, swept: &SweepTable, along: &str) -> Vec<SweepCurve> {
-    let others: Vec<(&String, Vec<&str>)> = swept
-        .varied
-        .iter()
-        .filter(|key| *key != along)
+    let axes = swept.axes.iter();
+    let others = axes.filter(|keys| !keys.iter().any(|key| key == along));
+    let others: Vec<(&String, Vec<&str>)> = others
+        .flatten()
         .filter_map(|key| Some((key, table.texts(key)?)))
         .collect();
     let values: Vec<String> = (0..table.count())
@@ -37,16 +56,25 @@ pub(super) fn curves(table: &TableSource, swept: &SweepTable, along: &str) -> Ve
             texts.join("\n")
         })
         .collect();
+    let digits: Vec<usize> = others
+        .iter()
+        .map(|(_, texts)| telling_digits(texts.iter().copied()))
+        .collect();
     grouped(&values)
         .into_iter()
         .enumerate()
-        .map(|(index, (_, rows))| SweepCurve {
-            index,
-            settings: others
-                .iter()
-                .map(|(key, texts)| CurveSetting::new(&swept.scenario, key, texts[rows[0]]))
-                .collect(),
-            rows,
+        .map(|(index, (_, rows))| {
+            let values = others.iter().zip(&digits);
+            let settings = values.map(|((key, texts), digits)| {
+                CurveSetting::new(&swept.scenario, key, texts[rows[0]], *digits)
+            });
+            let scheme = others.iter().find(|(key, _)| *key == SCHEME_KEY);
+            SweepCurve {
+                index,
+                settings: settings.collect(),
+                is_exact: scheme.is_some_and(|(_, texts)| texts[rows[0]] == EXACT),
+                rows,
+            }
         })
         .collect()
 }
