@@ -12,7 +12,8 @@ use gyrolab::report::figure::course::{RunSampler, SampleRequest, SampledRun};
 use gyrolab::report::figure::kind::{FIGURE_KIND_NAMES, FigureKind, RESIDUALS};
 use gyrolab::report::figure::labels::FigureLabels;
 use gyrolab::report::figure::of_runs::{self, DrawnFigure, FigureRun, KnownNumbers};
-use gyrolab::report::figure::{FigureSource, FigureSpec, of_table};
+use gyrolab::report::figure::of_table::{self, TableView};
+use gyrolab::report::figure::{FigureSource, FigureSpec};
 use gyrolab::studies::table::TableSource;
 use nalgebra::Vector3;
 use proptest::prelude::*;
@@ -904,7 +905,8 @@ exact,0.0125,80,0,1e-1,n/a,1e-16
 
 #[test]
 fn a_comparison_shows_its_slope() {
-    let chart = of_table::chart(&table(COMPARISON), &[], COLUMN_PT).unwrap();
+    let chart =
+        of_table::chart(&table(COMPARISON), &TableView::of_columns(&[], COLUMN_PT)).unwrap();
     let scene = chart.scene();
     is_tidy(&scene).unwrap();
     let axes = ["largest error (m)", "Δt (s)"];
@@ -913,7 +915,11 @@ fn a_comparison_shows_its_slope() {
     let told = of_table::warning(&table(COMPARISON), &chart).unwrap();
     assert!(told.starts_with("2 of 8 values have no point: "), "{told}");
     // Each column by itself.
-    let other = of_table::chart(&table(COMPARISON), &["energy_drift"], COLUMN_PT).unwrap();
+    let other = of_table::chart(
+        &table(COMPARISON),
+        &TableView::of_columns(&["energy_drift"], COLUMN_PT),
+    )
+    .unwrap();
     assert_eq!(of_table::warning(&table(COMPARISON), &other), None);
     says(&other.scene(), &["relative energy drift"]);
     // A scheme without any error has no place on a logarithmic axis.
@@ -922,10 +928,15 @@ fn a_comparison_shows_its_slope() {
         .replace("4e-15", "0")
         .replace("40,n/a", "40,0");
     for (text, name) in [(COMPARISON, "exact"), (&none, "")] {
-        let of_text = of_table::chart(&table(text), &[], COLUMN_PT).unwrap();
+        let of_text =
+            of_table::chart(&table(text), &TableView::of_columns(&[], COLUMN_PT)).unwrap();
         assert_eq!(of_text.panels[0].series[1].name, name);
     }
-    let wrong = of_table::chart(&table(COMPARISON), &["eror_m"], COLUMN_PT).unwrap_err();
+    let wrong = of_table::chart(
+        &table(COMPARISON),
+        &TableView::of_columns(&["eror_m"], COLUMN_PT),
+    )
+    .unwrap_err();
     assert!(wrong.contains("error_m"), "{wrong}");
 }
 

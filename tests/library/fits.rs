@@ -4,6 +4,7 @@ use crate::support::dice::Dice;
 use crate::support::words::{has, has_all, has_no};
 use gyrolab::engine::data::{DataKind, MeasuredData, at_times, open, read};
 use gyrolab::engine::scenario::{Document, Problems};
+use gyrolab::report::figure::of_table::{self, TableView};
 use gyrolab::studies::fit::report::FitReport;
 use gyrolab::studies::fit::{Fit, Free, Model, NoFit, fit};
 use rayon::prelude::*;
@@ -549,7 +550,7 @@ fn the_csv_of_a_fit_opens_as_the_run_that_was_fitted() {
     let table = gyrolab::studies::table::TableSource::read(&path)
         .unwrap()
         .unwrap();
-    let chart = gyrolab::report::figure::of_table::chart(&table, &[], 240.0).unwrap();
+    let chart = of_table::chart(&table, &TableView::of_columns(&[], 240.0)).unwrap();
     let [values, residuals] = &chart.panels[..] else {
         panic!("{} panels", chart.panels.len())
     };
@@ -564,7 +565,7 @@ fn the_csv_of_a_fit_opens_as_the_run_that_was_fitted() {
     let place = "*z* of weight = 0.1555 m, *z* of second weight = 0 m";
     assert_eq!(values.series[2].name, place);
     // Where the page is too narrow for that, the values stand alone.
-    let narrow = gyrolab::report::figure::of_table::chart(&table, &[], 120.0).unwrap();
+    let narrow = of_table::chart(&table, &TableView::of_columns(&[], 120.0)).unwrap();
     assert_eq!(narrow.panels[0].series[2].name, "0.1555, 0");
     let points = |panel: &gyrolab::plot::chart::Panel| -> usize {
         let series = panel.series.iter();

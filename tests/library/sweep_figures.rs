@@ -4,7 +4,7 @@ use crate::figures::{is_tidy, says, table, words};
 use gyrolab::plot::COLUMN_PT;
 use gyrolab::plot::chart::{Chart, ChartSeries};
 use gyrolab::plot::ink::PointMark;
-use gyrolab::report::figure::of_table;
+use gyrolab::report::figure::of_table::{self, TableView};
 
 #[test]
 fn a_line_of_theory_with_gaps_says_where_they_are_explained() {
@@ -58,7 +58,7 @@ start.tilt_deg,measured_precession_rad_per_s,measured_precession_uncertainty_rad
 
 #[test]
 fn a_sweep_shows_measured_points_with_bars_on_the_predicted_line() {
-    let chart = of_table::chart(&table(SWEEP), &[], COLUMN_PT).unwrap();
+    let chart = of_table::chart(&table(SWEEP), &TableView::of_columns(&[], COLUMN_PT)).unwrap();
     let [panel] = &chart.panels[..] else {
         panic!("{chart:?}")
     };
@@ -80,7 +80,7 @@ fn a_sweep_shows_measured_points_with_bars_on_the_predicted_line() {
 }
 
 fn chart(text: &str) -> Chart {
-    let chart = of_table::chart(&table(text), &[], COLUMN_PT).unwrap();
+    let chart = of_table::chart(&table(text), &TableView::of_columns(&[], COLUMN_PT)).unwrap();
     is_tidy(&chart.scene()).unwrap();
     chart
 }
@@ -180,11 +180,11 @@ fn too_many_quantities_say_which_option_chooses_some() {
         names.join(",")
     );
     let table = table(&text);
-    let refusal = of_table::chart(&table, &[], COLUMN_PT).unwrap_err();
+    let refusal = of_table::chart(&table, &TableView::of_columns(&[], COLUMN_PT)).unwrap_err();
     let (_, example) = refusal.split_once("--kind ").unwrap();
     let example = example.split([';', ' ']).next().unwrap();
     let columns: Vec<_> = example.split(',').collect();
     assert_eq!(columns, ["measured_lowest_z_m", "x_m"]);
-    assert!(of_table::chart(&table, &columns, COLUMN_PT).is_ok());
+    assert!(of_table::chart(&table, &TableView::of_columns(&columns, COLUMN_PT)).is_ok());
     assert!(refusal.starts_with("8 quantities"), "{refusal}");
 }

@@ -47,11 +47,9 @@ impl PlacedPanel {
         draw_curve(&pieces, &series.style.pen(), Some(&self.frame), scene);
     }
 
-    /// Draws a white edge around the dashes of an exact motion, which are seen on dense swings then, and around theory over
-    /// marks.
+    /// Draws a white edge around the dashes of an exact motion, which are seen on dense swings then.
     pub fn draw_halo(&self, series: &ChartSeries, scene: &mut PageScene) {
-        let has_halo = series.style.color == EXACT_COLOR || series.style.has_halo;
-        if has_halo && series.style.width_pt > 0.0 {
+        if series.style.color == EXACT_COLOR && series.style.width_pt > 0.0 {
             let pen = series.style.pen();
             let halo = StrokeStyle {
                 width_pt: pen.width_pt + HALO_PT,

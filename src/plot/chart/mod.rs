@@ -172,8 +172,6 @@ pub struct SeriesStyle {
     pub is_band: bool,
     /// The mark at a few places along its line, which tells it from others without color.
     pub sparse_mark: Option<PointMark>,
-    /// Whether its line has a white edge, so that it is seen on the marks behind it.
-    pub has_halo: bool,
 }
 
 impl Default for SeriesStyle {
@@ -188,7 +186,6 @@ impl Default for SeriesStyle {
             is_dots: false,
             is_band: false,
             sparse_mark: None,
-            has_halo: false,
         }
     }
 }
@@ -230,8 +227,15 @@ const MARKS: [PointMark; MOST_CURVES] = [
 pub const EXACT_COLOR: Color = Color([207, 74, 6]);
 /// The dashes of exact motions: the only one, and those of further runs.
 const EXACT_DASHES: [&[f64]; 4] = [&[3.2, 1.6], &[1.0, 1.2], &[5.0, 1.4, 1.0, 1.4], &[7.0, 2.0]];
-/// The dashes of theory: strokes and gaps, pt.
+/// The dashes of theory: strokes and gaps, pt. Those of the exact motion come last.
 const THEORY_DASHES: [&[f64]; 6] = [
+    &[],
+    &[1.0, 1.2],
+    &[5.0, 1.4, 1.0, 1.4],
+    &[6.5, 2.0],
+    &[2.0, 1.0, 2.0, 3.0],
+    &[3.2, 1.6],
+]; 6] = [
     &[],
     &[3.2, 1.6],
     &[1.0, 1.2],
@@ -345,6 +349,15 @@ impl SeriesStyle {
             width_pt: 0.35,
             mark: Some([PointMark::Cross, PointMark::Plus][place % 2]),
             ..Self::theory(index, 2 + place)
+        }
+    }
+
+    /// Returns the style of the same thing of the exact motion.
+    pub fn as_exact(self) -> Self {
+        Self {
+            color: EXACT_COLOR,
+            dash_pt: EXACT_DASHES[0],
+            ..self
         }
     }
 

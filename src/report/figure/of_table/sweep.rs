@@ -10,6 +10,7 @@ use crate::engine::text::number::counted;
 use crate::plot::chart::legend::longest_name;
 use crate::plot::chart::{ChartAxis, ChartSeries, MOST_CURVES, Panel, SeriesStyle};
 use crate::plot::extent;
+use crate::plot::ink::paler;
 use crate::report::figure::quantity;
 use crate::report::figure::setting::{self, CurveSetting};
 use crate::studies::table::{SweepTable, TableSource};
@@ -47,7 +48,7 @@ pub(super) fn drawn(
         has_theory: roles.contains(&QuantityOwner::Theory),
         has_measured,
         has_points: has_measured || roles.contains(&QuantityOwner::Value),
-        has_gaps: has_gaps(table, &columns, swept),
+        rows_run: rows_run(table, swept),
     };
     let mut panels = quantities
         .iter()
@@ -169,6 +170,8 @@ fn too_many(quantities: &[QuantityColumns]) -> String {
 /// Ratio of greatest to least value from which an axis is logarithmic.
 const DECADES: f64 = 1e3;
 
+/// The part of white in the color of points under a line of theory.
+const UNDER_THEORY_WHITE: f64 = 0.5;
 /// What follows the name of theory of which some line has gaps.
 const IN_GAPS: &str = " (gaps: no prediction)";
 /// What the legend calls values of the run that were not read off its steps, beside those that were.
@@ -187,16 +190,6 @@ fn rows_run(table: &TableSource, swept: &SweepTable) -> Vec<usize> {
         .collect()
 }
 
-/// Whether a line of theory lacks a value where the run gave numbers.
-fn has_gaps(table: &TableSource, columns: &[&str], swept: &SweepTable) -> bool {
-    let rows = rows_run(table, swept);
-    let mut lines = columns::theory(table, columns).filter_map(|name| table.numbers(name));
-    lines.any(|values| {
-        let missing = rows.iter().filter(|row| values[**row].is_nan()).count();
-        (1..rows.len()).contains(&missing)
-    })
-}
-
 /// What is drawn, and over what.
 struct SweepFigure<'a> {
     table: &'a TableSource,
@@ -211,8 +204,8 @@ struct SweepFigure<'a> {
     has_measured: bool,
     /// Whether there are points beside theory.
     has_points: bool,
-    /// Whether a line of theory has gaps.
-    has_gaps: bool,
+    /// The rows whose runs did not fail.
+    rows_run: Vec<usize>,
 }
 
 impl SweepFigure<'_> {
@@ -229,8 +222,10 @@ impl SweepFigure<'_> {
             };
             for one in &mut of_part {
                 // Theory is drawn over the points: many of them would hide its line.
-                one.style.is_behind = has_both && !is_theory(part);
-                one.style.has_halo = has_both && is_theory(part);
+                if has_both && !is_theory(part) {
+                    one.style.is_behind = true;
+                    one.style.color = paler(one.style.color, UNDER_THEORY_WHITE);
+                }
                 if !self.has_lines {
                     one.style.width_pt = 0.0;
                 }
@@ -298,15 +293,24 @@ impl SweepFigure<'_> {
             .curves
             .iter()
             .map(|curve| (curve, points(&curve.rows, self.along, values)));
-        let gaps = if self.has_gaps { IN_GAPS } else { "" };
-        let lines = curves::lines(each).into_iter().map(|line| {
+        let rows = self.rows_run.iter();
+        let missing = rows.filter(|row| values[**row].is_nan()).count();
+        let gaps = if (1..self.rows_run.len()).contains(&missing) {
+            IN_GAPS
+        } else {
+            ""
+        };
+        let lines = curves::lines(each);
+        let is_of_exact = lines.len() == 1 && part.is_of_exact_motion();
+        let lines = lines.into_iter().map(|line| {
             // The curves are told apart by the points: of theory it is said once how it is drawn.
             let name = if self.has_points {
                 self.name(&(part.word(is_alone) + gaps), &[])
             } else {
                 self.name("", &line.settings)
             };
-            let style = line.style(place, self.width_pt);
+            let own = line.style(place, self.width_pt);
+            let style = if is_of_exact { own.as_exact() } else { own };
             ChartSeries::new(name, line.points, style)
         });
         lines.collect()

@@ -37,6 +37,15 @@ pub struct TableView {
 }
 
 impl TableView {
+    /// Returns the curves of these columns on a page of that width.
+    pub fn of_columns(columns: &[&str], width_pt: f64) -> Self {
+        Self {
+            y: columns.iter().map(|name| (*name).to_owned()).collect(),
+            width_pt,
+            ..Self::default()
+        }
+    }
+
     /// Returns what `spec` asks for of `table`.
     pub fn new(table: &TableSource, spec: &FigureSpec) -> Self {
         let asked = spec.kind.as_deref().unwrap_or_default();

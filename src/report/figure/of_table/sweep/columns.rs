@@ -3,10 +3,12 @@
 use crate::engine::analysis::readouts::{self, ReadoutSource};
 use crate::engine::text::unit::Unit;
 use crate::plot::chart::ChartAxis;
+use crate::report::figure::names::EXACT_CURVE_NAME;
 use crate::report::figure::quantity::{self, MEASURED_PREFIX, SIMULATED};
 use crate::studies::table::{SweepTable, TableSource};
 
 const PREDICTED_PREFIX: &str = "predicted_";
+const TRUE_PREFIX: &str = "true_";
 const UNCERTAINTY_INFIX: &str = "_uncertainty";
 /// The column that says whether the other numbers of a row hold.
 pub(super) const RELIABLE: &str = "reliable";
@@ -149,12 +151,22 @@ pub(super) fn axis(parts: &[QuantityColumn]) -> ChartAxis {
 }
 
 impl QuantityColumn {
+    /// Whether it holds what theory says of the exact motion, and no approximation of that.
+    pub fn is_of_exact_motion(&self) -> bool {
+        let source = readouts::find(&self.name).map(|readout| readout.source);
+        let is_of_exact = [PREDICTED_PREFIX, TRUE_PREFIX].map(|word| self.name.starts_with(word));
+        source == Some(ReadoutSource::Theory) && is_of_exact.contains(&true)
+    }
+
     /// What the legend calls it, as markup; `is_alone`: the axis says which theory it is.
     pub fn word(&self, is_alone: bool) -> String {
         let source = readouts::find(&self.name).map(|readout| readout.source);
         match self.role {
             QuantityOwner::Value => String::new(),
             QuantityOwner::Measured => SIMULATED.to_owned(),
+            QuantityOwner::Theory if self.name.starts_with(TRUE_PREFIX) => {
+                EXACT_CURVE_NAME.to_owned()
+            }
             QuantityOwner::Theory if !is_alone && !self.name.starts_with(PREDICTED_PREFIX) => {
                 quantity::axis(&self.name).name
             }
@@ -164,20 +176,6 @@ impl QuantityColumn {
             QuantityOwner::Theory => "theory".to_owned(),
         }
     }
-}
-
-/// The names of theory among the columns that are drawn.
-pub(super) fn theory<'a>(
-    table: &'a TableSource,
-    columns: &'a [&str],
-) -> impl Iterator<Item = &'a str> + 'a {
-    let names = table.names().iter().map(String::as_str);
-    names.filter(|name| {
-        let is_drawn = columns.is_empty() || columns.contains(name);
-        is_drawn
-            && QuantityOwner::from_name(name) == QuantityOwner::Theory
-            && !name.contains(UNCERTAINTY_INFIX)
-    })
 }
 
 /// Two of the columns as an example of a choice, those that were measured before others.
