@@ -7,6 +7,7 @@ use super::writeup::measured;
 use super::{ended_by, refuse, tell, tell_notes};
 use crate::engine::analysis::cost;
 use crate::engine::data::doubts;
+use crate::engine::export::columns::DISTANCE;
 use crate::engine::provenance;
 use crate::engine::scenario::head::is_file;
 use crate::engine::scenario::{Document, Problem, Problems};
@@ -14,7 +15,7 @@ use crate::engine::text::printable::{PrintablePath, printable};
 use crate::physics::scheme;
 use crate::plot::chart::MOST_CURVES;
 use crate::plot::{PT_PER_MM, PageFormat};
-use crate::report::figure::kind::{FIGURE_KIND_NAMES, FigureKind};
+use crate::report::figure::kind::{ERROR, FIGURE_KIND_NAMES, FigureKind};
 use crate::report::figure::of_runs::FigureRun;
 use crate::report::figure::of_table::TABLE_KIND_NAMES;
 use crate::report::figure::{FigureSource, FigureSpec, WIDTHS_MM};
@@ -271,10 +272,17 @@ fn read_source(args: &FigureArgs) -> anyhow::Result<FigureSource> {
         spec.labels.names.clear(); // those of a figure are of other runs
     }
     ask(args, spec);
-    for run in source.runs.iter().filter(|_| spec.exact) {
+    let kind = spec.kind.as_deref().unwrap_or_default();
+    let shows_error = kind == ERROR || kind.split(',').any(|name| name.trim() == DISTANCE);
+    ensure!(
+        !(spec.exact && kind == ERROR),
+        "--kind error shows the distance from the exact motion: --exact adds nothing to it"
+    );
+    for run in source.runs.iter().filter(|_| spec.exact || shows_error) {
         if let Some(why) = cost::why_exact_unavailable(&run.scenario) {
+            let option = if spec.exact { "--exact" } else { kind };
             bail!(
-                "{}: {why}: leave --exact out, or give a shorter --duration",
+                "{}: {why}: leave {option} out, or give a shorter --duration",
                 run.named
             );
         }

@@ -4,6 +4,8 @@ use super::args::{LengthArgs, ScenarioArgs, changed, open};
 use super::layout_args::LayoutArgs;
 use super::progress::{self, Interrupted};
 use super::{ended_by, one_on_stdout, print_result, tell_of_rows};
+use crate::engine::analysis::cost;
+use crate::engine::export::columns::DISTANCE;
 use crate::engine::export::layout::{LayoutFile, above_run_file};
 use crate::engine::export::stream::Ended;
 use crate::engine::export::{CsvLayout, CsvWriter, PlayedRun, RunSummary};
@@ -58,6 +60,11 @@ pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     if args.output.is_some() && layout.begins_after(&scenario) {
         let end = shortest(Clock::end_s(&scenario));
         bail!("no row is left by --from: the run ends at {end} s");
+    }
+    if layout.names().contains(&DISTANCE)
+        && let Some(why) = cost::why_exact_unavailable(&scenario)
+    {
+        bail!("the column {DISTANCE} cannot be computed: {why}: give a shorter --duration");
     }
     let output_path = args.output.as_deref().unwrap_or(Path::new("the output"));
     let (output, interruption) = progress::open(args.output.as_deref(), args.force)?;

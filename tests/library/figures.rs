@@ -618,6 +618,7 @@ fn words_and_axes_are_those_that_were_asked_for() {
         run("loops", &["motion.steps=300"]),
     ];
     let own = FigureLabels {
+        is_log_color: false,
         title: Some("Two tops_1".to_owned()),
         names: ["first", "second"].map(str::to_owned).to_vec(),
         x: Some("time in s".to_owned()),
@@ -985,7 +986,7 @@ proptest! {
             title: names.1.clone(),
             width_pt: width_mm * 72.0 / 25.4,
             x: ChartAxis { is_log: logs.0, ..ChartAxis::new("*t*", "s") },
-            panels: vec![Panel { y: ChartAxis { is_log: logs.1, ..ChartAxis::new("*x*", "m") }, series: series.collect() }],
+            panels: vec![Panel::new(ChartAxis { is_log: logs.1, ..ChartAxis::new("*x*", "m") }, series.collect())],
             is_true_to_scale: false,
             magnified: None,
             are_read_off: true,

@@ -250,6 +250,38 @@ impl ExactReference {
     }
 }
 
+/// Computes the distance of a run's traced point from the exact motion at one step after another.
+#[derive(Clone, Debug)]
+pub struct DistanceMeter {
+    /// `None` if computing it would take too long.
+    motions: Option<(Truth, Companion)>,
+}
+
+impl DistanceMeter {
+    /// Returns a meter for the run of `scenario`, before its start.
+    pub fn new(scenario: &Arc<Scenario>) -> Self {
+        let motions = || (Truth::new(Arc::clone(scenario)), Companion::new(scenario));
+        Self {
+            motions: is_affordable(scenario).then(motions),
+        }
+    }
+
+    /// Returns the distance of the traced point from the exact motion, m, in `state` of the run, which comes after all earlier
+    /// ones. `None` if the exact motion is not known or can no longer be predicted.
+    pub fn distance_m(&mut self, state: &State) -> Option<f64> {
+        let (truth, companion) = self.motions.as_mut()?;
+        companion.look_until(truth, state.time_s);
+        if companion
+            .until_s()
+            .is_some_and(|until_s| state.time_s > until_s)
+        {
+            return None;
+        }
+        let distance_m = Deviation::distance_of(state, truth);
+        distance_m.is_finite().then_some(distance_m)
+    }
+}
+
 fn steps_at_once(scenario: &Scenario) -> usize {
     if has_closed_form(scenario) {
         AT_ONCE

@@ -30,7 +30,7 @@ mod turning_points;
 mod turns;
 pub mod verdict;
 
-pub use deviation::ExactReference;
+pub use deviation::{DistanceMeter, ExactReference};
 pub use extremes::Extremes;
 pub use health::Health;
 pub use monitor::{Instruments, Monitor};

@@ -2,6 +2,7 @@
 
 use super::quantity::{self, COUNTS, RunQuantity, TIME_COLUMN};
 use crate::analysis::readouts::{self, Readout, ReadoutSource};
+use crate::export::columns::DISTANCE;
 use crate::scenario::Problem;
 use crate::scenario::csv::Csv;
 use crate::scenario::keys;
@@ -147,7 +148,7 @@ fn of_series(name: &str) -> Result<ColumnRole, String> {
     if name == TIME_COLUMN {
         return Ok(ColumnRole::Time);
     }
-    if COUNTS.contains(&name) {
+    if COUNTS.contains(&name) || name == DISTANCE {
         return Ok(ColumnRole::Count);
     }
     if let Some(quantity) = RunQuantity::find(name) {

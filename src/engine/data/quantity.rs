@@ -3,6 +3,7 @@
 
 use crate::analysis::readouts::{self, Readout};
 use crate::export::CsvColumn;
+use crate::export::columns::DISTANCE;
 use crate::run::Step;
 use crate::text::unit::Unit;
 use std::sync::LazyLock;
@@ -25,7 +26,8 @@ pub struct RunQuantity {
 /// All quantities that can be measured over time.
 pub static QUANTITIES: LazyLock<Vec<RunQuantity>> = LazyLock::new(|| {
     CsvColumn::all()
-        .filter(|column| column.name != TIME_COLUMN && !COUNTS.contains(&column.name))
+        .filter(|column| ![TIME_COLUMN, DISTANCE].contains(&column.name))
+        .filter(|column| !COUNTS.contains(&column.name))
         .map(|column| RunQuantity {
             name: column.name,
             is_direction: column.name == "azimuth_deg",

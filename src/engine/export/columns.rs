@@ -28,9 +28,11 @@ pub(super) enum CsvCell<'a> {
     Whole(u64),
     Number(f64),
     Text(&'a str),
+    /// An empty field.
+    Nothing,
 }
 
-use CsvCell::{Number, Text, Whole};
+use CsvCell::{Nothing, Number, Text, Whole};
 
 const TRACED_TEXT: &str = "traced point, world frame";
 const MOMENTUM_TEXT: &str = "angular momentum about the pivot, world frame";
@@ -39,6 +41,8 @@ const OMEGA_OF_BODY: &str = "angular velocity along the body's own x, y or axle"
 const TILT: &str = "angle of the axle from +z";
 const AZIMUTH: &str = "azimuth of the axle, counted on through full turns";
 const ENERGY: &str = "kinetic energy, and that of the weight from the pivot";
+const DISTANCE_TEXT: &str =
+    "distance of the traced point from the exact motion; empty where that is not known";
 const SEGMENT: &str = "edits of time step, scheme or gravity before this step";
 
 pub const COLUMNS: &[CsvColumn] = &[
@@ -89,7 +93,13 @@ pub const OPTIONAL_COLUMNS: &[CsvColumn] = &[
     column("w3_rad_per_s", OMEGA_OF_BODY, |r| {
         Number(r.sample.omega().z)
     }),
+    column(DISTANCE, DISTANCE_TEXT, |r| {
+        r.sample.distance_m.map_or(Nothing, Number)
+    }),
 ];
+
+/// The column of the distance from the exact motion, which whoever writes it has to compute.
+pub const DISTANCE: &str = "distance_m";
 
 const PLACE_TEXT: &str = "the point, world frame";
 const VELOCITY: &str = "velocity of the point, world frame";
@@ -134,7 +144,7 @@ impl CsvColumn {
         match (self.cell)(&CsvRow::new(scenario, sample)) {
             Whole(count) => count as f64,
             Number(number) => number,
-            Text(_) => f64::NAN,
+            Text(_) | Nothing => f64::NAN,
         }
     }
 }
@@ -150,11 +160,7 @@ impl<'a> CsvRow<'a> {
     }
 
     fn state(&self) -> State {
-        State {
-            time_s: self.sample.time_s,
-            orientation: self.sample.orientation,
-            momentum: self.sample.momentum,
-        }
+        self.sample.state()
     }
 }
 

@@ -2,11 +2,13 @@
 //! memory does not grow with the run.
 
 use super::CsvLayout;
-use super::columns::{CsvCell, CsvRow, NamedPoint};
+use super::columns::{CsvCell, CsvRow, DISTANCE, NamedPoint};
 use super::layout::commented;
+use crate::analysis::DistanceMeter;
 use crate::run::Sample;
 use crate::scenario::Scenario;
 use std::io::{self, BufWriter, Write};
+use std::sync::Arc;
 
 /// It makes spreadsheet programs read the file as UTF-8.
 const BYTE_ORDER_MARK_TEXT: &str = "\u{feff}";
@@ -19,6 +21,8 @@ pub struct CsvWriter<W: Write> {
     layout: CsvLayout,
     scenario: Scenario,
     points: Vec<NamedPoint>,
+    /// Computes the distance from the exact motion, if there is a column for it.
+    meter: Option<DistanceMeter>,
 }
 
 impl<W: Write> CsvWriter<W> {
@@ -44,10 +48,12 @@ impl<W: Write> CsvWriter<W> {
         } else {
             Vec::new()
         };
+        let has_distance = layout.names().contains(&DISTANCE);
         Ok(Self {
             out,
             line: Vec::new(),
             count: 0,
+            meter: has_distance.then(|| DistanceMeter::new(&Arc::new(scenario.clone()))),
             layout,
             scenario: scenario.clone(),
             points,
@@ -62,7 +68,12 @@ impl<W: Write> CsvWriter<W> {
     /// has asked the layout whether there is one.
     pub fn write(&mut self, sample: &Sample) -> io::Result<()> {
         let is_of_points = self.layout.file().points;
-        let step = CsvRow::new(&self.scenario, sample);
+        let meter = self.meter.as_mut();
+        let compared = Sample {
+            distance_m: meter.and_then(|meter| meter.distance_m(&sample.state())),
+            ..*sample
+        };
+        let step = CsvRow::new(&self.scenario, &compared);
         let points = self.points.iter().map(|point| CsvRow {
             point: point.placed(sample),
             ..step
@@ -99,6 +110,7 @@ fn add(line: &mut Vec<u8>, layout: &CsvLayout, row: &CsvRow<'_>) {
         let begin = line.len();
         match (column.cell)(row) {
             CsvCell::Text(text) => line.extend_from_slice(text.as_bytes()),
+            CsvCell::Nothing => {}
             CsvCell::Whole(count) => line.extend_from_slice(whole.format(count).as_bytes()),
             CsvCell::Number(number) => {
                 line.extend_from_slice(digits.format(number).as_bytes());

@@ -195,6 +195,7 @@ impl Step {
             ),
             rotor_turn: self.rotor_turn,
             segment: self.segment,
+            distance_m: None,
         }
     }
 
@@ -231,9 +232,19 @@ pub struct Sample {
     pub rotor_turn: f64,
     /// Number of edits of time step, scheme or gravity before this step.
     pub segment: u64,
+    /// Distance of the traced point from the exact motion, m; `None` where it was not computed or is not known.
+    pub distance_m: Option<f64>,
 }
 
 impl Sample {
+    pub fn state(&self) -> State {
+        State {
+            time_s: self.time_s,
+            orientation: self.orientation,
+            momentum: self.momentum,
+        }
+    }
+
     /// Returns ω along the body's own x, y and axle, rad/s, as an instrument on the body measures it.
     pub fn omega(&self) -> Vector3<f64> {
         self.orientation.tr_mul(&self.angular_velocity)

@@ -235,13 +235,6 @@ const THEORY_DASHES: [&[f64]; 6] = [
     &[6.5, 2.0],
     &[2.0, 1.0, 2.0, 3.0],
     &[3.2, 1.6],
-]; 6] = [
-    &[],
-    &[3.2, 1.6],
-    &[1.0, 1.2],
-    &[5.0, 1.4, 1.0, 1.4],
-    &[6.5, 2.0],
-    &[2.0, 1.0, 2.0, 3.0],
 ];
 /// The color of the time of a push, before it is made pale.
 const PUSH_COLOR: Color = grey(120);

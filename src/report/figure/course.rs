@@ -1,8 +1,9 @@
 //! The numbers of a figure, from a run that is stepped through: once more, or while something else is read off it.
 
 use super::path::{self, TracedPath};
-use crate::engine::analysis::{ExactReference, Health};
+use crate::engine::analysis::{DistanceMeter, ExactReference, Health};
 use crate::engine::export::CsvColumn;
+use crate::engine::export::columns::DISTANCE;
 use crate::engine::export::stream::{self, Ended};
 use crate::engine::recording::{Extent, Recording, RecordingBin};
 use crate::engine::run::{Clock, NotFinite, Sample, Simulation, Step, Truth};
@@ -162,6 +163,8 @@ pub struct RunSampler {
     curves: Vec<Recording>,
     path: path::PathRecorder,
     above: path::PathRecorder,
+    /// Computes the distance from the exact motion, if that is a curve.
+    meter: Option<DistanceMeter>,
     end_s: f64,
     is_empty: bool,
 }
@@ -174,6 +177,11 @@ impl RunSampler {
             curves: vec![Recording::default(); wanted.columns.len().div_ceil(EXACT_TOGETHER)],
             path: path::PathRecorder::new(false),
             above: path::PathRecorder::new(false),
+            meter: wanted
+                .columns
+                .iter()
+                .any(|column| column.name == DISTANCE)
+                .then(|| DistanceMeter::new(scenario)),
             end_s: 0.0,
             is_empty: true,
             scenario: Arc::clone(scenario),
@@ -221,7 +229,10 @@ impl RunSampler {
         if self.curves.is_empty() {
             return;
         }
-        let numbers = sample();
+        let mut numbers = sample();
+        if let Some(meter) = &mut self.meter {
+            numbers.distance_m = meter.distance_m(&numbers.state());
+        }
         let columns = self.wanted.columns.chunks(EXACT_TOGETHER);
         for (together, curves) in columns.zip(&mut self.curves) {
             let mut values = [0.0; EXACT_TOGETHER];
@@ -368,6 +379,7 @@ fn sample(scenario: &Scenario, state: &State, azimuth: &Azimuth, loads: &Loads) 
         foot_force: observables::pivot_force_z(body, state, loads),
         rotor_turn: 0.0, // no curve shows it
         segment: 0,
+        distance_m: None,
     }
 }
 

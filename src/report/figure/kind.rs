@@ -3,6 +3,7 @@
 use crate::engine::analysis::readouts;
 use crate::engine::data::TimeSeries;
 use crate::engine::export::CsvColumn;
+use crate::engine::export::columns::DISTANCE;
 use crate::engine::recording::RecordedCurve;
 use crate::engine::scenario::problem;
 use crate::engine::scenario::screen::{ABOVE, THREE_D, TRACES};
@@ -10,6 +11,8 @@ use crate::engine::scenario::screen::{ABOVE, THREE_D, TRACES};
 #[derive(Clone, Debug)]
 pub enum FigureKind {
     OverTime(Vec<&'static CsvColumn>),
+    /// The distance from the exact motion over time, on a logarithmic axis.
+    Error(Vec<&'static CsvColumn>),
     /// What was measured less what the run says, a panel for each quantity.
     Residuals,
     Above,
@@ -19,13 +22,14 @@ pub enum FigureKind {
 const MOST_FIGURE_COLUMNS: usize = 30;
 
 pub const RESIDUALS: &str = "residuals";
+pub const ERROR: &str = "error";
 
 /// The kinds of figure of any run, by name.
-pub const RUN_FIGURE_NAMES: [&str; 3] = [TRACES, ABOVE, THREE_D];
+pub const RUN_FIGURE_NAMES: [&str; 4] = [TRACES, ABOVE, THREE_D, ERROR];
 /// Those, and the kind that needs measured data. A list of columns is the other way to name a figure.
-pub const FIGURE_KIND_NAMES: [&str; 4] = {
-    let [traces, above, three_d] = RUN_FIGURE_NAMES;
-    [traces, above, three_d, RESIDUALS]
+pub const FIGURE_KIND_NAMES: [&str; 5] = {
+    let [traces, above, three_d, error] = RUN_FIGURE_NAMES;
+    [traces, above, three_d, error, RESIDUALS]
 };
 
 fn find(name: &str) -> Option<&'static CsvColumn> {
@@ -40,7 +44,7 @@ impl FigureKind {
 
     pub fn columns(&self) -> &[&'static CsvColumn] {
         match self {
-            Self::OverTime(columns) => columns,
+            Self::OverTime(columns) | Self::Error(columns) => columns,
             Self::Above | Self::ThreeD | Self::Residuals => &[],
         }
     }
@@ -51,6 +55,7 @@ impl FigureKind {
                 let names: Vec<_> = columns.iter().map(|column| column.name).collect();
                 names.join(",")
             }
+            Self::Error(_) => ERROR.to_owned(),
             Self::Above => ABOVE.to_owned(),
             Self::ThreeD => THREE_D.to_owned(),
             Self::Residuals => RESIDUALS.to_owned(),
@@ -73,6 +78,7 @@ impl FigureKind {
             ABOVE => return Ok(Self::Above),
             THREE_D => return Ok(Self::ThreeD),
             RESIDUALS => return Ok(Self::Residuals),
+            ERROR => return Ok(Self::Error(find(DISTANCE).into_iter().collect())),
             _ => {}
         }
         let is_list = name.contains(',');

@@ -195,7 +195,7 @@ fn draw(
     let labels = &job.spec.labels;
     let dense;
     let mut scene = match job.kind {
-        FigureKind::OverTime(columns) => {
+        FigureKind::OverTime(columns) | FigureKind::Error(columns) => {
             let (mut chart, told) = over_time(job, columns, drawn)?;
             warnings.extend(told);
             warnings.extend(measured::beyond_runs(job));
@@ -243,6 +243,9 @@ fn over_time(
     drawn: &[SampledRunNumbers],
 ) -> Result<(Chart, Vec<String>), String> {
     let mut chart = charts::over_time(job, columns, drawn);
+    if let FigureKind::Error(_) = job.kind {
+        charts::as_errors(&mut chart, job.runs);
+    }
     let none = measured::over_time(job, &mut chart, columns)?;
     let hidden = job.spec.labels.apply(&mut chart)?;
     Ok((chart, none.into_iter().chain(hidden).collect()))

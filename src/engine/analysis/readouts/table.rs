@@ -287,7 +287,7 @@ readouts! {
     "predicted_tilt_swing_deg", "deg", Scheme, "report's scheme only: swing of the tilt about that lag, by the same theory; also null if the scheme damps or amplifies the nutation in the run", |r| r.report_theory.and_then(|theory| theory.swing_deg(r.sample.step.saturating_sub(r.since)));
     "measured_tilt_swing_deg", "deg", Measured, "maximum tilt minus minimum tilt, as the steps show it", |r| value(r.tilt_swing);
     "measured_tilt_swing_uncertainty_deg", "deg", Measured, "estimate of how much more the tilt swings between the steps", |r| uncertainty(r.tilt_swing);
-    "true_tilt_swing_deg", "deg", Theory, "greatest less least tilt of the exact motion in the whole run; null once the forces have changed", |r| r.predicted_tilts_of_run().map(|(lowest, highest)| highest - lowest);
+    "true_tilt_swing_deg", "deg", Theory, "maximum minus minimum tilt of the exact motion in the whole run; null once the forces have changed", |r| r.predicted_tilts_of_run().map(|(lowest, highest)| highest - lowest);
     "true_steady_lag_deg", "deg", Theory, "true angle between axle and L in slow steady precession; with the report's scheme only, null if the top spins too slowly for a steady precession", |r| r.health.nutation.and_then(|nutation| nutation.true_lag_deg) => so_far(6, "steady").decimals(3);
     "distance_m", "m", Exact, "distance of the traced point from the exact motion; null after predictable_until_s", |r| r.health.deviation.map(|off| off.distance_m) => so_far(8, "off exact").decimals(4);
     "most_distance_m", "m", Exact, "largest distance of the traced point from the exact motion so far, up to predictable_until_s", |r| r.health.most_distance_m;

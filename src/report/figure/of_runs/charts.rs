@@ -4,7 +4,7 @@ use crate::engine::export::CsvColumn;
 use crate::engine::run::Truth;
 use crate::engine::run::marks::Marks;
 use crate::plot::chart::layout::ChartLayout;
-use crate::plot::chart::{Chart, ChartSeries, Panel, SeriesStyle};
+use crate::plot::chart::{Chart, ChartAxis, ChartSeries, Panel, SeriesStyle};
 use crate::report::figure::job::{Dense, FigureJob, FigureRun, SampledRunNumbers};
 use crate::report::figure::spec::FigureSpec;
 use crate::report::figure::{chords, dense, quantity, size};
@@ -48,6 +48,30 @@ pub(super) fn over_time(
         Panel::new(size::axis(job.runs, column.name), series)
     });
     job.chart(x, panels.collect())
+}
+
+/// The decades below the limit of rounding that an axis of errors shows.
+const ROUNDING_DECADES: f64 = 10.0;
+
+/// Gives `chart`, of distances of `runs` from the exact motion over time, a logarithmic axis. Of what is rounding it shows
+/// little, in a stripe: nothing follows from the size of that.
+pub(super) fn as_errors(chart: &mut Chart, runs: &[FigureRun]) {
+    let floors = runs.iter().map(|run| size::rounding_m(&run.scenario));
+    let floor_m = floors.fold(0.0, f64::max);
+    for panel in &mut chart.panels {
+        panel.y = ChartAxis {
+            is_log: true,
+            ..ChartAxis::new("distance from exact motion", panel.y.unit.clone())
+        };
+        let points = panel.series.iter().flat_map(|series| &series.points);
+        let values = points.map(|point| point[1]);
+        let (lowest, highest) = panel.y.range_of(values.filter(|value| *value > 0.0));
+        if lowest < floor_m {
+            let ends = [floor_m / ROUNDING_DECADES, floor_m * ROUNDING_DECADES];
+            panel.y.range = Some((lowest.max(ends[0]), highest.max(ends[1])));
+            panel.series.push(ChartSeries::below("rounding", floor_m));
+        }
+    }
 }
 
 /// Returns the stripes of the pushes of `runs` between two times, s: each stretch of time once.
