@@ -1,5 +1,5 @@
-//! Is a CSV what its header says? What it holds, a run, a sweep, a comparison or a fit, is recomputed and compared with the
-//! file line by line.
+//! Verification of CSV files: recomputes a run, a sweep, a comparison or a fit from the header, and compares the result
+//! with the file line by line.
 
 mod file_comparison;
 mod recipe;
@@ -20,14 +20,19 @@ pub use unverified::{Unverified, other_version};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verified {
     pub rows: u64,
-    /// The first thing that differs; `None` where all is the same.
+    /// The first difference; `None` if file and result are the same.
     pub difference: Option<FileDifference>,
-    /// What else there is to say, a line each: another version, where the run ends early, whether to believe it.
+    /// Remarks, one per line: another version of gyrolab, a run that ends early, the accuracy of the run.
     pub notes: Vec<String>,
 }
 
-/// Recomputes the CSV `path` and compares. `fit` computes the CSV of the fit of a command line. `watch` gets the steps taken
-/// so far (of a sweep the rows) and their number in all, and says whether to go on.
+/// Recomputes the CSV `path` and compares it with the file.
+///
+/// `fit` computes the CSV of a fit from its command line. `watch` is called with the number of steps so far (for a
+/// sweep, rows) and their total, and can stop the computation.
+///
+/// # Errors
+/// Returns an error if the file cannot be read or recomputed, or if `watch` stopped the computation.
 pub fn verify(
     path: &Path,
     fit: impl FnOnce(&str) -> Result<Vec<u8>, Unverified>,
@@ -47,7 +52,7 @@ pub fn verify(
     recipe.describe_columns(&mut comparison);
     let recomputed = recipe.recompute(UntilDifference(&mut comparison), &mut notes, fit, watch);
     if !comparison.differs() {
-        recomputed?; // else it has stopped at the difference
+        recomputed?; // after a difference, the error only says that it stopped there
     }
     let (rows, difference) = comparison.end()?;
     Ok(Verified {
@@ -57,7 +62,7 @@ pub fn verify(
     })
 }
 
-/// The run file in the head of a CSV that gyrolab wrote.
+/// Returns the run file in the header of a CSV from gyrolab.
 fn run_file(head: &Head) -> Result<String, Problems> {
     if head.is_of_csv() {
         return head
@@ -68,9 +73,9 @@ fn run_file(head: &Head) -> Result<String, Problems> {
     let rule = if bytes.is_empty() {
         "is empty: there is nothing to verify"
     } else if bytes.starts_with(b"# ") && bytes.ends_with(b"\n") && head.names().is_empty() {
-        "ends in its header: there are no rows to verify"
+        "ends within its header: there are no rows to verify"
     } else {
-        "is no CSV that gyrolab wrote: those begin with the run file in \"# \" lines, and name their columns below it (a write-up is verified by its folder)"
+        "is not a CSV from gyrolab, which begins with the run file in \"# \" lines, followed by the column names (to verify a write-up, name its folder)"
     };
     Err(Problems::one("", Problem::at("", rule)))
 }

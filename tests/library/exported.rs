@@ -377,7 +377,7 @@ fn an_edited_header_is_found_by_what_it_changes() {
     let result = verified(other.as_bytes()).unwrap();
     assert_eq!(result.difference, None);
     let own = env!("CARGO_PKG_VERSION");
-    let versions = format!("written by gyrolab 9.{own}, computed again by gyrolab {own}");
+    let versions = format!("written by gyrolab 9.{own}, recomputed by gyrolab {own}");
     assert_eq!(result.notes[0], versions);
 }
 
@@ -387,8 +387,8 @@ fn what_cannot_be_computed_again_is_refused_with_the_reason() {
     let body = &text[first_row(text.as_bytes())..];
     for (bytes, words) in [
         ("", "is empty"),
-        ("hello\n", "is no CSV that gyrolab wrote"),
-        ("a,b\n1,2\n", "is no CSV that gyrolab wrote"),
+        ("hello\n", "is not a CSV from gyrolab"),
+        ("a,b\n1,2\n", "is not a CSV from gyrolab"),
         ("# title = 'x'\n", "ends in its header"),
         (body, "without a run file in its header"),
         (

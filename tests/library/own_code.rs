@@ -159,7 +159,7 @@ fn explanations_hold_on_all_rows_that_the_digits_allow() {
             "method-2",
             false,
             &["projector-missing"],
-            "is no rotation: the top is 1.131371 m from the pivot at step 0 and 0 m at step 1",
+            "is not a rotation: the top is 1.131371 m from the pivot at step 0 and 0 m at step 1",
         ),
         (
             "push-up",
@@ -362,15 +362,15 @@ fn what_no_slip_explains_is_said() {
     }
     let (rows, _) = text.split_at(text.find("\n1000,").unwrap());
     for (last, told) in [
-        ("1000,1,0.1,0.2,0.3,1,2,3", "no rotation"),
-        ("1000,1,-0.7,-0.45,1.82,-20,-3,50", "nor two together"),
+        ("1000,1,0.1,0.2,0.3,1,2,3", "not a rotation"),
+        ("1000,1,-0.7,-0.45,1.82,-20,-3,50", "alone or in pairs"),
     ] {
         let verdict = judged(&format!("{rows}\n{last}\n"), "every-slip", &[]);
         assert!(!verdict.agrees && verdict.slips.is_empty(), "{last}");
         has_all(&verdict.lines.join("\n"), ["None of", told]);
     }
     let elsewhere = judged("step,x_m,y_m,z_m\n0,0,0,1.5\n", "every-slip", &[]);
-    let told = ["Its top begins 1.50 m from the foot", "2.00 m"];
+    let told = ["Its top starts 1.50 m from the pivot", "2.00 m"];
     has_all(&elsewhere.lines.join("\n"), told);
 }
 

@@ -39,7 +39,7 @@ fn exports_of_every_kind_are_verified() {
             "spin.csv: the same: all 41 rows",
             "excel.csv: the same: all 41 rows",
             "errors.csv: the same: all 16 rows",
-            "ns_per_step and wall_s are times by the clock",
+            "ns_per_step and wall_s are measured computing times",
         ],
     );
     // The columns on request say what the readouts say at the end.
@@ -87,7 +87,7 @@ fn what_differs_is_told_with_exit_code_1() {
     ground.write("b.csv", "nothing\n");
     ground.write("c.csv", &good);
     let output = ground.run("verify a.csv b.csv c.csv d.csv");
-    let words = "b.csv: is no CSV that gyrolab wrote";
+    let words = "b.csv: is not a CSV from gyrolab";
     failed(&output, &[words, "d.csv: there is no such file"]);
     let wrong_row = ", the row of step 12: t_s is 1.3";
     has_all(stdout(&output), [wrong_row, "c.csv: the same"]);
@@ -112,7 +112,7 @@ fn a_header_that_was_changed_by_hand_is_told_as_such() {
     let good = ground.read("a.csv");
     let changed = good.replace("[0.0, 0.0, 60.0]", "[0.0, 0.0, 61.0]");
     assert_ne!(good, changed);
-    let words = "its rows are not those of the scenario in its header";
+    let words = "its rows do not belong to the scenario in its header";
     has_all(
         differs(&ground, &changed),
         [words, "the row of step 0: Ly_Js is "],
@@ -246,7 +246,7 @@ fn own_rows_are_held_against_a_scenario() {
     let told = [
         "agrees with every-slip in 51 rows",
         "the push's end, at step 200",
-        "Left out: spin_rpm",
+        "Ignored columns: spin_rpm",
     ];
     has_all(stdout(&agrees), told);
     let against = "verify mine.csv --against every-slip --set motion.gravity_m_per_s2=9.79";

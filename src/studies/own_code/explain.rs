@@ -1,4 +1,4 @@
-//! Which slips make the rows of a file: each alone, then two together.
+//! Searches for the slips that explain the rows of a file: one slip, then two together.
 
 use super::follow::{ReferenceRun, Rounding, RowAgreement, compare_rows, difference};
 use super::plan::{PLAN_PARTS, Plan};
@@ -13,59 +13,61 @@ use std::sync::Arc;
 
 const ANOTHER_STEP: &str = "another-dt";
 const ANOTHER_START: &str = "start-of-another-preset";
-/// The number of slips that are looked for.
+/// Number of slips that are tried.
 pub const SLIP_COUNT: usize = SLIPS.len() + 2;
 
-/// The presets whose start may be left in a program: those that a plan can be made of, the report's own first.
+/// Presets whose start may be left over in a program, the report's own first. Each can be made into a plan.
 const STARTS: [&str; 4] = ["method-1", "method-2", "wobble-push", "every-slip"];
 
-/// The least number of steps for which a slip must last to come closest, and how many times as long as the scheme itself.
+/// Minimum number of steps up to which a slip must agree to be called closest, and the minimum as a multiple of the
+/// steps up to which the scheme itself agrees.
 const LASTS: (i64, i64) = (20, 10);
 
-/// How many rows after the first that differs must agree with a pair, and with a slip that is stated as fact.
+/// Number of rows after the first difference that must agree with a pair of slips, or with a slip that is stated as
+/// fact.
 const ROWS_AFTER: usize = 2;
-/// The same of a pair about whose motion rounding decides before the last row.
+/// The same number for a pair, if rounding takes over before the last row.
 const ROWS_BEFORE_PARTING: usize = 20;
-/// The same of one slip, in rows with the digits of single precision.
+/// The same number for one slip, in rows with more than the digits of single precision.
 const ROWS_OF_ONE_BEFORE_PARTING: usize = 8;
-/// Rows are evidence of a slip where they differ from the run without it by this many times what may be off.
+/// Rows are evidence of a slip if they differ from the run without it by this multiple of the tolerance.
 const EVIDENCE: f64 = 50.0;
 
-/// The last step at which rows may begin to differ, where pairs are tried.
+/// Latest step of the first difference for which pairs are tried.
 pub const MOST_FOR_PAIRS: i64 = 4000;
 
 /// A variant of a slip.
 #[derive(Clone, Debug)]
 pub struct Variant {
     pub name: &'static str,
-    /// What the program does.
+    /// Description of the program's behavior.
     program: String,
-    /// What the report does instead, a sentence.
+    /// Description of the report's behavior, a sentence.
     report: String,
     change: SlipChange,
-    /// Its place among all variants.
+    /// Index among all variants.
     place: usize,
 }
 
 #[derive(Clone, Debug)]
 enum SlipChange {
     Of(fn(&mut Mutations)),
-    /// The time step, s, and its place among the file's others.
+    /// The time step, s, and its index among the file's other time steps.
     TimeStep(f64, usize),
-    /// It begins so, with the values of another preset: whether with one of them.
+    /// A start with values of another preset, and true if it is only one value.
     Start(Arc<Plan>, bool),
 }
 
-/// Slips with which all rows agree that could be compared.
+/// Slips that agree with all rows that could be compared.
 #[derive(Clone, Debug)]
 pub struct Explanation {
     pub variants: Vec<Variant>,
-    /// Other variants of the same slips with which the rows agree too.
+    /// Other variants of the same slips that agree with the rows too.
     alternatives: Vec<Vec<Variant>>,
     pub followed: RowAgreement,
-    /// Whether the program computes in single precision.
+    /// True if the program computes in single precision.
     pub is_single: bool,
-    /// By how much the rows differ from the runs without one of the slips, in units of what may be off.
+    /// Difference between the rows and the runs without one of the slips, in units of the tolerance.
     evidence: f64,
 }
 
@@ -74,13 +76,13 @@ impl Explanation {
         self.variants.iter().map(|variant| variant.name).collect()
     }
 
-    /// The program with these slips; `None` where its time step is another one.
+    /// Returns the program with these slips; `None` if its time step differs.
     pub fn program(&self, plan: &Plan) -> Option<MutantStepper<f64>> {
         (!self.names().contains(&ANOTHER_STEP))
             .then(|| program(plan, &self.variants, Order::Forward))
     }
 
-    /// Returns what the program does, and what the report does.
+    /// Describes the behavior of the program and of the report.
     pub fn words(&self) -> String {
         let words: Vec<_> = (0..self.variants.len())
             .map(|place: usize| {
@@ -123,18 +125,18 @@ fn program<T: Real>(plan: &Plan, variants: &[Variant], order: Order) -> MutantSt
     MutantStepper::new(start.unwrap_or(plan), &changes(variants), order)
 }
 
-/// The slips that explain rows, and the closest of the others, if one is close.
+/// The slips that explain the rows, and the closest other slip, if one is close.
 type SearchOutcome = (Vec<Explanation>, Option<Explanation>);
 
-/// The search among programs of one plan for that which has made the rows.
+/// The search for the program of one plan that produced the rows.
 pub struct Search<'a> {
     pub plan: &'a Plan,
     pub rows: &'a ProgramRows,
     /// The first row that differs from the scheme, and its step.
     pub first: (usize, i64),
-    /// Whether the programs compute in single precision.
+    /// True if the programs compute in single precision.
     pub is_single: bool,
-    /// Whether the digits of the rows are too few to tell double from single precision.
+    /// True if the rows have too few digits to distinguish double from single precision.
     pub has_few_digits: bool,
     pub go_on: &'a (dyn Fn() -> bool + Sync),
 }
@@ -173,7 +175,8 @@ impl Variant {
         all
     }
 
-    /// Returns `note` in parentheses, with the name of the point that it is about; `None` if the plan has no such point.
+    /// Returns `note` in parentheses, with the name of the point that it mentions; `None` if the plan has no such
+    /// point.
     fn note(note: &str, change: &SlipChange, plan: &Plan) -> Option<String> {
         let changes = match change {
             SlipChange::Of(change) => {
@@ -221,7 +224,7 @@ impl Variant {
                 if is_other && !all.iter().any(|known| known.program.starts_with(&has)) {
                     all.push(Self {
                         name: ANOTHER_START,
-                        program: format!("{has}, as {preset} has"),
+                        program: format!("{has}, like {preset}"),
                         report: format!("The scenario has {}.", own.join(", ")),
                         change: SlipChange::Start(Arc::new(start), parts.is_power_of_two()),
                         place: 0,
@@ -240,8 +243,10 @@ impl Search<'_> {
         self.try_all(&candidates)
     }
 
-    /// Tries two slips together. A pair with one of those that explain the rows `alone` is no other explanation: its second slip
-    /// changes nothing.
+    /// Tries two slips together.
+    ///
+    /// Pairs that contain a slip from `alone` are skipped: it explains the rows by itself, so the second slip changes
+    /// nothing.
     pub fn in_pairs(&self, alone: &[Explanation]) -> SearchOutcome {
         let has_own_step = self.rows.times.own_s.is_some();
         let mut variants = Variant::all(self.plan, self.rows);
@@ -269,7 +274,7 @@ impl Search<'_> {
             }
         }
         let (mut found, closest) = self.try_all(&pairs);
-        // With few digits anything agrees with a run about which rounding decides soon.
+        // With few digits, any rows agree with a run in which rounding takes over early.
         let needs_all_rows = self.has_few_digits || self.is_single;
         found.retain(|pair| {
             let has_all_rows = pair.followed.parted.is_none();
@@ -278,7 +283,7 @@ impl Search<'_> {
         (found, closest)
     }
 
-    /// Whether the rows are enough for `explanation`, the only one, to be stated as fact. A shift by a row is another difference.
+    /// Returns true if the rows prove `explanation`, the only one. Rows that are shifted do not.
     pub fn is_proof_of(&self, explanation: &Explanation) -> bool {
         let followed = &explanation.followed;
         let after = match (followed.parted, self.has_few_digits) {
@@ -286,7 +291,7 @@ impl Search<'_> {
             (Some(_), false) => ROWS_OF_ONE_BEFORE_PARTING,
             (Some(_), true) => ROWS_BEFORE_PARTING,
         };
-        // Without axes two slips together make the rows of many others.
+        // Without principal axes, two slips together can produce the rows of many other pairs.
         explanation.evidence >= EVIDENCE
             && (explanation.variants.len() == 1
                 || program::<f64>(self.plan, &[], Order::Forward).has_axes())
@@ -295,8 +300,8 @@ impl Search<'_> {
             && !(self.is_single && self.has_few_digits)
     }
 
-    /// Returns those of `candidates` that explain the rows, each list of names once; and of the others the closest, if one is
-    /// close.
+    /// Returns the `candidates` that explain the rows, each list of names once, and the closest other candidate, if one
+    /// is close.
     fn try_all(&self, candidates: &[Vec<Variant>]) -> SearchOutcome {
         let tried: Vec<Option<Explanation>> = cores::map(candidates, |variants| {
             let followed = (self.go_on)().then(|| self.followed(variants))?;
@@ -329,8 +334,8 @@ impl Search<'_> {
         (found, closest)
     }
 
-    /// Whether the rows that can be compared agree with `tried`, and are enough. Two slips explain anything where hardly a row
-    /// can be compared.
+    /// Returns true if all rows that can be compared agree with `tried`, and if they are enough. If very few rows can
+    /// be compared, two slips explain almost anything.
     fn is_explained_by(&self, tried: &Explanation) -> bool {
         let after = match (tried.variants.len(), tried.followed.parted) {
             (1, _) => 0,
@@ -341,7 +346,7 @@ impl Search<'_> {
         tried.followed.explains(last)
     }
 
-    /// Returns how far the rows agree with the program that has the changes of `variants`.
+    /// Compares the rows with the program that has these `variants`.
     fn followed(&self, variants: &[Variant]) -> RowAgreement {
         let (rows, steps) = (self.rows, steps_by(self.rows, variants));
         if self.is_single {
@@ -351,7 +356,8 @@ impl Search<'_> {
         }
     }
 
-    /// Returns by how much the rows that `explanation` explains differ from the runs without one of its slips.
+    /// Returns the smallest difference between the explained rows and the runs without one of the slips, in units of
+    /// the tolerance.
     fn evidence(&self, explanation: &Explanation) -> f64 {
         let (plan, rows, followed) = (self.plan, self.rows, &explanation.followed);
         let without = match &explanation.variants[..] {
@@ -372,7 +378,7 @@ impl Search<'_> {
     }
 }
 
-/// Returns the steps of the rows, by the time step of `variants`.
+/// Returns the steps of the rows for the time step of `variants`.
 fn steps_by<'a>(rows: &'a ProgramRows, variants: &[Variant]) -> &'a RowSteps {
     let others = variants.iter().find_map(|variant| match variant.change {
         SlipChange::TimeStep(_, place) => Some(&rows.times.others[place].1),
@@ -390,7 +396,7 @@ fn double(
     ReferenceRun::new(one, vec![other], Rounding::Double)
 }
 
-/// Returns the run of the program with `variants`, with room for the errors of single precision.
+/// Returns the run of the program with `variants`, with a tolerance for errors of single precision.
 fn single(
     plan: &Plan,
     variants: &[Variant],
@@ -399,14 +405,14 @@ fn single(
     ReferenceRun::new(run, in_single(plan, variants), Rounding::SingleOfSlip)
 }
 
-/// Returns copies of the program with `variants` that compute in single precision, each in another order.
+/// Returns copies of the program with `variants` in single precision, each with another order of additions.
 pub fn in_single(plan: &Plan, variants: &[Variant]) -> Vec<MutantStepper<f32>> {
     let orders = [Order::Forward, Order::Backward, Order::EvenThenOdd];
     orders.map(|order| program(plan, variants, order)).into()
 }
 
-/// The slips that could hide in `rows`, which are the scheme's own: those that change none of them.
-/// `parted` is the step at which rounding decides about the scheme's own motion.
+/// Returns the slips that `rows`, which agree with the scheme, cannot reveal because these slips change none of them.
+/// `parted` is the step at which rounding takes over in the scheme's own motion.
 pub fn hidden(
     plan: &Plan,
     rows: &ProgramRows,
@@ -421,7 +427,7 @@ pub fn hidden(
         }
         let alone = std::slice::from_ref(variant);
         let followed = compare_rows(rows, steps_by(rows, alone), double(plan, alone));
-        // A run that parts from its copy long before the scheme does is another one.
+        // A run whose copies diverge long before those of the scheme is a different run.
         followed.is_whole()
             && followed
                 .parted

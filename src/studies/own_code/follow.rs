@@ -1,4 +1,4 @@
-//! Rows of a file beside a run: up to which of them they agree.
+//! Comparison of the rows of a file with a run, up to the first difference.
 
 use super::rows::{ProgramRows, within};
 use super::step::{MutantStepper, Real};
@@ -6,27 +6,27 @@ use super::times::RowSteps;
 use crate::engine::run::Simulation;
 use std::ops::Range;
 
-/// Two copies of a run have parted where they differ by more than this share of the tolerance of a column of the file.
+/// Two copies of a run have diverged if they differ by more than this fraction of a column's tolerance.
 const PARTED: f64 = 0.1;
-/// Errors of single precision are at most this many times those of the copies in single precision.
+/// Errors of single precision are at most this multiple of the errors of the copies in single precision.
 const ERRORS: f64 = 10.0;
-/// Rounding of numbers in single precision, in units of the largest: of the start, and of what is written.
+/// Rounding of numbers in single precision, relative to the largest: of the start values and of the output.
 const SINGLE_ROUNDING: f64 = 4.0 * f32::EPSILON as f64;
-/// The same of the whole vector, which few digits cannot tell from single precision.
+/// The same rounding for a whole vector, which few digits cannot distinguish from single precision.
 const ROUNDING_OF_ALL: f64 = 2.0 * SINGLE_ROUNDING;
-/// The largest room for errors of single precision that leaves something to compare, as a share of the vector.
+/// Maximum tolerance for errors of single precision, relative to the vector. With more, nothing is left to compare.
 const MOST_SLACK: f64 = 0.02;
-/// The offsets that are tried, in rows.
+/// The offsets to try, in rows.
 const OFFSETS: [i64; 3] = [0, 1, -1];
 
-/// What a run is at one of its steps: the six numbers that may be compared, and what is not known of each.
+/// State of a run at one of its steps: the six numbers to compare, and the uncertainty of each.
 #[derive(Clone, Copy, Debug)]
 struct At {
     values: [f64; 6],
     slack: [f64; 6],
 }
 
-/// Something that makes rows of six numbers.
+/// A source of rows of six numbers.
 pub trait Stepper {
     fn row(&self) -> [f64; 6];
     fn next_step(&mut self);
@@ -42,7 +42,7 @@ impl<T: Real> Stepper for MutantStepper<T> {
     }
 }
 
-/// The scenario's own run; NaN once it has ended.
+/// The scenario's own run. Its rows are NaN after it has ended.
 impl Stepper for Simulation {
     fn row(&self) -> [f64; 6] {
         if self.has_ended() {
@@ -53,30 +53,30 @@ impl Stepper for Simulation {
     }
 
     fn next_step(&mut self) {
-        // The row says it where the run has ended.
+        // An ended run shows in its row.
         let _ = self.step();
     }
 }
 
-/// What the copies of a run are for.
+/// Purpose of the copies of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rounding {
-    /// Copies in double precision: where they differ, rounding decides about the motion.
+    /// Copies in double precision: if they differ, rounding has taken over the motion.
     Double,
-    /// Copies in single precision: their errors are allowed.
+    /// Copies in single precision: their errors are tolerated.
     Single,
-    /// The same, as long as they are small beside the numbers themselves.
+    /// The same, as long as the errors are small compared with the numbers.
     SingleOfSlip,
-    /// The same, and besides the rounding of the whole of L in each of its components.
+    /// The same, plus the rounding of the whole vector in each of its components.
     FewDigits,
 }
 
-/// A run that rows are compared with, from step 0 on, and copies of it that add up in other orders.
+/// A run to compare rows with, from step 0, and copies of it that add in another order.
 pub struct ReferenceRun<A, B> {
     run: A,
     copies: Vec<B>,
     rounding: Rounding,
-    /// The largest error of the copies so far, and the largest number, of each place.
+    /// For each number: the largest error of the copies so far, and the largest absolute value.
     so_far: [[f64; 2]; 6],
 }
 
@@ -91,7 +91,7 @@ impl<A: Stepper, B: Stepper> ReferenceRun<A, B> {
         }
     }
 
-    /// Returns its state now; `None` once rounding has grown so much that the digits of `rows` cannot be compared.
+    /// Returns the current state; `None` if rounding has grown too large to compare the digits of `rows`.
     fn now(&mut self, rows: &ProgramRows) -> Option<At> {
         let values = self.run.row();
         let copies: Vec<_> = self.copies.iter().map(Stepper::row).collect();
@@ -114,7 +114,7 @@ impl<A: Stepper, B: Stepper> ReferenceRun<A, B> {
             *error = errors.fold(*error, f64::max);
             *scale = scale.max(values[place].abs());
         }
-        // Errors of the turn are those of the whole arm. Each component of L is a sum of its own.
+        // An error of the rotation affects the whole arm. Each component of L is a separate sum.
         let slack = std::array::from_fn(|place| {
             let (vector, own) = (place / 3 * 3..place / 3 * 3 + 3, place..place + 1);
             let most = |places: Range<usize>, which: usize| {
@@ -143,24 +143,24 @@ impl<A: Stepper, B: Stepper> ReferenceRun<A, B> {
     }
 }
 
-/// How far rows agree with a run.
+/// Agreement of rows with a run.
 #[derive(Clone, Debug, Default)]
 pub struct RowAgreement {
-    /// By how many rows the file is late.
+    /// Number of rows by which the file is late.
     pub offset: i64,
-    /// How many rows were compared and agree.
+    /// Number of compared rows that agree.
     pub agreeing: usize,
-    /// The first row that differs, with the step and what the run is there.
+    /// The first row that differs, with its step and the state of the run.
     pub differs: Option<RowDifference>,
-    /// The step from which on nothing could be compared, because rounding has grown too much.
+    /// The step from which on rounding is too large to compare anything.
     pub parted: Option<i64>,
-    /// The largest difference in x, y, z, m, and that in L, J s, over the rows that were compared: each with column and step.
+    /// The largest differences over the compared rows, with column and step: of x, y, z in m, and of L in J s.
     pub worst: [Option<Worst>; 2],
     /// The first row that was not compared.
     pub next: usize,
-    /// Whether a row after the start agrees.
+    /// True if a row after the start agrees.
     moves: bool,
-    /// Whether a value of the column of this place is farther from the run than right programs with all digits are.
+    /// For each column: true if a value is farther from the run than a correct program with all digits would be.
     pub is_rounded: [bool; 6],
 }
 
@@ -179,7 +179,7 @@ pub struct Worst {
 }
 
 impl RowAgreement {
-    /// Whether every row that could be compared agrees, and row `row` is one of them.
+    /// Returns true if every row that could be compared agrees, and if `row` is one of them.
     pub fn explains(&self, row: usize) -> bool {
         self.is_whole() && self.next > row
     }
@@ -188,10 +188,10 @@ impl RowAgreement {
         self.differs.is_none() && self.agreeing > 0
     }
 
-    /// Takes in what the run is at `step`.
+    /// Compares the rows that are due at `step` with the state `at` of the run.
     fn compare_due_rows(&mut self, rows: &ProgramRows, steps: &RowSteps, step: i64, at: &At) {
         let (offset, count) = (self.offset * steps.stride, rows.count);
-        // A row before the start repeats the start, or the rows do not begin there.
+        // An offset row before the start must equal the start; otherwise this offset fails.
         while self.next < count
             && steps.of_rows[self.next].saturating_add(offset) <= step
             && self.compare(rows, self.next, step, at)
@@ -200,7 +200,7 @@ impl RowAgreement {
         }
     }
 
-    /// Compares a row. Returns whether it agrees.
+    /// Compares one row, and returns true if it agrees.
     fn compare(&mut self, rows: &ProgramRows, row: usize, step: i64, at: &At) -> bool {
         let mut agrees = true;
         for column in &rows.columns {
@@ -225,8 +225,8 @@ impl RowAgreement {
     }
 }
 
-/// Follows `run` along the rows, which are the `steps` of it, at each offset at once, and gives the one at which the
-/// most rows agree.
+/// Compares `rows`, at the given `steps`, with `run` at several offsets at once. Returns the agreement for the best
+/// offset.
 pub fn compare_rows<A: Stepper, B: Stepper>(
     rows: &ProgramRows,
     steps: &RowSteps,
@@ -252,8 +252,7 @@ pub fn compare_rows<A: Stepper, B: Stepper>(
         run.step();
         step += 1;
     }
-    // Of equals the first.
-    // That the start stands there twice is no agreement with the run.
+    // Of equal results the first wins. A repeated start alone does not count as agreement.
     lanes
         .into_iter()
         .filter(|lane| lane.offset >= 0 || lane.moves)
@@ -268,8 +267,8 @@ pub fn compare_rows<A: Stepper, B: Stepper>(
         .unwrap_or_default()
 }
 
-/// Returns the largest difference between `run` and the first `count` rows, which are the `steps` of it at `offset`, in units
-/// of what may be off. Rows at which rounding decides about the run are not counted.
+/// Returns the largest difference between `run` and the first `count` rows at `offset`, in units of the tolerance. Rows
+/// after rounding has taken over are not counted.
 pub fn difference<A: Stepper, B: Stepper>(
     rows: &ProgramRows,
     count: usize,
@@ -284,7 +283,7 @@ pub fn difference<A: Stepper, B: Stepper>(
             run.step();
             step += 1;
             if run.rounding != Rounding::Double {
-                run.now(rows); // errors of every step count
+                run.now(rows); // the errors of every step count
             }
         }
         let Some(at) = run.now(rows) else {

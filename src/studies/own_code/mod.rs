@@ -1,9 +1,11 @@
-//! Rows that somebody's own program of the report's scheme has written, held against the scheme: do they agree, and if not,
-//! which slip has made them?
+//! The check of a reader's own program of the report's scheme: compares its rows with the scheme, and finds the mistake
+//! that explains a difference. The code calls a common mistake a slip.
 //!
-//! `rows` reads the file, `times` finds the time step of each row, `follow` compares them with a run. `step` has the
-//! report's step in plain code, `slips` the table of slips, `plan` what it begins with, `explain` the search among them.
-//! `words` says what has come out.
+//! - `rows` reads the file, and `times` finds the time step of each row.
+//! - `follow` compares the rows with a run.
+//! - `step` is the report's step in plain code, which `slips` can change. Add a new mistake to the table in `slips`.
+//! - `plan` holds the body and the start of a program. `explain` searches for the mistakes.
+//! - `words` describes the result.
 
 mod explain;
 mod follow;
@@ -30,7 +32,7 @@ use std::sync::Arc;
 pub use step::TRACED_SYMBOL;
 use step::{MutantStepper, Order};
 
-/// The precision in which a program computes, as far as its rows show it.
+/// The floating-point precision of a program, as far as its rows show it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Precision {
@@ -39,62 +41,63 @@ pub enum Precision {
     Unknown,
 }
 
-/// How many explanations the rows have.
+/// Number of explanations found for the rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Explanations {
     Unique,
-    /// More than one, or one beside which the rows allow others that are not known.
+    /// Several explanations, or one that the rows do not prove.
     Several,
     None,
 }
 
-/// What has come out of the comparison, as `--json` gives it.
+/// Result of the comparison, as printed by `--json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Verdict {
     pub agrees: bool,
     pub precision: Precision,
-    /// The significant digits of the column that has the fewest.
+    /// Significant digits of the least precise column.
     pub digits: i32,
-    /// The rows that were compared: where they differ all of the file, else those that agree.
+    /// Number of compared rows: all rows of the file if they differ, else the rows that agree.
     pub rows: usize,
-    /// The rows that agree with the scheme, or else with the first explanation; without one, those up to the first difference.
+    /// Number of rows that agree with the scheme, or with the first explanation. Without either, the rows up to the
+    /// first difference.
     pub rows_compared: usize,
-    /// By how many rows the file is late.
+    /// Number of rows by which the file is late.
     pub offset: i64,
     pub first_step: Option<i64>,
-    /// The columns that differ there, with the values of the file and of the scheme.
+    /// The columns that differ at `first_step`, with the file's and the scheme's values.
     pub columns: Vec<&'static str>,
     pub yours: Vec<f64>,
     pub scheme: Vec<f64>,
-    /// The largest difference of x, y, z, m.
+    /// Largest difference of x, y, z; m.
     pub worst_m: Option<f64>,
     pub explanations: Explanations,
     pub slips: Vec<Vec<&'static str>>,
     pub unseen: Vec<&'static str>,
-    /// The same in words, a line each, the first of which begins behind the file's name.
+    /// The result in words, one line each. The first line follows the file's name.
     #[serde(skip)]
     pub lines: Vec<String>,
-    /// Whether nothing that is known makes the rows.
+    /// True if no known mistake explains the rows.
     #[serde(skip)]
     pub is_unexplained: bool,
     #[serde(skip)]
     pub trial: Option<SlipTrial>,
 }
 
-/// The program with the slip that makes the rows, as it stands before the first step at which they differ.
+/// The program with the mistake that explains the rows, before the first step that differs.
 #[derive(Clone, Debug)]
 pub struct SlipTrial {
-    /// The step that differs.
+    /// The first step that differs.
     pub first: u64,
     program: MutantStepper<f64>,
-    /// What the program does, and the slip's name.
+    /// The slip's name, and a description of the program's behavior.
     pub words: String,
 }
 
 impl SlipTrial {
-    /// The numbers of its step `step`, phase by phase; `None` for the steps before the first that differs, and for those so
-    /// much later that they take long to compute.
+    /// Returns the numbers of the program's step `step`, phase by phase. Returns `None` for steps before the first
+    /// difference, and for steps so late that they take long to compute.
     pub fn numbers(&self, step: u64) -> Option<Vec<(PhaseName, WorkedQuantity)>> {
         const MOST_OFFSET_ROWS: u64 = 1000;
         let later = step
@@ -108,29 +111,32 @@ impl SlipTrial {
     }
 }
 
-/// What was found, before it is put into words.
+/// Findings of the comparison, before they are put into words.
 struct CheckOutcome<'a> {
     name: &'a str,
     scenario: &'a Arc<Scenario>,
     rows: &'a ProgramRows,
-    /// The rows beside the scheme.
+    /// Agreement of the rows with the scheme.
     beside: RowAgreement,
     precision: Precision,
-    /// Whether the rows agree only as far as single precision can, or as far as their few digits show.
+    /// True if the rows agree only within single precision, or within their few digits.
     is_lenient: bool,
-    /// The preset whose own rows these are.
+    /// The preset that produces these rows, if it is not the scenario.
     other: Option<&'static str>,
     explanations: Vec<Explanation>,
-    /// Whether the only explanation is proved by the rows.
+    /// True if the rows prove the only explanation.
     is_proved: bool,
     closest: Option<Explanation>,
     unseen: Vec<&'static str>,
-    /// Whether slips could be looked for, and two together.
+    /// True if a search for slips is possible. `has_pairs` is true if pairs of slips were tried too.
     has_plan: bool,
     has_pairs: bool,
 }
 
-/// Holds `rows` against the run of `scenario`, which is called `name`. `go_on` says whether to go on.
+/// Compares `rows` with the run of `scenario`, which is called `name`. The computation stops if `go_on` returns false.
+///
+/// # Errors
+/// Returns an error if no row can be compared, or if `go_on` stopped the computation.
 pub fn compare(
     rows: &ProgramRows,
     name: &str,
@@ -149,9 +155,9 @@ pub fn compare(
     );
     let beside = compare_rows(rows, &rows.times.steps, run);
     if beside.differs.is_none() && beside.agreeing == 0 {
-        let mut rule = "has no row of a step that there is: steps count from 0".to_owned();
+        let mut rule = "has no row of an existing step: steps count from 0".to_owned();
         if let Some(step) = beside.parted {
-            rule = format!("has no row before step {step}, from which on rounding decides");
+            rule = format!("has no row before step {step}, where rounding errors take over");
         }
         return Err(Problems::one("", Problem::at("", rule)).into());
     }
@@ -187,11 +193,11 @@ pub fn compare(
 }
 
 impl CheckOutcome<'_> {
-    /// Looks for what makes the rows, where they differ from the scheme: a slip, single precision, two slips.
+    /// Searches for an explanation of rows that differ from the scheme: one slip, single precision, or two slips.
     fn explain(&mut self, plan: &Plan, go_on: &(dyn Fn() -> bool + Sync)) {
         let rows = self.rows;
         let Some(differs) = self.beside.differs else {
-            return; // numbers that are not finite after rows of the scheme's own are no slip's
+            return; // no slip explains numbers that are not finite after rows that agree
         };
         self.other = self.other_preset();
         if self.other.is_some() {
@@ -230,7 +236,7 @@ impl CheckOutcome<'_> {
         }
     }
 
-    /// Adds the pairs of slips that explain the rows, where pairs are tried.
+    /// Adds the pairs of slips that explain the rows, if pairs are tried.
     fn try_pairs(&mut self, search: &Search<'_>) {
         if self.has_pairs {
             let (pairs, closest) = search.in_pairs(&self.explanations);
@@ -239,8 +245,8 @@ impl CheckOutcome<'_> {
         }
     }
 
-    /// Compares the rows with the scheme as far as single precision can, or as far as their few digits show; `None` where they
-    /// cannot be of single precision.
+    /// Compares the rows with the scheme, allowing for errors of single precision or of few digits. Returns `None` if
+    /// the rows have too many digits for single precision.
     fn single(&self, plan: &Plan) -> Option<RowAgreement> {
         let rounding = if self.has_few_digits() {
             Rounding::FewDigits
@@ -254,7 +260,7 @@ impl CheckOutcome<'_> {
         Some(compare_rows(self.rows, &self.rows.times.steps, run))
     }
 
-    /// Returns the precision of the program, after slips have been looked for.
+    /// Returns the precision of the program. Call it after the search for slips.
     fn precision(&self, plan: &Plan) -> Precision {
         let rows = self.rows;
         if self.has_few_digits() {
@@ -277,7 +283,8 @@ impl CheckOutcome<'_> {
         }
     }
 
-    /// Returns the column that has the fewest digits. Of constant columns only those count that agree by their few digits alone.
+    /// Returns the column with the fewest digits. A constant column counts only if it agrees just because of its few
+    /// digits.
     fn coarsest(&self) -> Option<&ProgramColumn> {
         let agrees = self.beside.differs.is_none();
         let columns = &self.rows.columns;
@@ -292,12 +299,12 @@ impl CheckOutcome<'_> {
         self.coarsest().map_or(0, ProgramColumn::digits)
     }
 
-    /// Whether the digits are fewer than those of single precision.
+    /// Returns true if the digits are fewer than those of single precision.
     fn has_few_digits(&self) -> bool {
         self.digits() < SINGLE_DIGITS
     }
 
-    /// The preset with which all rows agree.
+    /// Returns the preset that agrees with all rows, if there is one.
     fn other_preset(&self) -> Option<&'static str> {
         self.rows.columns.iter().find(|column| column.varies())?;
         let names = PRESETS.iter().map(|preset| preset.name);
@@ -320,7 +327,8 @@ impl CheckOutcome<'_> {
         })
     }
 
-    /// The program that makes the rows; `None` where that is not known, or where its steps are others than the run's.
+    /// Returns the program that produces the rows. Returns `None` if it is not known, or if its time step differs from
+    /// the run's.
     fn trial(&self, plan: &Plan) -> Option<SlipTrial> {
         let (explanation, differs) = (self.explanations.first()?, self.beside.differs?);
         if !self.is_proved {

@@ -8,13 +8,13 @@ use crate::physics::rotation;
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::TAU;
 
-/// What a program of the report's step begins with.
+/// The input of a program of the report's step.
 #[derive(Clone, Debug)]
 pub struct Plan {
     pub(super) points: Vec<([f64; 3], f64)>,
-    /// The number of rim points, which come first.
+    /// Number of rim points, which come first.
     pub(super) rim: usize,
-    /// The names of the axle's points, which follow.
+    /// Names of the axle's points, which follow the rim.
     pub(super) axle: Vec<String>,
     pub(super) traced: usize,
     start: ProgramStart,
@@ -26,20 +26,20 @@ pub struct Plan {
 #[derive(Clone, Debug)]
 struct ProgramStart {
     tilt_deg: f64,
-    /// Whether the tilt alone makes the orientation.
+    /// True if the tilt alone determines the orientation.
     is_tilt: bool,
     orientation: Matrix3<f64>,
-    /// L, in the frame in which it is stated.
+    /// L in the frame in which the scenario states it, J s.
     momentum: Vector3<f64>,
     momentum_is_of_body: bool,
 }
 
-/// What of a plan may be left from another preset: push, rim, top, tilt and L.
+/// Number of parts of a plan that may be left over from another preset: push, rim, top, tilt and L.
 pub(super) const PLAN_PARTS: usize = 5;
 
 impl Plan {
-    /// The plan of `scenario`; `None` where it is more than the report's step does: another scheme, friction, a rotor, edits,
-    /// pushes in seconds.
+    /// Creates the plan of `scenario`. Returns `None` if the scenario needs more than the report's step: another
+    /// scheme, friction, a rotor, edits, or pushes in seconds.
     pub fn from_scenario(scenario: &Scenario) -> Option<Self> {
         let body = &scenario.body.mechanics;
         let is_plain = scenario.motion.scheme.name == "report"
@@ -85,7 +85,7 @@ impl Plan {
                 None => "no push".to_owned(),
                 Some(push) => {
                     let Window::Steps { count, .. } = push.window else {
-                        return String::new(); // no plan has it
+                        return String::new(); // no plan has a push in seconds
                     };
                     format!("a push of {} N for {count} steps", vector(&push.force))
                 }
@@ -97,7 +97,8 @@ impl Plan {
         }
     }
 
-    /// This plan with those parts of `other` whose bits are set in `parts`; `None` where the bodies are of another kind.
+    /// Returns this plan with the parts of `other` whose bits are set in `parts`; `None` if the two bodies differ in
+    /// kind.
     pub(super) fn with_parts(&self, other: &Self, parts: u8) -> Option<Self> {
         let (count, trace) = (self.points.len(), self.traced);
         let is_alike = self.rim > 0 && (self.rim, count) == (other.rim, other.points.len());
@@ -117,7 +118,7 @@ impl Plan {
         (is_alike && other.start.is_tilt).then_some(plan)
     }
 
-    /// The points of the body with their masses, kg, in the upright pose, m.
+    /// Returns the points of the body in the upright pose, m, with their masses, kg.
     pub(super) fn body(&self, changes: &Mutations) -> Vec<([f64; 3], f64)> {
         let mut points = self.points.clone();
         let Some(&([x, _, height], mass)) = points.first().filter(|_| self.rim > 1) else {
@@ -145,7 +146,7 @@ impl Plan {
         points
     }
 
-    /// Orientation and L at the start.
+    /// Returns the orientation and L at the start.
     pub(super) fn start(&self, changes: &Mutations) -> (Matrix3<f64>, Vector3<f64>) {
         let start = &self.start;
         let angle = if changes.tilt_in_radians {
@@ -171,13 +172,13 @@ impl Plan {
         (turned, momentum)
     }
 
-    /// Returns the hub, the first of the axle's points, if it is not in the plane of the rim.
+    /// Returns the hub, the first point of the axle, if it is not in the plane of the rim.
     pub(super) fn hub(&self) -> Option<usize> {
         let hub = Some(self.rim).filter(|hub| *hub != self.traced && !self.axle.is_empty())?;
         (self.points[hub].0[2] != self.points[0].0[2]).then_some(hub)
     }
 
-    /// Returns the name of the point that takes the place of point `k` as `Other::OfAxle(nth)`, if there is one.
+    /// Returns the name of the point that replaces point `k` as `Other::OfAxle(nth)`, if there is one.
     pub(super) fn other_of_axle(&self, nth: usize, k: usize) -> Option<&str> {
         let named = self.axle.iter().enumerate();
         let mut others = named.filter(|(place, _)| self.rim + place != k);

@@ -1,4 +1,4 @@
-//! The file that a program has written: which columns are compared, to how many digits, and which time step each row is.
+//! The file that a program wrote: its columns, their digits, and the time step of each row.
 
 use super::times::{STEP_NAME, TIME_NAME, Times, find_steps};
 use crate::engine::data::{map_option, name_columns, time_like};
@@ -8,32 +8,32 @@ use crate::engine::scenario::{Problem, Problems};
 use crate::engine::text::number::shortest;
 use crate::engine::text::printable::brief;
 
-/// The columns that are read: those that are compared, the traced point, world frame, and L about the pivot; then those that
-/// say which step a row is.
+/// Names of the columns that are read. First the compared columns: the traced point in the world frame, and L about the
+/// pivot. Then the columns that give the step of a row.
 const ROW_COLUMN_NAMES: [&str; 8] = [
     "x_m", "y_m", "z_m", "Lx_Js", "Ly_Js", "Lz_Js", STEP_NAME, TIME_NAME,
 ];
 pub const COMPARED_COLUMNS: &[&str] = ROW_COLUMN_NAMES.split_at(6).0;
-/// The most values of one file, rows times columns.
+/// Maximum number of values in a file, rows times columns.
 const MOST_ROW_VALUES: usize = 1_000_000;
-/// The digits of single precision, which a column needs to show it.
+/// Digits of single precision. A column needs them to show it.
 pub const SINGLE_DIGITS: i32 = 7;
-/// The digits of double precision.
+/// Digits of double precision.
 const MOST_DIGITS: i32 = 17;
-/// The digits with which a column shows that its values are no numbers of single precision.
+/// Minimum digits with which a column can show that its values are not in single precision.
 const TELLING_DIGITS: i32 = 9;
-/// By how much right programs may differ, m and J s, times the value where it is above 1.
+/// Tolerance for correct programs, m and J s, times the value if it is above 1.
 const AGREEMENT_TOLERANCES: [f64; 2] = [1e-8, 1e-6];
 
 #[derive(Clone, Debug)]
 pub struct ProgramColumn {
-    /// Its place in `ROW_COLUMN_NAMES`.
+    /// Index in `ROW_COLUMN_NAMES`.
     pub place: usize,
     pub values: Vec<f64>,
-    /// How many digits its values have at most: behind the point, and in all.
+    /// Maximum number of decimals. `significant` is the maximum number of significant digits.
     pub decimals: i32,
     significant: i32,
-    /// Whether all values have the same number of decimals.
+    /// True if all values have the same number of decimals.
     pub is_fixed: bool,
 }
 
@@ -44,13 +44,13 @@ pub struct ProgramRows {
     pub count: usize,
     /// The names of the columns that are not compared.
     pub left_out: Vec<String>,
-    /// The line, and the column, of the first number that is not finite; the rows end before it.
+    /// Line and column of the first number that is not finite. The rows end before it.
     pub not_finite: Option<(u64, &'static str)>,
     pub times: Times,
 }
 
 impl ProgramColumn {
-    /// Column `at` of `cells`.
+    /// Reads column `at` of `cells`, and adds its errors to `found`.
     fn read(place: usize, at: usize, cells: &Csv, found: &mut Problems) -> Self {
         let mut column = Self {
             place,
@@ -67,7 +67,7 @@ impl ProgramColumn {
         column
     }
 
-    /// Takes in a number with a decimal point, or a comma where that does not part the columns.
+    /// Adds a number with a decimal point, or with a decimal comma if commas do not separate the columns.
     fn read_number(&mut self, cell: &str, separator: char) -> Option<()> {
         let text = match separator {
             ',' => cell.to_owned(),
@@ -89,7 +89,8 @@ impl ProgramColumn {
         ROW_COLUMN_NAMES[self.place]
     }
 
-    /// The unit of the last digit of `value` in this column. Where all is 0 without decimals, 0 is meant.
+    /// Returns the unit of the last digit of `value` in this column. If all values are 0 without decimals, they are
+    /// exact.
     fn unit(&self, value: f64) -> f64 {
         let of_decimals = 10_f64.powi(self.decimals.saturating_neg());
         match (value == 0.0, self.significant) {
@@ -101,27 +102,28 @@ impl ProgramColumn {
         of_decimals.max(10_f64.powi(first + 1 - self.significant))
     }
 
-    /// Whether `yours` agrees with the scheme's value, of which `slack` is not known.
+    /// Returns true if `yours` agrees with the scheme's value, which is uncertain by `slack`.
     pub fn agrees(&self, yours: f64, scheme: f64, slack: f64) -> bool {
         (yours - scheme).abs() <= 0.5 * self.unit(yours) + within(self.place, scheme) + slack
     }
 
-    /// By how much a value like this one may be off.
+    /// Returns the tolerance for a value in this column.
     pub fn room(&self, value: f64) -> f64 {
         0.5 * self.unit(value) + within(self.place, value)
     }
 
-    /// Returns the number of digits of its longest value. Zeros after the point count: they say that the value is small.
+    /// Returns the number of digits of the longest value. Zeros after the point count, because they show that the value
+    /// is small.
     pub fn digits(&self) -> i32 {
         self.significant.max(self.decimals.min(MOST_DIGITS)).max(1)
     }
 
-    /// Whether each value is a number of single precision, as far as its digits say.
+    /// Returns true if each value is in single precision, as far as its digits show.
     fn is_of_single(&self) -> bool {
         self.values.iter().all(|value: &f64| {
             let nearest = *value as f32;
             let off = (value - f64::from(nearest)).abs();
-            // NumPy and others print the shortest number that reads back to the same float32.
+            // NumPy and others print the shortest number that parses to the same float32.
             off <= 0.5 * self.unit(*value) * (1.0 + 1e-6)
                 || nearest.to_string().parse() == Ok(*value)
         })
@@ -132,13 +134,13 @@ impl ProgramColumn {
     }
 }
 
-/// By how much right programs may differ in the column of this place.
+/// Returns the tolerance for correct programs in the column with this index.
 pub fn within(place: usize, value: f64) -> f64 {
     AGREEMENT_TOLERANCES[place / 3] * value.abs().max(1.0)
 }
 
 impl ProgramRows {
-    /// Whether the program may compute in single precision: whether one of the columns holds its numbers.
+    /// Returns true if the program may compute in single precision, because one of the columns holds such numbers.
     pub fn may_be_single(&self) -> bool {
         let mut varying = self.columns.iter().filter(|column| column.varies());
         let mut telling = varying
@@ -151,7 +153,7 @@ impl ProgramRows {
         telling.any(ProgramColumn::is_of_single)
     }
 
-    /// The rows as a CSV of measured data beside a run of this time step, each at the time of its step.
+    /// Writes the rows as a CSV of measured data for a run with this time step, each at the time of its step.
     pub fn to_csv(&self, time_step_s: f64) -> String {
         let dt = self.times.own_s.unwrap_or(time_step_s);
         let names = self
@@ -169,10 +171,12 @@ impl ProgramRows {
     }
 }
 
-/// Reads `text`, the file of a program. `map` gives columns other names; `every` says that only every so many-th step is there.
+/// Parses `text`, the file of a program.
+///
+/// `map` renames columns. With `every`, the file has every N-th step only.
 ///
 /// # Errors
-/// What is wrong with the file, each with its line.
+/// Returns the errors in the file, each with its line.
 pub fn read(
     text: &str,
     map: &[Renaming],
@@ -197,7 +201,7 @@ pub fn read(
         .map(ProgramColumn::name);
     let not_finite = broken.map(|name| (cells.rows[count].0, name));
     if let Some((line, name)) = not_finite.filter(|_| count == 0) {
-        let rule = "is no finite number in the first row: there is nothing to compare";
+        let rule = "is not finite in the first row: there is nothing to compare";
         return Err(vec![at_line(line, Problem::at(name, rule))].into());
     }
     columns.iter_mut().for_each(|it| it.values.truncate(count));
@@ -225,7 +229,7 @@ pub fn read(
     })
 }
 
-/// The cells of `text` with the names of `map`.
+/// Parses `text`, and renames its columns by `map`.
 fn renamed(text: &str, map: &[Renaming]) -> Result<Csv, Problems> {
     let mut cells = Csv::parse(text, MOST_ROW_VALUES)?;
     cells.rename(map, |name| ROW_COLUMN_NAMES.contains(&name))?;
@@ -244,25 +248,25 @@ fn renamed(text: &str, map: &[Renaming]) -> Result<Csv, Problems> {
     Ok(cells)
 }
 
-/// Why there is nothing to compare in `cells`.
+/// Describes why `cells` has nothing to compare.
 fn nothing_to_compare(cells: &Csv) -> Vec<Problem> {
     let wanted = listed(COMPARED_COLUMNS.iter().copied());
     let rule = match cells.naming {
         Naming::Numbers => format!(
-            "has no line of names: write one above the rows, such as {STEP_NAME},{TIME_NAME},x_m (at least one of {wanted}), or say what the columns are, such as --map 1={STEP_NAME},2={TIME_NAME},3=x_m"
+            "has no line of names: write one above the rows, such as {STEP_NAME},{TIME_NAME},x_m (at least one of {wanted}), or name the columns with an option such as --map 1={STEP_NAME},2={TIME_NAME},3=x_m"
         ),
         Naming::Names => {
             let names = brief(&listed(cells.names.iter().map(String::as_str)), 200);
             let option = map_option(cells, &[], &coordinates(cells)).unwrap_or_default();
             format!(
-                "has none of the columns {wanted}, but {names}: say which is which, such as {option}"
+                "has none of the columns {wanted}, but {names}: name the columns with an option such as {option}"
             )
         }
     };
     vec![Problem::at("", rule)]
 }
 
-/// The columns that are probably x, y and z, or else the first one as x.
+/// Returns the columns that are probably x, y and z; or the first column as x.
 fn coordinates(cells: &Csv) -> Vec<(usize, String)> {
     let mut found = Vec::new();
     for axis in ["x", "y", "z"] {

@@ -1,8 +1,8 @@
 //! The report's step as a student writes it, in plain code.
 //!
-//! It is the scheme of [`physics::report`](crate::physics::report) again, line by line as the report prints it, because a slip
-//! must be able to change any line. Its order of additions can be chosen, and so can its precision: what depends on either is
-//! rounding, and no fault of a program.
+//! It repeats the scheme of [`physics::report`](crate::physics::report) line by line as the report prints it, because a
+//! slip must be able to change any line. The order of additions and the precision can be chosen. Differences that
+//! depend on either are rounding errors, not mistakes of a program.
 
 use super::plan::Plan;
 use super::slips::{Along, FOREVER, Mutations, Other, Sequence};
@@ -23,7 +23,7 @@ pub trait Real: RealField + Copy {
 impl Real for f64 {}
 impl Real for f32 {}
 
-/// In which order sums are added up.
+/// Order in which sums are added.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Order {
     Forward,
@@ -31,10 +31,10 @@ pub enum Order {
     EvenThenOdd,
 }
 
-/// The symbol of the traced point after the step.
+/// Symbol of the traced point after the step.
 pub const TRACED_SYMBOL: &str = "new X";
 
-/// How a step turns the points: about u by an angle, with the matrix R.
+/// Rotation of the points in a step: about u by an angle, with the matrix R.
 #[derive(Clone, Copy, Debug)]
 pub struct StepRotation<T> {
     u: Vector3<T>,
@@ -42,7 +42,7 @@ pub struct StepRotation<T> {
     rotation: Matrix3<T>,
 }
 
-/// A run of the report's step with changes in it. It stands at step 0 at first.
+/// A run of the report's step with changes. It starts at step 0.
 #[derive(Clone, Debug)]
 pub struct MutantStepper<T> {
     changes: Mutations,
@@ -99,7 +99,7 @@ impl<T: Real> MutantStepper<T> {
         program
     }
 
-    /// Whether the moments of inertia differ from axis to axis now.
+    /// Returns true if the current moments of inertia differ from axis to axis.
     pub fn has_axes(&self) -> bool {
         const SAME_WITHIN: f64 = 1e-6;
         let mean = self.inertia.trace() / T::from_double(3.0);
@@ -107,7 +107,7 @@ impl<T: Real> MutantStepper<T> {
         rest.amax().f64() > SAME_WITHIN * mean.f64()
     }
 
-    /// The traced point, world frame, m, and L, J s, as the program writes them.
+    /// Returns the traced point, world frame, m, and L, J s, as the program writes them.
     pub fn row(&self) -> [f64; 6] {
         let momentum = if self.changes.row_late {
             self.earlier
@@ -126,7 +126,7 @@ impl<T: Real> MutantStepper<T> {
         row
     }
 
-    /// One step of the report. Returns the angular velocity, the turn and the torque on its way.
+    /// Takes one step of the report. Returns the angular velocity, the rotation and the torque.
     pub fn step(&mut self) -> (Vector3<T>, Option<StepRotation<T>>, Vector3<T>) {
         self.clock += 1;
         self.earlier = self.momentum;
@@ -157,7 +157,7 @@ impl<T: Real> MutantStepper<T> {
         (omega, turn, torque)
     }
 
-    /// Takes a step, and gives what each phase of it results in, with the phase's name.
+    /// Takes a step, and returns the results of each phase with the phase's name.
     pub fn numbers(&mut self) -> Vec<(PhaseName, WorkedQuantity)> {
         let (omega, turn, torque) = self.step();
         let mut numbers = vec![
@@ -188,7 +188,7 @@ impl<T: Real> MutantStepper<T> {
             .collect()
     }
 
-    /// Equation (2): I = sum of m (|r|^2 E - r r^T), about the pivot.
+    /// Computes equation (2): I = sum of m (|r|^2 E - r r^T), about the pivot.
     fn inertia(&self) -> Matrix3<T> {
         let changes = &self.changes;
         let centre = if changes.about_centre {
@@ -221,7 +221,7 @@ impl<T: Real> MutantStepper<T> {
         }
     }
 
-    /// Whether point `k` is left out of the sum, of the inertia or of the weight.
+    /// Returns true if point `k` is omitted from the sum of the inertia, or of the weight.
     fn is_left_out(&self, k: usize, of_weight: bool) -> bool {
         self.changes.left_out.is_some_and(|(is_last, weight_too)| {
             let place = if is_last {
@@ -233,7 +233,7 @@ impl<T: Real> MutantStepper<T> {
         })
     }
 
-    /// Returns the mass of the whole body, where each point of the rim has it in the sum.
+    /// Returns the mass of the whole body if each rim point has it in the sum.
     fn total(&self, has_it: bool) -> Option<T> {
         has_it.then(|| {
             self.points
@@ -243,7 +243,7 @@ impl<T: Real> MutantStepper<T> {
         })
     }
 
-    /// Returns the place of point `k`, or of the `other` that takes its place.
+    /// Returns the position of point `k`, or of the `other` point that replaces it.
     fn at(&self, other: Option<Other>, k: usize) -> Vector3<T> {
         let mut rim = self.points[..self.rim].iter().map(|(at, _)| at);
         let place = match other {
@@ -261,7 +261,7 @@ impl<T: Real> MutantStepper<T> {
         place.unwrap_or(self.points[k].0)
     }
 
-    /// Omega = I \ L.
+    /// Solves I Omega = L.
     fn omega(&self) -> Vector3<T> {
         let momentum = &self.momentum;
         let omega = solve(&self.inertia, momentum);
@@ -295,7 +295,8 @@ impl<T: Real> MutantStepper<T> {
         sum / total
     }
 
-    /// R = P + cos(|Omega| dt)(E - P) + sin(|Omega| dt)[u]x; `None` where there is no Omega.
+    /// Computes R = P + cos(|Omega| dt)(E - P) + sin(|Omega| dt)[u]x. Returns `None` if Omega is 0 or the points move
+    /// to first order only.
     fn rotation(&self, omega: &Vector3<T>) -> Option<StepRotation<T>> {
         let changes = &self.changes;
         let rate = T::from_double(self.dot(omega, omega).f64().sqrt());
@@ -349,7 +350,7 @@ impl<T: Real> MutantStepper<T> {
         }
     }
 
-    /// Sum of r x F.
+    /// Computes the sum of r x F.
     fn torque(&self) -> Vector3<T> {
         let changes = &self.changes;
         let (mut sum, mut weight) = (Vector3::zeros(), Vector3::zeros());
@@ -391,7 +392,7 @@ impl<T: Real> MutantStepper<T> {
         if changes.torque_reversed { -sum } else { sum }
     }
 
-    /// The force of gravity on point `k`, along z, N.
+    /// Returns the force of gravity on point `k`, along z, N.
     fn weight(&self, k: usize, mass: T) -> T {
         let changes = &self.changes;
         let mass = match changes.without_mass {
@@ -406,7 +407,7 @@ impl<T: Real> MutantStepper<T> {
         }
     }
 
-    /// How many times `push` acts on the step that is taken now.
+    /// Returns how many times `push` acts in the current step.
     fn push_factor(&self, push: &Push) -> f64 {
         let Window::Steps { first, count } = push.window else {
             return 0.0;
@@ -422,7 +423,7 @@ impl<T: Real> MutantStepper<T> {
         if changes.push_reversed { -times } else { times }
     }
 
-    /// L <- L + dt torque.
+    /// Adds dt times the torque to L.
     fn kick(&mut self, mut torque: Vector3<T>) {
         let changes = &self.changes;
         if changes.sums_up {
@@ -461,7 +462,7 @@ impl<T: Real> MutantStepper<T> {
     }
 }
 
-/// Omega = I \ L, by Cramer's rule.
+/// Solves I Omega = L by Cramer's rule.
 fn solve<T: Real>(matrix: &Matrix3<T>, vector: &Vector3<T>) -> Vector3<T> {
     let [a, b, c] = [0, 1, 2].map(|j| matrix.column(j).into_owned());
     let across = b.cross(&c);

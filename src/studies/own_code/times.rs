@@ -1,4 +1,4 @@
-//! Which time step each row of a file is: by its number, else by its time, else by its place.
+//! The time step of each row in a program's file: from its step number, else from its time, else from its position.
 
 use crate::engine::scenario::problem::at_line;
 use crate::engine::scenario::{Problem, Problems};
@@ -8,31 +8,31 @@ pub const STEP_NAME: &str = "step";
 pub const TIME_NAME: &str = "t_s";
 /// The last step that is computed.
 const LAST_COMPUTED_STEP: f64 = 2e5;
-/// By how much of it a time step may seem to differ, as times in single precision do.
+/// Relative tolerance between time steps, for times in single precision.
 const SAME_WITHIN: f64 = 1e-3;
-/// How many steps of its own a program may have taken between two rows that a file has.
+/// Assumed numbers of time steps between two rows of a file.
 const STEPS_A_ROW: [i64; 7] = [1, 2, 5, 10, 20, 50, 100];
-/// Other time steps that are tried where a file has no times, as multiples of the scenario's.
+/// Other time steps to try if a file has no times, as multiples of the scenario's time step.
 const OTHER_TIME_STEPS: [f64; 8] = [0.1, 10.0, 0.01, 100.0, 0.5, 2.0, 0.2, 5.0];
 
-/// The steps of the rows.
+/// The time steps of the rows.
 #[derive(Clone, Debug)]
 pub struct RowSteps {
     pub of_rows: Vec<i64>,
-    /// From one row to the next: by so many steps a row may be off.
+    /// Steps from one row to the next.
     pub stride: i64,
 }
 
 #[derive(Clone, Debug)]
 pub struct Times {
     pub steps: RowSteps,
-    /// The time step that the file itself states, s, where that is another one than the scenario's.
+    /// Time step that the file's times imply, s, if it differs from the scenario's.
     pub own_s: Option<f64>,
-    /// Other time steps, s, that the program may have used, and the steps that the rows are then.
+    /// Other time steps that the program may have used, s, with the steps of the rows for each.
     pub others: Vec<(f64, RowSteps)>,
 }
 
-/// The times of `count` rows. `time` has the times with the unit of their last digit.
+/// Finds the time step of each of `count` rows. `time` holds the times, and the unit of their last digit.
 pub(super) fn find_steps(
     count: usize,
     step: Option<&[f64]>,
@@ -49,7 +49,8 @@ pub(super) fn find_steps(
     };
     let last = times.steps.of_rows.last().copied().unwrap_or(0);
     if last as f64 > LAST_COMPUTED_STEP {
-        let rule = format!("is step {last}: steps up to {LAST_COMPUTED_STEP} are computed");
+        let rule =
+            format!("is step {last}, but only steps up to {LAST_COMPUTED_STEP} are computed");
         return Err(vec![at_line(line(count - 1), Problem::at("its row", rule))].into());
     }
     Ok(times)
@@ -65,7 +66,7 @@ impl RowSteps {
 }
 
 impl Times {
-    /// The rows are these steps, at times that the file does not tell.
+    /// Creates times for rows with known `steps`, if the file does not give the times.
     fn at(steps: RowSteps, time_step_s: f64) -> Self {
         Self {
             others: OTHER_TIME_STEPS
@@ -88,7 +89,7 @@ fn by_step(
         let rule = if number.fract() != 0.0 || !(-1.0..=LAST_COMPUTED_STEP).contains(number) {
             "must be the number of a step: 0, 1, 2 and so on, to 200000"
         } else if row > 0 && *number <= numbers[row - 1] {
-            "must be greater than in the row above: one run in a file"
+            "must be greater than in the row above: put only one run in a file"
         } else {
             continue;
         };
@@ -118,8 +119,7 @@ fn by_time(
     every: Option<i64>,
     time_step_s: f64,
 ) -> Result<Times, Problems> {
-    let rule =
-        "is not one step or so many after the other: print the number of the step too, as step";
+    let rule = "is not evenly spaced: print the number of the step too, as the column step";
     let even = even_gap(times, unit, time_step_s);
     let (gap, off) = even.ok_or_else(|| vec![Problem::at(TIME_NAME, rule)])?;
     let stride = every.unwrap_or_else(|| ((gap / time_step_s).round() as i64).max(1));
@@ -142,7 +142,7 @@ fn by_time(
     let own = others.first().map(|(own, _)| *own);
     let steps = RowSteps::evenly(times.len(), begins, stride);
     if is_own {
-        others.extend(Times::at(steps.clone(), time_step_s).others); // its times may not be those of its steps
+        others.extend(Times::at(steps.clone(), time_step_s).others); // the printed times may be wrong
     }
     Ok(Times {
         own_s: own.filter(|_| !is_own),
@@ -151,7 +151,7 @@ fn by_time(
     })
 }
 
-/// The time from one row to the next, and by how much it may be off; `None` where the rows do not follow evenly.
+/// Returns the time between rows and its uncertainty; `None` if the rows are not evenly spaced.
 fn even_gap(times: &[f64], unit: f64, time_step_s: f64) -> Option<(f64, f64)> {
     let last = times.len() - 1;
     if last == 0 {
@@ -170,7 +170,7 @@ fn is_same(own: f64, other: f64, off: f64) -> bool {
     (own - other).abs() <= SAME_WITHIN * other + 2.0 * off
 }
 
-/// The number with the fewest digits that is within `most_off` of `number`.
+/// Returns the number with the fewest digits within `most_off` of `number`.
 fn plain(number: f64, most_off: f64) -> f64 {
     let off = most_off.max(1e-12 * number.abs());
     let mut plainer = (1..17).map(|digits| rounded(number, digits));

@@ -1,4 +1,4 @@
-//! What has come out of the comparison of own code with the scheme, as a verdict and in words.
+//! The result of the comparison as a verdict and in words.
 
 use super::explain::{Explanation, MOST_FOR_PAIRS, SLIP_COUNT};
 use super::follow::{RowDifference, Worst};
@@ -10,14 +10,14 @@ use crate::engine::text::number::{counted, short, shortest, significant};
 use crate::engine::text::printable::brief;
 use nalgebra::Vector3;
 
-/// The preset whose body and push show every slip.
+/// The preset whose body and push reveal every slip.
 const EVERY_SLIP: &str = "every-slip";
 const TRY_EVERY_SLIP: &str =
-    "run your program on the preset every-slip, and verify its rows --against every-slip";
+    "run your program on the preset every-slip and verify its rows with --against every-slip";
 const COLUMN_UNITS: [&str; 2] = ["m", "J s"];
-/// A point's distance from the pivot changes by less of it where rounding alone changes it.
+/// Relative change of a point's distance from the pivot that rounding errors alone cannot cause.
 const LENGTHENED: f64 = 1e-3;
-/// Digits of the values that differ.
+/// Digits shown of values that differ.
 const DIFFERENCE_DIGITS: usize = 12;
 
 impl CheckOutcome<'_> {
@@ -59,7 +59,7 @@ impl CheckOutcome<'_> {
         }
     }
 
-    /// The columns that differ first, with the values of the file and of the scheme.
+    /// Returns the columns of the first difference, with the file's and the scheme's values.
     fn differing(&self) -> Vec<(&ProgramColumn, f64, f64)> {
         self.beside
             .differs
@@ -81,25 +81,25 @@ impl CheckOutcome<'_> {
         if let Some(own) = rows.times.own_s {
             let [own, dt] = [own, dt].map(shortest);
             lines.push(format!(
-                "its time step is {own} s by its times, that of {name} is {dt} s"
+                "its times imply a time step of {own} s, but {name} has {dt} s"
             ));
         }
         if agrees {
             lines.push(self.agreement());
-            lines.extend(self.too_few_digits("a difference this small cannot be seen"));
+            lines.extend(self.too_few_digits("small differences cannot be detected"));
             lines.extend(self.not_reached());
         } else {
             lines.push(self.difference());
         }
         if let Some((line, column)) = rows.not_finite {
             lines.push(format!(
-                "In line {line} {column} is no finite number: the rows are compared up to there."
+                "In line {line}, {column} is not finite: only the rows before it are compared."
             ));
         }
         let shift = shifted(self.beside.offset);
         lines.extend(shift.map(|shift| format!("The rows are {shift}.")));
         lines.extend(self.beside.parted.map(|step| format!(
-            "From step {step} on rounding decides about the motion of this scenario: the rows there are not compared."
+            "From step {step} on, rounding errors take over in this scenario: these rows are not compared."
         )));
         if agrees {
             lines.extend(self.hidden());
@@ -115,7 +115,7 @@ impl CheckOutcome<'_> {
         let [of_points, of_momentum] = self.beside.worst;
         let mut worst = worst_of([of_points, of_momentum]);
         let as_far = match self.precision {
-            Precision::Single => " as far as single precision can: compute in double",
+            Precision::Single => " within single precision: compute in double",
             Precision::Unknown if self.has_few_digits() => " to the digits written",
             _ => "",
         };
@@ -125,7 +125,7 @@ impl CheckOutcome<'_> {
         format!("agrees with {name} in {rows}{as_far}; {worst}")
     }
 
-    /// Says how many digits are needed, where they are too few, so that `problem`.
+    /// Explains the consequence `problem` of too few digits, and how many are needed.
     fn too_few_digits(&self, problem: &str) -> Option<String> {
         let coarsest = self.coarsest().filter(|_| self.has_few_digits())?;
         let name = coarsest.name();
@@ -139,7 +139,7 @@ impl CheckOutcome<'_> {
         ))
     }
 
-    /// What the rows do not reach.
+    /// Describes the part of the run that the rows do not reach.
     fn not_reached(&self) -> Option<String> {
         let steps = &self.rows.times.steps;
         let last = steps.of_rows.last()? + self.beside.offset * steps.stride;
@@ -153,9 +153,7 @@ impl CheckOutcome<'_> {
             for (what, time_s) in [("begin", begin), ("end", end)] {
                 let step = (time_s / self.scenario.motion.time_step_s).round() as i64;
                 if time_s.is_finite() && step > last {
-                    beyond.push(format!(
-                        "the push's {what}, at step {step}, is not among them"
-                    ));
+                    beyond.push(format!("the push's {what}, at step {step}, is missing"));
                 }
             }
         }
@@ -169,7 +167,7 @@ impl CheckOutcome<'_> {
 
     fn difference(&self) -> String {
         let Some(differs) = self.beside.differs else {
-            return "its numbers are not finite, the scheme's are".to_owned();
+            return "has numbers that are not finite, unlike the scheme".to_owned();
         };
         let differing = self.differing();
         let mut whose = match self.scenario.motion.scheme.name {
@@ -199,14 +197,14 @@ impl CheckOutcome<'_> {
         format!("differs at step {}: {off}{same}", differs.step)
     }
 
-    /// Which slips explain the rows, or that none does.
+    /// Describes the slips that explain the rows.
     fn explained(&self) -> Vec<String> {
         if !self.has_plan {
-            let words = "Slips are looked for in runs of the report's scheme alone (--set motion.scheme=report), without friction, rotor, edits and pushes in seconds.";
+            let words = "Mistakes are searched for only in runs of the report's scheme (--set motion.scheme=report) without friction, rotor, edits and pushes in seconds.";
             return vec![words.to_owned()];
         }
         if let Some(other) = self.other {
-            return vec![format!("These rows are {other}'s: hold them against that.")];
+            return vec![format!("These rows are {other}'s: use --against {other}.")];
         }
         if self.is_unexplained() {
             return vec![self.unexplained()];
@@ -221,14 +219,14 @@ impl CheckOutcome<'_> {
         }
         lines.push("These rows are also produced by:".to_owned());
         lines.extend(self.explanations.iter().map(listed));
-        let too_few = self.too_few_digits("other causes may leave the same rows");
+        let too_few = self.too_few_digits("other causes may produce the same rows");
         let why = match (self.explanations.len(), too_few) {
-            (_, Some(words)) => format!("That is no proof. {words}"),
-            (1, None) if self.explanations[0].names().len() > 1 && self.name != EVERY_SLIP => format!("Other differences may produce them too, in a scenario that hides slips: {TRY_EVERY_SLIP}."),
-            (1, None) => "Other differences may produce them too: these rows are too few, or differ by too little. Write every row, from the start on.".to_owned(),
-            (_, None) if self.name == EVERY_SLIP => "These rows cannot tell them apart.".to_owned(),
+            (_, Some(words)) => format!("This is not a proof. {words}"),
+            (1, None) if self.explanations[0].names().len() > 1 && self.name != EVERY_SLIP => format!("Other differences may produce them too, because this scenario hides mistakes: {TRY_EVERY_SLIP}."),
+            (1, None) => "Other differences may produce them too: these rows are too few, or differ too little. Write every row from the start.".to_owned(),
+            (_, None) if self.name == EVERY_SLIP => "These rows cannot distinguish them.".to_owned(),
             (_, None) => {
-                format!("These rows cannot tell them apart: {TRY_EVERY_SLIP}.")
+                format!("These rows cannot distinguish them: {TRY_EVERY_SLIP}.")
             }
         };
         lines.push(why);
@@ -240,16 +238,17 @@ impl CheckOutcome<'_> {
     }
 
     fn unexplained(&self) -> String {
-        let mut text = format!("None of {SLIP_COUNT} slips, nor two together, makes this file.");
+        let mut text =
+            format!("None of {SLIP_COUNT} known mistakes, alone or in pairs, explains these rows.");
         if !self.has_pairs {
             text = format!(
-                "None of {SLIP_COUNT} slips makes this file. Two together are tried where rows differ from step {MOST_FOR_PAIRS} or sooner: write the first steps too."
+                "None of {SLIP_COUNT} known mistakes explains these rows. Pairs are tried only if the rows differ by step {MOST_FOR_PAIRS}: write the first steps too."
             );
         }
         if let Some(closest) = &self.closest {
             let step = closest.followed.differs.map_or(0, |differs| differs.step);
             let (names, words) = (closest.names().join(" + "), closest.words());
-            text += &format!("\n{names} comes closest, up to step {step}: {words}");
+            text += &format!("\nThe closest is {names}, up to step {step}: {words}");
         }
         if let Some(words) = self.about_top() {
             text += &format!("\n{words}");
@@ -257,7 +256,7 @@ impl CheckOutcome<'_> {
         text
     }
 
-    /// Says where the top begins elsewhere, or does not keep its distance from the foot.
+    /// Describes a wrong start of the top, or a changing distance from the pivot.
     fn about_top(&self) -> Option<String> {
         let [x, y, z, ..] = &self.rows.columns[..] else {
             return None;
@@ -267,10 +266,12 @@ impl CheckOutcome<'_> {
         let [own, right] = [at(0), Vector3::from_column_slice(&differs.scheme[..3])].map(|point| {
             let tilt = libm::acos(point.z / point.norm()).to_degrees();
             let [radius, tilt] = [point.norm(), tilt].map(short);
-            format!("{radius} m from the foot, tilted by {tilt} degrees")
+            format!("{radius} m from the pivot, tilted by {tilt} degrees")
         });
         if differs.step == 0 && own != right {
-            return Some(format!("Its top begins {own}, the scenario's {right}."));
+            return Some(format!(
+                "Its top starts {own}; the scenario's starts {right}."
+            ));
         }
         let lost = (1..self.rows.count).find(|row| {
             let [first, now] = [0, *row].map(|row| at(row).norm());
@@ -283,7 +284,7 @@ impl CheckOutcome<'_> {
         });
         let [begin, step] = [0, lost].map(|row| self.rows.times.steps.of_rows[row]);
         Some(format!(
-            "The rotation matrix is no rotation: the top is {first} m from the pivot at step {begin} and {now} m at step {step}."
+            "The rotation matrix is not a rotation: the top is {first} m from the pivot at step {begin} and {now} m at step {step}."
         ))
     }
 
@@ -292,11 +293,11 @@ impl CheckOutcome<'_> {
         let names = brief(&names.collect::<Vec<_>>().join(", "), 200);
         let columns = COMPARED_COLUMNS.join(", ");
         (!names.is_empty()).then(|| {
-            format!("Left out: {names} (compared are {columns}; --map gives a column one of these names).")
+            format!("Ignored columns: {names} (compared are {columns}; --map gives a column one of these names).")
         })
     }
 
-    /// Which slips these rows cannot show.
+    /// Lists the slips that these rows cannot reveal.
     fn hidden(&self) -> Option<String> {
         let (count, names) = (self.unseen.len() as u64, self.unseen.join(", "));
         let remedy = if self.name == EVERY_SLIP {
@@ -304,13 +305,13 @@ impl CheckOutcome<'_> {
         } else {
             TRY_EVERY_SLIP
         };
-        let slips = counted(count, "slip");
+        let slips = counted(count, "mistake");
         (count > 0)
-            .then(|| format!("These rows would hide {slips}: {names}. To see them, {remedy}."))
+            .then(|| format!("These rows would hide {slips}: {names}. To reveal them, {remedy}."))
     }
 }
 
-/// The largest difference, of x, y, z where there is one of these columns.
+/// Describes the largest difference, preferably of x, y, z.
 fn worst_of(worst: [Option<Worst>; 2]) -> String {
     worst
         .into_iter()
@@ -323,16 +324,18 @@ fn worst_of(worst: [Option<Worst>; 2]) -> String {
         })
 }
 
-/// States the only explanation.
+/// Describes the only explanation.
 fn stated(explanation: &Explanation) -> String {
     let begin = match &explanation.names()[..] {
-        [name] if *name == ANOTHER_READING => "another reading of the report's push, and no slip",
+        [name] if *name == ANOTHER_READING => {
+            "another interpretation of the report's push, not a mistake"
+        }
         [_] => "the report's scheme with one difference",
         _ => "the report's scheme with two differences",
     };
     let names = explanation.names().join(" + ");
     let (words, rows) = (explanation.words(), compared(explanation));
-    format!("This is {begin} ({names}): {words}\nWith that {rows}.")
+    format!("This is {begin} ({names}): {words}\nWith this change, {rows}.")
 }
 
 fn listed(explanation: &Explanation) -> String {
@@ -340,7 +343,7 @@ fn listed(explanation: &Explanation) -> String {
     format!("  {names} ({}): {words}", compared(explanation))
 }
 
-/// Says how many rows agree with an explanation.
+/// Describes how many rows agree with an explanation.
 fn compared(explanation: &Explanation) -> String {
     let followed = &explanation.followed;
     let rows = match followed.agreeing {
@@ -351,7 +354,7 @@ fn compared(explanation: &Explanation) -> String {
     let mut text = match followed.parted {
         None => format!("all {rows}, {worst}"),
         Some(step) => {
-            format!("{rows}, {worst}; from step {step} on rounding decides about the motion")
+            format!("{rows}, {worst}; from step {step} on, rounding errors take over")
         }
     };
     if let Some(shift) = shifted(followed.offset) {
@@ -360,20 +363,20 @@ fn compared(explanation: &Explanation) -> String {
     text
 }
 
-/// Says at which offset the rows were compared.
+/// Describes the offset at which the rows were compared.
 fn shifted(offset: i64) -> Option<&'static str> {
     match offset {
         0 => None,
         1.. => Some(
-            "compared one row later: the file begins after the start, or numbers its rows one too low",
+            "compared one row later: the file starts after the first step, or its row numbers are too low by one",
         ),
         _ => Some(
-            "compared one row earlier: the file has the start twice, or numbers its rows one too high",
+            "compared one row earlier: the file contains the start twice, or its row numbers are too high by one",
         ),
     }
 }
 
-/// The name of a column without its unit.
+/// Returns the name of a column without its unit.
 fn bare(place: usize) -> &'static str {
     let name = COMPARED_COLUMNS[place];
     name.split('_').next().unwrap_or(name)

@@ -1,4 +1,4 @@
-//! The lines of a file, compared with those that are computed.
+//! Comparison of a file with the recomputed text, line by line.
 
 use crate::engine::scenario::head::Head;
 use crate::engine::text::printable::brief;
@@ -7,14 +7,14 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, Cursor, Read, Write};
 use std::path::Path;
 
-/// The most bytes of a line that are read beyond its computed length.
+/// Maximum number of bytes read from a line beyond its computed length.
 const MOST_LINE_EXCESS: u64 = 4096;
-/// The most characters of a line or a field that are shown.
+/// Maximum number of characters shown of a line or a field.
 const MOST_SHOWN: usize = 60;
-/// The header's line with the version, which may be another one.
+/// Start of the header line with the version, which is not compared.
 const CSV_VERSION_LINE: &[u8] = b"# gyrolab = ";
 
-/// The first thing in a file that is not as it is computed.
+/// The first difference between a file and the recomputed text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FileDifference {
     pub line: u64,
@@ -27,26 +27,29 @@ impl fmt::Display for FileDifference {
     }
 }
 
-/// Compares what is written to it with a file, line by line up to the first difference.
+/// A writer that compares its input with a file, line by line up to the first difference.
 pub struct FileComparison {
     file: Box<dyn BufRead>,
     pub delimiter: u8,
-    /// How many of the first columns say which row it is.
+    /// Number of leading columns that identify a row.
     pub keys: usize,
     /// The columns that are not compared.
     pub left_out: &'static [&'static str],
-    /// The computed line, as far as it has come.
+    /// The computed line so far.
     computed: Vec<u8>,
     line: u64,
     names: Option<Vec<String>>,
     rows: u64,
-    /// The first line that ends in CR LF.
+    /// Number of the first line that ends in CR LF.
     rewritten: Option<u64>,
     difference: Option<FileDifference>,
 }
 
 impl FileComparison {
-    /// The CSV of a run with all its rows and columns.
+    /// Opens the CSV of a run to compare all rows and columns.
+    ///
+    /// # Errors
+    /// Returns an error if the file cannot be read.
     pub fn open(path: &Path) -> io::Result<Self> {
         let mut file = BufReader::new(File::open(path)?);
         let head = Head::read(&mut file)?;
@@ -56,7 +59,7 @@ impl FileComparison {
         })
     }
 
-    /// A file of which `head` has been read, and `rest` not.
+    /// Compares with a file whose `head` has been read; `rest` is the remainder.
     pub fn new(head: &Head, rest: impl Read + 'static) -> Self {
         let head = Cursor::new(head.bytes().to_vec());
         Self {
@@ -73,39 +76,39 @@ impl FileComparison {
         }
     }
 
-    /// Whether a difference has been found.
+    /// Returns true if a difference has been found.
     pub fn differs(&self) -> bool {
         self.difference.is_some()
     }
 
-    /// How many rows are the same, and what differs first.
+    /// Finishes the comparison. Returns the number of equal rows, and the first difference.
     pub fn end(mut self) -> io::Result<(u64, Option<FileDifference>)> {
         if !self.differs() {
             let more = self.next(MOST_LINE_EXCESS)?;
             if !more.is_empty() {
                 let (line, text) = (self.line, shown(&more));
                 self.differ(format!(
-                    "line {line} is \"{text}\", where the computed rows have come to their end"
+                    "line {line} is \"{text}\", but the computed rows have ended"
                 ));
             }
         }
         if let Some(line) = self.rewritten {
             self.line = line;
             self.differ(format!(
-                "every row is the same, but the lines end in CR LF from line {line} on, where gyrolab writes LF: \
+                "every row is the same, but the lines end in CR LF from line {line} on instead of LF: \
                  another program has rewritten the file"
             ));
         }
         Ok((self.rows, self.difference))
     }
 
-    /// This line of the file differs. Only the first difference counts.
+    /// Records a difference in the current line. Only the first difference is kept.
     fn differ(&mut self, text: String) {
         let line = self.line;
         self.difference.get_or_insert(FileDifference { line, text });
     }
 
-    /// The next line of the file with its end, of which no more than `most` bytes are read; empty behind the last.
+    /// Reads the next line of the file with its line end, at most `most` bytes; empty at the end of the file.
     fn next(&mut self, most: u64) -> io::Result<Vec<u8>> {
         let mut line = Vec::new();
         self.line += 1;
@@ -113,7 +116,7 @@ impl FileComparison {
         Ok(line)
     }
 
-    /// Compares the computed line with the next one of the file.
+    /// Compares the computed line with the next line of the file.
     fn compare(&mut self) -> io::Result<()> {
         let computed = std::mem::take(&mut self.computed);
         let mut there = self.next(computed.len() as u64 + MOST_LINE_EXCESS)?;
@@ -151,13 +154,13 @@ impl FileComparison {
         Ok(())
     }
 
-    /// `line` without a byte order mark, which only the first one may have.
+    /// Removes a byte order mark, which only the first line may have.
     fn without_mark<'a>(&self, line: &'a [u8]) -> &'a [u8] {
         let marked = line.strip_prefix("\u{feff}".as_bytes());
         marked.filter(|_| self.line == 1).unwrap_or(line)
     }
 
-    /// What differs between two lines that are not the same; `None` where only columns that are left out do.
+    /// Describes the difference between two lines. Returns `None` if only ignored columns differ.
     fn fields_differ(&self, there: &[u8], computed: &[u8]) -> Option<String> {
         let line = self.line;
         let names = self.names.as_deref().unwrap_or_default();
@@ -182,13 +185,13 @@ impl FileComparison {
         let (row, column) = (self.row_of(names, &wanted), &names[at]);
         let field = format!("line {line}{row}: {column} is {cell}, computed {expected}");
         if self.rows == 0 && differing.len() > 1 {
-            let why = "its rows are not those of the scenario in its header: already in the first";
+            let why = "its rows do not belong to the scenario in its header: already in the first";
             return Some(format!("{why}, {field}"));
         }
         Some(field)
     }
 
-    /// Which row the one with these fields is: by its first columns.
+    /// Names the row with these fields by its first columns.
     fn row_of(&self, names: &[String], fields: &[String]) -> String {
         let keys = names.iter().zip(fields).take(self.keys);
         let keys: Vec<_> = keys
@@ -221,7 +224,7 @@ impl Write for FileComparison {
     }
 }
 
-/// Compares as well, and fails from the first difference on, so that what is written need not be computed further.
+/// Compares too, and fails at the first difference, so that nothing more is computed.
 pub(super) struct UntilDifference<'a>(pub &'a mut FileComparison);
 
 impl Write for UntilDifference<'_> {
@@ -238,7 +241,8 @@ impl Write for UntilDifference<'_> {
     }
 }
 
-/// The first line of `there` that is not as in the text that was `made`, and how many lines differ.
+/// Describes the first line that differs between the file's text `there` and the recomputed text `made`, and the number
+/// of differing lines. Returns `None` if the texts are equal.
 pub fn first_difference(there: &str, made: &str) -> Option<String> {
     if there == made {
         return None;
@@ -252,7 +256,7 @@ pub fn first_difference(there: &str, made: &str) -> Option<String> {
     }
     let lines = [&there, &made].map(|lines| lines.get(first).copied());
     if lines == [None, None] {
-        return Some("its line ends: another program has rewritten it".to_owned());
+        return Some("its line ends differ: another program has rewritten it".to_owned());
     }
     let [a, b] = lines.map(Option::unwrap_or_default);
     let same = a.chars().zip(b.chars()).take_while(|(a, b)| a == b).count();
@@ -266,14 +270,14 @@ pub fn first_difference(there: &str, made: &str) -> Option<String> {
     });
     let (line, last) = (first + 1, there.len());
     let place = if last > line {
-        format!("lines {line} to {last}, of which line {line}")
+        format!("lines {line} to {last} differ; line {line}")
     } else {
         format!("line {line}")
     };
-    Some(format!("{place} is {there_is}, made again {made_is}"))
+    Some(format!("{place} is {there_is}, recomputed {made_is}"))
 }
 
-/// The fields of a line; none where it is not text.
+/// Returns the fields of a line, or nothing if it is not text.
 fn fields(line: &[u8], delimiter: u8) -> Vec<String> {
     let mut reader = csv::ReaderBuilder::new();
     let mut reader = reader

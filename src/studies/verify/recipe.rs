@@ -1,4 +1,4 @@
-//! What the rows of a CSV are computed from, and how.
+//! The recipe of a CSV: the data that its rows are computed from, and the computation.
 
 use super::{FileComparison, Unverified};
 use crate::engine::analysis::compare::{self, ComparisonRow};
@@ -22,18 +22,18 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// How the line of names begins in the CSV of a comparison.
+/// Start of the line of column names in the CSV of a comparison.
 const OF_COMPARISON: &[u8] = b"scheme,time_step_s,";
-/// How the line of names ends in the CSV of a fit.
+/// End of the line of column names in the CSV of a fit.
 const FIT_COLUMNS_END: &[u8] = b",residual,residual_sigmas";
-/// The columns of a comparison that hold times by the clock.
+/// Columns of a comparison that hold measured computing times.
 const BY_THE_CLOCK: [&str; 2] = ["ns_per_step", "wall_s"];
 const OF_THE_CLOCK: &str =
-    "a comparison: ns_per_step and wall_s are times by the clock, which nothing can compute again";
-/// The most values of a table that is taken as a comparison.
+    "a comparison: ns_per_step and wall_s are measured computing times and cannot be verified";
+/// Maximum number of values in the table of a comparison.
 const MOST_COMPARISON_VALUES: usize = 1_000_000;
 
-/// What a CSV is computed from, as its header and, of a comparison, its rows have it.
+/// The input of a CSV's computation, from its header and, for a comparison, its rows.
 pub(super) enum CsvRecipe {
     Run {
         scenario: Arc<Scenario>,
@@ -43,7 +43,7 @@ pub(super) enum CsvRecipe {
     Comparison {
         scenario: Arc<Scenario>,
         schemes: Vec<&'static SchemeInfo>,
-        /// From coarse to fine, s.
+        /// In descending order, s.
         time_steps_s: Vec<f64>,
     },
     Fit {
@@ -52,7 +52,7 @@ pub(super) enum CsvRecipe {
 }
 
 impl CsvRecipe {
-    /// Returns the recipe of the CSV `path` with this `head`; `document` is the run file or sweep file in its `header`.
+    /// Reads the recipe of the CSV `path` with this `head`. `document` is the run file or sweep file in its `header`.
     pub fn read(
         path: &Path,
         head: &Head,
@@ -77,7 +77,7 @@ impl CsvRecipe {
         })
     }
 
-    /// Returns the recipe of a comparison of schemes and time steps: those of the table in the file `path`.
+    /// Returns the recipe of a comparison, with the schemes and time steps in the table of the file `path`.
     fn of_comparison(path: &Path, scenario: Scenario) -> Result<Self, Unverified> {
         if !cost::is_affordable(&scenario) {
             return Err(cannot("the exact motion of its run would take too long"));
@@ -92,17 +92,17 @@ impl CsvRecipe {
                 time_step.filter(|step| *step > 0.0 && step.is_finite()),
             ) else {
                 return Err(cannot(&format!(
-                    "line {line} names no scheme and time step"
+                    "line {line} does not name a scheme and a time step"
                 )));
             };
             if Clock::end_s(&scenario) / step > MOST_RUN_STEPS_BY_TIME {
-                let why = format!("line {line} has more time steps than can be counted");
+                let why = format!("line {line} needs more time steps than can be counted");
                 return Err(cannot(&why));
             }
             if !schemes.iter().any(|known| known.name == scheme.name) {
                 schemes.push(scheme);
             }
-            time_steps.insert(step.to_bits(), step); // the bits of positive numbers are in their order
+            time_steps.insert(step.to_bits(), step); // the bits of positive numbers sort like the numbers
         }
         Ok(Self::Comparison {
             scenario: Arc::new(scenario),
@@ -111,7 +111,7 @@ impl CsvRecipe {
         })
     }
 
-    /// Tells `comparison` about the columns of this CSV.
+    /// Tells `comparison` the delimiter, the key columns and the ignored columns of this CSV.
     pub fn describe_columns(&self, comparison: &mut FileComparison) {
         match self {
             Self::Run { layout, .. } => {
@@ -127,7 +127,7 @@ impl CsvRecipe {
         }
     }
 
-    /// Computes the CSV and writes it to `out`; adds to `notes` what else there is to say. `fit` and `watch` are those of
+    /// Computes the CSV and writes it to `out`. Adds remarks to `notes`. `fit` and `watch` are the arguments of
     /// [`verify`](super::verify).
     pub fn recompute(
         &self,
@@ -153,7 +153,7 @@ impl CsvRecipe {
                 out.write_all(sweep.header().as_bytes())?;
                 let failures = write_rows(sweep, out, watch)?;
                 if failures > 0 {
-                    notes.push(format!("runs that failed, and have empty rows: {failures}"));
+                    notes.push(format!("failed runs, with empty rows: {failures}"));
                 }
             }
             Self::Comparison {
@@ -172,7 +172,7 @@ impl CsvRecipe {
     }
 }
 
-/// Computes the rows of `sweep` on all cores, and writes them to `out`. Returns how many runs failed.
+/// Computes the rows of `sweep` on all cores, writes them to `out`, and returns the number of failed runs.
 fn write_rows(
     sweep: &Sweep,
     mut out: impl Write,
@@ -210,7 +210,7 @@ fn cannot(why: &str) -> Unverified {
     format!("cannot be recomputed: {why}").into()
 }
 
-/// The CSV of a comparison: its `rows` below the run file of `scenario`.
+/// Returns the CSV of a comparison: its `rows` below the run file of `scenario`.
 pub fn csv_of_comparison(scenario: &Scenario, rows: &[ComparisonRow]) -> io::Result<Vec<u8>> {
     let mut writer = ::csv::Writer::from_writer(commented(&scenario.to_toml()).into_bytes());
     for row in rows {

@@ -1,4 +1,4 @@
-//! Why a file cannot be made again, and which version wrote it.
+//! Errors of a verification, and the remark on files of another version.
 
 use crate::engine::scenario::{Problem, Problems};
 use crate::engine::text::io_errors::unread;
@@ -7,7 +7,7 @@ use std::io;
 
 #[derive(Debug, thiserror::Error)]
 pub enum Unverified {
-    /// It is no CSV of gyrolab's, or what its header holds cannot be computed.
+    /// The file is not a CSV from gyrolab, or its header cannot be recomputed.
     #[error("{0}")]
     Refused(Problems),
     #[error("stopped")]
@@ -32,10 +32,9 @@ impl From<io::Error> for Unverified {
     }
 }
 
-/// Says that another version has written the file.
+/// Returns a remark if another version of gyrolab wrote the file.
 pub fn other_version(version: &str) -> Option<String> {
     let own = env!("CARGO_PKG_VERSION");
     let version = printable(version);
-    (version != own)
-        .then(|| format!("written by gyrolab {version}, computed again by gyrolab {own}"))
+    (version != own).then(|| format!("written by gyrolab {version}, recomputed by gyrolab {own}"))
 }
