@@ -31,7 +31,7 @@ chapter = "The end"
 wait_s = 0.5
 "#;
 
-/// The head of a recording, and its events with the times since its begin, ms.
+/// Parses a recording into its header and its events, with their times since the start, ms.
 fn parsed(text: &str) -> (Value, Vec<(u64, String, String)>) {
     let mut lines = text.lines();
     let head = serde_json::from_str(lines.next().unwrap()).unwrap();
@@ -57,7 +57,7 @@ fn recorded(ground: &Ground, name: &str, more: &[&str]) -> String {
 }
 
 #[test]
-fn a_recording_has_its_size_its_chapters_and_the_picture() {
+fn a_recording_contains_size_chapters_and_picture() {
     let ground = Ground::new();
     let text = recorded(
         &ground,
@@ -116,7 +116,7 @@ fn a_recording_has_its_size_its_chapters_and_the_picture() {
 }
 
 #[test]
-fn the_bytes_do_not_depend_on_time_settings_or_surroundings() {
+fn recordings_do_not_depend_on_time_settings_or_environment() {
     let ground = Ground::new();
     let first = recorded(&ground, "a.cast", &[]);
     fs::remove_file(ground.file("out.csv")).unwrap();
@@ -137,7 +137,7 @@ fn the_bytes_do_not_depend_on_time_settings_or_surroundings() {
 }
 
 #[test]
-fn what_cannot_be_recorded_leaves_no_file() {
+fn a_failed_recording_leaves_no_file() {
     let ground = Ground::new();
     for (commands, said) in [
         (

@@ -1,4 +1,4 @@
-//! A class in ptys: following, voting, and what is left when labs are killed.
+//! A class in ptys: following, voting, and recovery after labs are killed.
 
 use crate::support::dice::Dice;
 use crate::support::ground::{Ground, code, stderr};
@@ -15,7 +15,7 @@ fn teach(ground: &Ground, args: &str) -> Terminal {
     ground.open(&format!("class {args} --folder ."))
 }
 
-/// The teacher's lab at the end of the run of its first page.
+/// Opens the teacher's lab and plays the run of its first page to the end.
 fn begin(ground: &Ground) -> Terminal {
     let mut teacher = teach(ground, LESSON);
     teacher.wait_for("1 of 10");
@@ -28,7 +28,7 @@ fn begin(ground: &Ground) -> Terminal {
     teacher
 }
 
-/// A student's lab in a new seat, and the seat's word.
+/// Opens a student's lab in a new seat. Returns it with the seat's word.
 fn sit(ground: &Ground, name: &str) -> (Terminal, String) {
     let mut lab = ground.open("--folder . --seat");
     lab.wait_for("A name for your seat");
@@ -49,7 +49,7 @@ fn vote(lab: &mut Terminal) {
 }
 
 #[test]
-fn a_class_follows_votes_and_loses_nothing() {
+fn a_class_follows_the_teacher_votes_and_loses_nothing() {
     let ground = Ground::new();
     let header = "lesson,question,round,seat,choice,late,page,time\n";
     assert_eq!(ground.stdout("class --votes --folder ."), header);
@@ -66,7 +66,7 @@ fn a_class_follows_votes_and_loses_nothing() {
     teacher.wait_for("round 1 · 1 of 2");
     let votes = ground.stdout("class --votes --folder .");
     has_all(&votes, &[&format!("{LESSON},finer,1,{word},2,false,2,")]);
-    // Stepping aside, and the class goes on meanwhile.
+    // A student leaves while the class continues.
     ben.ask("n", "write down a prediction");
     ben.ask("n", "left, k: rejoin · 3, class on 2");
     teacher.ask("n", "1 of 2 have answered; press n again to go on");
@@ -75,16 +75,16 @@ fn a_class_follows_votes_and_loses_nothing() {
     teacher.press("N");
     ben.wait_for("class on 2");
     ben.ask("k", "following · 2 of 10");
-    // Back by the seat's word, with page and prediction.
+    // The seat's word reopens the seat, with its page and prediction.
     let mut back = ground.open("--folder . --seat");
     back.ask(&format!("{word}\r"), "following · 2 of 10");
     back.wait_for("2 is about fifty times smaller you");
-    // The seat is opened elsewhere: the lab before ends by itself.
+    // When the seat is opened elsewhere, the earlier lab ends.
     let mut again = ground.open("--folder . --seat");
     again.ask(&format!("{word}\r"), "following · 2 of 10");
     back.wait_for_end();
     assert!(back.sent_text().contains("opened in another lab"));
-    // A second round, and a teacher's lab that is killed.
+    // A second round, during which the teacher's lab is killed.
     teacher.ask("k", "ask again: round 2");
     teacher.press("2");
     vote(&mut again);
@@ -102,7 +102,7 @@ fn a_class_follows_votes_and_loses_nothing() {
     has_all(&board, &["2 here", &word, "3 of 10"]);
     resumed.end_class();
     ben.wait_for("the class is over");
-    // Begun anew by mistake, all would be back on the first page.
+    // Starting the class a second time by mistake must not send everyone back to the first page.
     let mut mistaken = teach(&ground, LESSON);
     mistaken.wait_for_end();
     let said = mistaken.sent_text();
@@ -113,7 +113,7 @@ fn a_class_follows_votes_and_loses_nothing() {
 }
 
 #[test]
-fn a_seat_reaches_nothing_of_another() {
+fn a_seat_cannot_access_the_files_of_another() {
     let ground = Ground::new();
     ground.write("secret.csv", "t_s,x_m\n0,1\n");
     let mut teacher = begin(&ground);
@@ -130,7 +130,7 @@ fn a_seat_reaches_nothing_of_another() {
     anna.wait_for("mine.csv: your teacher has it");
     let seat = ground.file(&format!(".gyrolab/seats/{word}/mine.csv"));
     assert!(seat.exists());
-    // The teacher closes it.
+    // The teacher closes the seat.
     teacher.ask("k", "list the seats");
     teacher.ask("4", &format!("{word}: here"));
     teacher.press("\r");
@@ -142,7 +142,7 @@ fn a_seat_reaches_nothing_of_another() {
 
 #[test]
 #[ignore = "thirty labs and two hundred kills take minutes"]
-fn thirty_seats_and_two_hundred_kills_lose_no_vote_and_no_page() {
+fn two_hundred_kills_lose_no_votes_or_pages_of_thirty_seats() {
     let ground = Ground::new();
     let mut teacher = begin(&ground);
     let mut seats: Vec<_> = (0..30)
@@ -182,7 +182,7 @@ fn thirty_seats_and_two_hundred_kills_lose_no_vote_and_no_page() {
 }
 
 #[test]
-fn a_damaged_seat_is_named_and_the_exit_code_is_1() {
+fn a_damaged_seat_is_named_with_exit_code_1() {
     let ground = Ground::new();
     let seats = ground.path().join(".gyrolab/seats");
     for (word, text) in [("anna-471108", "format = "), ("ben-000001", "format = 2\n")] {
@@ -203,7 +203,7 @@ fn a_damaged_seat_is_named_and_the_exit_code_is_1() {
 
 #[test]
 #[ignore = "two hundred kills take minutes"]
-fn two_hundred_kills_while_voting_lose_no_locked_vote() {
+fn two_hundred_kills_during_a_vote_lose_no_locked_votes() {
     let ground = Ground::new();
     let mut teacher = begin(&ground);
     let mut seats: Vec<_> = (0..5)
@@ -225,7 +225,7 @@ fn two_hundred_kills_while_voting_lose_no_locked_vote() {
             thread::sleep(Duration::from_millis(dice.whole(0, 60)));
             lab.kill();
             kills += 1;
-            // What the screen showed as locked has been kept.
+            // A vote that the screen showed as locked was saved.
             let was_locked = !lab.words().contains("1 2 3 4 or ↑ ↓ choose");
             let row = format!("{LESSON},finer,{round},{word},");
             let votes = ground.stdout("class --votes --folder .");
@@ -258,7 +258,7 @@ fn two_hundred_kills_while_voting_lose_no_locked_vote() {
 }
 
 #[test]
-fn a_seat_waits_for_its_class_and_the_projector_shows_it() {
+fn a_seat_and_the_projector_wait_for_the_class_and_follow_it() {
     let ground = Ground::new();
     let mut anna = ground.open("--folder . --seat");
     anna.wait_for("A name for your seat");
@@ -271,7 +271,7 @@ fn a_seat_waits_for_its_class_and_the_projector_shows_it() {
     projector.wait_for("1 of 10 · Is the wobble real?");
     teacher.press("n");
     projector.wait_for("0 of 1 have answered");
-    // A marked answer counts when the page is turned.
+    // A marked answer counts when the teacher turns the page.
     anna.ask("3", "Enter lock this prediction");
     teacher.ask("n", "0 of 1 have answered; press n again to go on");
     teacher.press("n");
@@ -279,7 +279,7 @@ fn a_seat_waits_for_its_class_and_the_projector_shows_it() {
     anna.wait_for("following · 3 of 10");
     let votes = ground.stdout("class --votes --folder .");
     has_all(&votes, &[&format!("{LESSON},finer,1,anna-"), ",3,false,2,"]);
-    // No key of the projector does anything; the teacher's lab is restarted.
+    // The projector ignores keys. Then the teacher's lab is restarted.
     projector.press("npLx");
     teacher.kill();
     projector.wait_for("waiting");
@@ -293,7 +293,7 @@ fn a_seat_waits_for_its_class_and_the_projector_shows_it() {
 }
 
 #[test]
-fn a_new_group_keeps_the_votes_of_the_one_before() {
+fn a_new_group_keeps_the_votes_of_the_previous_one() {
     let ground = Ground::new();
     let mut teacher = begin(&ground);
     let (mut anna, word) = sit(&ground, "anna");
@@ -312,7 +312,7 @@ fn a_new_group_keeps_the_votes_of_the_one_before() {
     let earlier = ground.stdout(&format!("class --votes --folder {}", folder.trim()));
     has_all(&earlier, &[&row]);
     assert_eq!(ground.stdout("class --votes --folder .").lines().count(), 1);
-    // A lab that had its seat open leaves nothing in the new group.
+    // A lab whose seat was open writes nothing into the new group.
     anna.wait_for_end();
     assert!(anna.sent_text().contains("this seat is gone"));
     assert!(!ground.file(&format!(".gyrolab/seats/{word}")).exists());

@@ -1,4 +1,4 @@
-//! What a class has answered, afterwards: the table for a gradebook, and a student who fetches their own answers over SSH.
+//! The answers of a class after it has ended: the gradebook table, and students who download their answers over SSH.
 
 use crate::support::ground::{Ground, code, done, stderr, stdout};
 use crate::support::words::has_all;
@@ -9,13 +9,13 @@ const LESSON: &str = "is-the-wobble-real";
 const RIGHT: &str = "is more than a hundred times smaller";
 const WRONG: &str = "is larger";
 
-/// Makes the seat `word`, which has locked these answers to the first question: round, words, whether it came late; `tasks`
-/// are lines of TOML.
+/// Creates the seat `word` with locked `answers` to the first question: round, words, and whether it came late. `tasks` are
+/// lines of TOML.
 fn seat(ground: &Ground, word: &str, answers: &[(u32, &str, bool)], tasks: &str) {
     seat_that_saw("\"finer\"", ground, word, answers, tasks);
 }
 
-/// The same of a seat that has seen the outcomes of the questions `seen`, in quotes with commas between them.
+/// Creates a seat, as `seat` does, that has seen the outcomes of the questions `seen`: quoted, separated by commas.
 fn seat_that_saw(
     seen: &str,
     ground: &Ground,
@@ -36,7 +36,7 @@ fn seat_that_saw(
     ground.write(&format!("{inner}/seat"), &text);
 }
 
-/// The rows of a CSV, each by the names of its columns.
+/// Parses the rows of a CSV, each as a map from column names to values.
 fn rows(text: &str) -> Vec<BTreeMap<String, String>> {
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     reader.deserialize().map(Result::unwrap).collect()
@@ -78,14 +78,14 @@ fn the_table_has_a_row_for_each_seat() {
     assert_eq!(column(&task), ["done", "", "shown by the lab"]);
 }
 
-/// Runs the login of the class as sshd does for `ssh class@HOST COMMAND`.
+/// Runs the login of the class like sshd for `ssh class@HOST COMMAND`.
 fn ssh(ground: &Ground, command: &str) -> std::process::Output {
     let mut login = ground.command("--folder . --seat");
     login.env("SSH_ORIGINAL_COMMAND", command).output().unwrap()
 }
 
 #[test]
-fn a_student_fetches_their_own_answers_and_nothing_else() {
+fn a_student_can_download_only_their_own_answers() {
     let ground = Ground::new();
     seat(&ground, "anna-471108", &[(1, WRONG, false)], "");
     let answers = done(ssh(&ground, "answers anna-471108"));
@@ -123,7 +123,7 @@ fn a_student_fetches_their_own_answers_and_nothing_else() {
 }
 
 #[test]
-fn nobody_fetches_what_comes_out_while_the_class_is_on() {
+fn answers_cannot_be_downloaded_during_class() {
     let ground = Ground::new();
     seat(&ground, "anna-471108", &[(1, WRONG, false)], "");
     let mut teacher = ground.open(&format!("class {LESSON} --folder ."));

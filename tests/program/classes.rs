@@ -1,4 +1,4 @@
-//! Lessons in the program itself: what a session keeps of them, and what the teacher sees beside it.
+//! Lessons in the real program: what a session saves of them, and the teacher's notes in a second terminal.
 
 use crate::support::ground::{Ground, code, done, failed, stderr, stdout};
 use crate::support::words::has_all;
@@ -12,7 +12,7 @@ const LESSON: &str = "is-the-wobble-real";
 const DOWN: &str = "\x1b[B";
 
 #[test]
-fn a_prediction_survives_a_kill_and_is_handed_in() {
+fn a_prediction_survives_a_kill_and_can_be_exported() {
     let ground = Ground::new();
     let mut lab = ground.open(&["lesson", LESSON, "--page", "2"]);
     lab.wait_for("1 stays as it is");
@@ -45,7 +45,7 @@ fn a_prediction_survives_a_kill_and_is_handed_in() {
 }
 
 #[test]
-fn answers_without_a_session_are_refused() {
+fn the_answers_option_needs_a_session() {
     let ground = Ground::new();
     let output = ground.run(&["lesson", LESSON, "--answers"]);
     failed(
@@ -79,7 +79,7 @@ fn notes_follow_the_lab_from_page_to_page() {
             .spawn()
             .unwrap();
         thread::sleep(Duration::from_millis(300));
-        // Until the lab is saved there is nothing to follow.
+        // The lab can be followed only after its first save.
         if notes.try_wait().unwrap().is_none() {
             break notes;
         }
@@ -108,7 +108,7 @@ fn notes_follow_the_lab_from_page_to_page() {
     wait_for("== 3 of 10");
     notes.kill().unwrap();
     notes.wait().unwrap();
-    // Where nobody reads on, and at Ctrl-C, it ends, and does not panic.
+    // It ends without a panic at a closed pipe and at Ctrl-C.
     let closed = ground.shell("exec 3>&1; { timeout 60 $G lesson --notes; echo $? >&3; } | true");
     assert_eq!((stdout(&closed), stderr(&closed)), ("0\n", ""));
     let ended = ground.shell("timeout --preserve-status -s INT 2 $G lesson --notes >/dev/null");

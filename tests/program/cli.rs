@@ -1,5 +1,5 @@
-//! The program itself, against what it promises: exit codes, what goes to stdout and what to stderr, files that
-//! appear whole or not at all, and CSVs that run again to the same bytes.
+//! The promises of the command line: exit codes, the use of stdout and stderr, files that appear complete or not at all,
+//! and CSVs that reproduce themselves byte for byte.
 
 use crate::support::ground::{Ground, code, done, failed, refused, stderr, stdout};
 use crate::support::pty::signal;
@@ -10,13 +10,13 @@ use std::os::unix::fs::{PermissionsExt, symlink};
 use std::path::Path;
 use std::process::Stdio;
 
-/// The first columns of every CSV, which programs elsewhere rely on.
+/// The first columns of every CSV. Other programs rely on them.
 const COLUMNS: &str = "step,t_s,x_m,y_m,z_m,Lx_Js,Ly_Js,Lz_Js,wx_rad_per_s,wy_rad_per_s,wz_rad_per_s,tilt_deg,azimuth_deg,energy_J,segment";
 
 /// A short run.
 const RUN: &str = "run method-1 --steps 3";
 
-/// A CSV: the run file of its header, the header line, and the rows.
+/// Splits a CSV into the run file in its header, the line of column names, and the rows.
 fn parts(csv: &str) -> (String, &str, Vec<Vec<f64>>) {
     let is_header = |line: &&str| line.starts_with('#');
     let header = csv.lines().take_while(is_header).map(|line| {
@@ -37,7 +37,7 @@ fn steps(csv: &str) -> Vec<f64> {
     parts(csv).2.iter().map(|row| row[0]).collect()
 }
 
-/// Waits until `is_so`; the program must not end before.
+/// Waits until `is_so` returns true. Panics if the program ends before.
 fn wait_until(child: &mut std::process::Child, is_so: impl Fn() -> bool) {
     while !is_so() {
         assert!(child.try_wait().unwrap().is_none(), "it ended by itself");
@@ -46,7 +46,7 @@ fn wait_until(child: &mut std::process::Child, is_so: impl Fn() -> bool) {
 }
 
 #[test]
-fn exit_codes() {
+fn exit_codes_distinguish_success_failure_and_misuse() {
     let lab = Ground::new();
     for (args, expected) in [
         (RUN, 0),
@@ -80,7 +80,7 @@ fn exit_codes() {
 }
 
 #[test]
-fn the_summary_is_on_stdout_and_tells_how_the_run_ended() {
+fn the_summary_on_stdout_describes_the_end_of_the_run() {
     let output = done(Ground::new().run("run method-2"));
     assert!(output.stderr.is_empty());
     let words = "Method 2|scheme|report|2300|0.1 s|230 s|0.810940|-707.256771|tilt|energy drift|wall time|steps a second";
@@ -88,7 +88,7 @@ fn the_summary_is_on_stdout_and_tells_how_the_run_ended() {
 }
 
 #[test]
-fn the_json_has_its_keys() {
+fn the_json_has_the_documented_keys() {
     let args = "run method-2 --json --scheme rk4 --steps 7 --set motion.time_step_s=0.001";
     let output = done(Ground::new().run(args));
     assert!(output.stderr.is_empty());
@@ -114,7 +114,7 @@ fn an_energy_drift_without_a_scale_is_null_and_na() {
 }
 
 #[test]
-fn with_a_file_the_summary_goes_to_stderr_and_the_json_to_stdout() {
+fn with_an_output_file_the_summary_goes_to_stderr_and_json_to_stdout() {
     let lab = Ground::new();
     let output = done(lab.run(&format!("{RUN} -o a.csv")));
     assert!(output.stdout.is_empty());
@@ -148,7 +148,7 @@ fn the_csv_begins_with_its_run_file_and_the_columns() {
     assert_eq!(run["motion"]["scheme"].as_str(), Some("rk4"));
     assert_eq!(run["motion"]["time_step_s"].as_float(), Some(0.002));
     assert_eq!(run["push"][0]["force_N"][2].as_float(), Some(-50.0));
-    // The header by itself is a scenario file, and that of its own CSV.
+    // The header alone is a scenario file that produces the same CSV.
     lab.write("run.toml", &header);
     lab.stdout("check run.toml a.csv");
     lab.stderr("run run.toml -o again.csv");
@@ -156,7 +156,7 @@ fn the_csv_begins_with_its_run_file_and_the_columns() {
 }
 
 #[test]
-fn numbers_read_back_to_the_same_bits() {
+fn csv_numbers_read_back_bit_for_bit() {
     let lab = Ground::new();
     let csv = lab.stdout("run method-2 --steps 40 -o -");
     let (_, _, rows) = parts(&csv);
@@ -174,7 +174,7 @@ fn numbers_read_back_to_the_same_bits() {
 }
 
 #[test]
-fn a_csv_runs_again_to_the_same_bytes() {
+fn a_csv_reproduces_itself_byte_for_byte() {
     let lab = Ground::new();
     let preset = lab.stdout("presets wobble-push");
     let edits = "\n[[edit]]\nstep = 100\nset = { \"motion.time_step_s\" = 0.03, \"push.0.force_N\" = [1, 2, 3] }\n\
@@ -197,7 +197,7 @@ fn a_csv_runs_again_to_the_same_bytes() {
             run("first.csv", "second.csv");
             let (first, second) = (lab.read("first.csv"), lab.read("second.csv"));
             assert!(first == second, "{name} --every {every}");
-            // Even in place: the old file is read before the new one takes its name.
+            // This works even in place: the old file is read before the new one replaces it.
             run("first.csv", "first.csv");
             assert!(first == lab.read("first.csv"), "{name} --every {every}");
         }
@@ -215,7 +215,7 @@ fn windows_line_ends_and_a_byte_order_mark_change_nothing() {
 }
 
 #[test]
-fn every_nth_row_and_always_the_last() {
+fn the_every_option_writes_every_nth_row_and_the_last() {
     let lab = Ground::new();
     let run = |steps: u64, every: u64| {
         lab.stdout(&format!(
@@ -232,22 +232,22 @@ fn every_nth_row_and_always_the_last() {
     ] {
         assert_eq!(steps(&run(count, every)), expected, "{count} {every}");
     }
-    // Longer than a block of steps between two looks at the signals.
+    // More steps than are computed between two checks for signals.
     let (every_row, few_rows) = (run(10000, 1), run(10000, 999));
     let mut expected = parts(&every_row).2;
     expected.retain(|row| row[0] % 999.0 == 0.0 || row[0] == 10000.0);
-    // --every changes which rows there are, and nothing in them.
+    // --every selects rows and does not change their contents.
     assert_eq!(parts(&few_rows).2, expected);
 }
 
 #[test]
-fn a_file_is_replaced_only_with_force_and_keeps_its_rights() {
+fn a_file_is_replaced_only_with_force_and_keeps_its_permissions() {
     let lab = Ground::new();
     lab.write("a.csv", "precious");
     fs::set_permissions(lab.file("a.csv"), fs::Permissions::from_mode(0o646)).unwrap();
     lab.refused(&format!("{RUN} -o a.csv"), 1, &["a.csv", "--force"]);
     assert_eq!(lab.read("a.csv"), "precious");
-    // Nor is it replaced by a scenario that is refused.
+    // A rejected scenario does not replace it either.
     let refused = "run method-1 --set motion.steps=0 -o a.csv --force";
     lab.refused(refused, 1, &["motion.steps"]);
     assert_eq!(lab.read("a.csv"), "precious");
@@ -258,7 +258,7 @@ fn a_file_is_replaced_only_with_force_and_keeps_its_rights() {
 }
 
 #[test]
-fn a_new_file_has_the_rights_the_umask_leaves() {
+fn a_new_file_has_permissions_from_the_umask() {
     let lab = Ground::new();
     for (umask, mode) in [("022", 0o644), ("002", 0o664), ("077", 0o600)] {
         let name = format!("{umask}.csv");
@@ -268,7 +268,7 @@ fn a_new_file_has_the_rights_the_umask_leaves() {
 }
 
 #[test]
-fn a_link_stays_a_link() {
+fn writing_through_a_link_keeps_the_link() {
     let lab = Ground::new();
     fs::create_dir(lab.file("data")).unwrap();
     lab.write("data/a.csv", "old");
@@ -283,7 +283,7 @@ fn a_link_stays_a_link() {
 }
 
 #[test]
-fn what_cannot_be_written_is_named_and_leaves_nothing() {
+fn an_unwritable_output_is_named_and_leaves_no_files() {
     let lab = Ground::new();
     fs::create_dir(lab.file("folder")).unwrap();
     lab.write("file", "");
@@ -310,7 +310,7 @@ fn what_cannot_be_written_is_named_and_leaves_nothing() {
 }
 
 #[test]
-fn a_limit_on_file_sizes_is_a_failed_write() {
+fn a_file_size_limit_fails_the_write() {
     let lab = Ground::new();
     for (output, name) in [("a.csv", "a.csv"), ("- > b.csv", "stdout")] {
         let run = format!("ulimit -f 40; \"$G\" run method-2 --steps 20000 -o {output}");
@@ -321,7 +321,7 @@ fn a_limit_on_file_sizes_is_a_failed_write() {
 }
 
 #[test]
-fn a_closed_pipe_is_a_quiet_end() {
+fn a_closed_pipe_ends_the_program_silently() {
     let lab = Ground::new();
     for command in [
         "run method-2 --steps 200000 -o -",
@@ -330,7 +330,7 @@ fn a_closed_pipe_is_a_quiet_end() {
         "completions zsh",
         "presets",
     ] {
-        // The reader is gone before the first byte, or after it.
+        // The reader closes the pipe before or after the first byte.
         for reader in ["true", "head -c 1 > first"] {
             let pipe = format!("{{ \"$G\" {command}; echo $? > code; }} | {reader}");
             let output = lab.shell(&pipe);
@@ -355,14 +355,14 @@ fn fifos_and_devices_are_written_directly() {
 }
 
 #[test]
-fn an_open_file_that_is_named_as_output_is_written_as_it_is() {
+fn stdout_named_as_a_path_is_appended_to() {
     let lab = Ground::new();
     let run = &format!("\"$G\" {RUN}");
     done(lab.shell(&format!("{run} -o a.csv")));
     let rows = lab.read("a.csv");
     symlink("/dev/stdout", lab.file("link")).unwrap();
     for name in ["-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1", "link"] {
-        // What stands in the file stays, and so does the file.
+        // The file keeps its contents and its identity.
         lab.write("b.csv", "first\n");
         fs::hard_link(lab.file("b.csv"), lab.file("same.csv")).unwrap();
         done(lab.shell(&format!("{run} -o {name} >> b.csv")));
@@ -383,7 +383,7 @@ fn an_open_file_that_is_named_as_output_is_written_as_it_is() {
 }
 
 #[test]
-fn a_scenario_comes_from_a_fifo_too() {
+fn a_scenario_can_be_read_from_a_fifo() {
     let lab = Ground::new();
     lab.write("cusps.toml", &lab.stdout("presets cusps"));
     for command in [
@@ -394,7 +394,7 @@ fn a_scenario_comes_from_a_fifo_too() {
         "check FILE",
     ] {
         let from_file = lab.run(&command.replace("FILE", "./cusps.toml"));
-        // A second reading would wait for ever.
+        // A second read would block forever.
         let script = format!(
             "mkfifo fifo.toml; cat cusps.toml > fifo.toml & timeout 20 \"$G\" {}; end=$?; rm fifo.toml; exit $end",
             command.replace("FILE", "./fifo.toml")
@@ -408,7 +408,7 @@ fn a_scenario_comes_from_a_fifo_too() {
 }
 
 #[test]
-fn a_replaced_file_keeps_its_rights_but_not_those_of_a_set_user_id() {
+fn a_replaced_file_keeps_its_permissions_without_set_id_bits() {
     let lab = Ground::new();
     let set_mode = |mode| {
         fs::set_permissions(lab.file("a.csv"), fs::Permissions::from_mode(mode)).unwrap();
@@ -419,7 +419,7 @@ fn a_replaced_file_keeps_its_rights_but_not_those_of_a_set_user_id() {
         lab.stderr(&format!("{RUN} -o a.csv --force"));
         assert_eq!(lab.mode("a.csv"), after, "{before:o}");
     }
-    // Only the superuser can leave a file of somebody else's here.
+    // Only root can create a file of another user here.
     lab.write("a.csv", "old");
     if std::os::unix::fs::chown(lab.file("a.csv"), Some(12345), Some(12345)).is_ok() {
         set_mode(0o6777);
@@ -429,9 +429,9 @@ fn a_replaced_file_keeps_its_rights_but_not_those_of_a_set_user_id() {
 }
 
 #[test]
-fn ctrl_c_acts_at_once_when_the_steps_are_done() {
+fn ctrl_c_acts_at_once_after_the_last_step() {
     let lab = Ground::new();
-    // A summary that nobody reads holds the program up after its last step, as a long search for advice does.
+    // A summary that nobody reads blocks the program after its last step, like a long search for advice.
     lab.make_fifo("fifo");
     let mut both_ends = fs::OpenOptions::new();
     let mut fifo = both_ends
@@ -458,25 +458,25 @@ fn a_signal_ends_the_wait_for_the_reader_of_a_fifo() {
     for args in ["run method-2 -o fifo", "compare cusps -o fifo"] {
         let mut child = lab.command(args).spawn().unwrap();
         std::thread::sleep(std::time::Duration::from_millis(500)); // until it waits
-        // SIGTERM: what is started in the background of a shell may ignore SIGINT.
+        // SIGTERM, because processes started in the background of a shell may ignore SIGINT.
         signal(child.id(), "TERM");
-        // Were the signal caught and the wait taken up again, this would never come back.
+        // If the signal were caught and the wait resumed, this would never return.
         assert!(!child.wait().unwrap().success(), "{args}");
     }
 }
 
 #[test]
-fn a_signal_ends_a_command_with_130_and_leaves_nothing() {
+fn a_signal_ends_a_command_with_130_and_leaves_no_files() {
     let lab = Ground::new();
     lab.write("old.csv", "precious");
-    // A header that takes its time: the signal comes in the midst of it.
+    // A header that takes long to write, so that the signal arrives while it is written.
     let points =
         (0..50_000).map(|n| format!("[[body.point]]\nname = \"p{n}\"\nat_m = [0, 0, 1]\n"));
     let big = lab.stdout("presets method-2") + &points.collect::<String>();
     lab.write("big.toml", &big);
     // Nine million steps of a scheme that steps by milliseconds, in every run of a fit.
     lab.write("long.csv", "t_s,tilt_deg\n0,20\n9000,20\n");
-    // The rows between the start and the last step are left out: nothing differs until that is computed.
+    // Only the first and the last row are written, so no difference is found before the last step is computed.
     let short = lab.stdout("run method-2 --steps 2 --every 2000000000 -o -");
     lab.write(
         "rows.csv",
@@ -488,7 +488,7 @@ fn a_signal_ends_a_command_with_130_and_leaves_nothing() {
         (&*format!("run method-2 {steps} -o new.csv"), true),
         (&*format!("run method-2 {steps} -o old.csv --force"), true),
         (&*format!("run big.toml {steps} -o new.csv"), true),
-        // Each step integrates for a good part of a second, and 4096 of them are taken without a look at the signal.
+        // Each step takes a large part of a second, and 4096 steps are computed between two checks for signals.
         (
             &*format!(
                 "run wing-nut {steps} --scheme exact --set motion.time_step_s=1e4 -o new.csv"
@@ -499,7 +499,7 @@ fn a_signal_ends_a_command_with_130_and_leaves_nothing() {
             "writeup wing-nut --steps 9000 --scheme exact --set motion.time_step_s=1e4 -o folder",
             true,
         ),
-        // One scheme whose looks are far apart, and many on all cores.
+        // One scheme that rarely checks for signals, and many schemes on all cores.
         (
             "compare method-2 --schemes report --time-steps 1e-12 -o new.csv",
             true,
@@ -516,7 +516,7 @@ fn a_signal_ends_a_command_with_130_and_leaves_nothing() {
         let pipes = command.stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = pipes.spawn().unwrap();
         if is_written {
-            // The signal comes as soon as there is a temporary file.
+            // The signal is sent as soon as the temporary file exists.
             wait_until(&mut child, || lab.files() != there);
         } else {
             std::thread::sleep(std::time::Duration::from_millis(500));
@@ -533,9 +533,9 @@ fn a_signal_ends_a_command_with_130_and_leaves_nothing() {
     }
 }
 
-/// With a stack larger than any memory no thread can be had.
+/// A thread stack larger than the memory makes every creation of a thread fail.
 #[test]
-fn without_threads_the_numbers_are_the_same() {
+fn results_are_the_same_without_threads() {
     let lab = Ground::new();
     for command in [
         "compare cusps --steps 100",
@@ -544,7 +544,7 @@ fn without_threads_the_numbers_are_the_same() {
         let told = |least_stack: &str| {
             let mut command = lab.command(command);
             let output = done(command.env("RUST_MIN_STACK", least_stack).output().unwrap());
-            // The last column of a comparison is the time that it took.
+            // The last column of a comparison is the time per step, which varies.
             let lines = stdout(&output)
                 .lines()
                 .map(|line| line.get(..78).unwrap_or(line));
@@ -554,19 +554,19 @@ fn without_threads_the_numbers_are_the_same() {
     }
 }
 
-/// Ten million rows kept in memory would be 1.2 GB; a run of a hundred steps takes 5 MB, most of it the program
-/// itself, and the limit (on address space, the larger figure) is 50 MB.
+/// Ten million rows in memory would take 1.2 GB. A run of a hundred steps takes 5 MB, mostly for the program itself. The
+/// limit, on address space, is 50 MB.
 #[test]
 #[ignore = "makes runs of millions of steps: ten seconds"]
-fn memory_does_not_grow_with_the_run() {
+fn memory_does_not_grow_with_the_length_of_the_run() {
     let long = "run method-2 --steps 10000000 -o /dev/null";
     done(Ground::new().shell(&format!("ulimit -v 51200 2>/dev/null; \"$G\" {long}")));
 }
 
-/// What is drawn takes 300 MB at most, however long the run and however much was measured.
+/// Drawing takes at most 300 MB for any length of the run and any number of measured rows.
 #[test]
 #[ignore = "draws runs of millions of steps: ten seconds"]
-fn memory_does_not_grow_with_what_is_drawn() {
+fn memory_of_figures_does_not_grow_with_the_data() {
     let lab = Ground::new();
     let rows = (0..200_000)
         .map(|row| format!("{row},{}\n", 1000 + row * 41 % 97))
@@ -610,7 +610,7 @@ fn numbers_that_stop_being_finite_end_the_run_and_keep_its_rows() {
 }
 
 #[test]
-fn durations_are_counted_in_the_time_steps_in_force() {
+fn durations_use_the_time_step_in_force() {
     let lab = Ground::new();
     let edits = "\n[[edit]]\nstep = 20\nset = { \"motion.time_step_s\" = 0.5 }\n\
         [[edit]]\nstep = 24\nset = { \"motion.time_step_s\" = 0.25 }\n";
@@ -634,7 +634,7 @@ fn durations_are_counted_in_the_time_steps_in_force() {
         assert_eq!(json["steps"], steps, "{args}");
         assert_eq!(json["t_s"], end_s, "{args}");
     }
-    // The header of such a run holds the steps it came to.
+    // The header of such a run states the resulting number of steps.
     lab.stderr("run edited.toml --duration 5 -o a.csv");
     has(parts(&lab.read("a.csv")).0, "steps = 28");
     assert_eq!(steps(&lab.read("a.csv")).len(), 29);
@@ -666,7 +666,7 @@ fn presets_are_listed_and_printed() {
 }
 
 #[test]
-fn check_looks_at_every_file() {
+fn check_reports_on_every_file() {
     let lab = Ground::new();
     let good = lab.stdout("presets method-2");
     lab.write("good.toml", &good);
@@ -684,14 +684,14 @@ fn check_looks_at_every_file() {
             "motion.steps (0) must be 1 or more",
         ],
     );
-    // The good one after the bad ones is looked at too.
+    // The good file after the bad ones is checked too.
     has(stdout(&output), "good.toml: good");
     let words = "check takes files, and cusps is a preset";
     lab.refused("check cusps", 1, &[words, "gyrolab run cusps"]);
 }
 
 #[test]
-fn each_shell_has_its_completions() {
+fn every_shell_has_completions() {
     let lab = Ground::new();
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
         has(lab.stdout(&format!("completions {shell}")), "gyrolab");
@@ -699,7 +699,7 @@ fn each_shell_has_its_completions() {
 }
 
 #[test]
-fn the_talk_about_a_run_does_not_depend_on_stderr_being_open() {
+fn a_closed_stderr_does_not_fail_a_run() {
     let lab = Ground::new();
     let mut command = lab.command(&format!("{RUN} -o a.csv"));
     let mut child = command.stderr(Stdio::piped()).spawn().unwrap();
@@ -709,7 +709,7 @@ fn the_talk_about_a_run_does_not_depend_on_stderr_being_open() {
 }
 
 #[test]
-fn talk_that_cannot_be_written_ends_nothing() {
+fn a_full_stderr_does_not_fail_a_command() {
     let lab = Ground::new();
     for (command, words) in [
         ("run method-2 --steps 5 -o -", "step,t_s"),
@@ -734,10 +734,10 @@ fn talk_that_cannot_be_written_ends_nothing() {
 }
 
 #[test]
-fn the_summary_shows_the_extremes_and_every_key_of_the_json_is_listed() {
+fn the_summary_shows_extremes_and_json_keys_are_documented() {
     let lab = Ground::new();
     let json = lab.json("run wobble-push --json");
-    // Theory is of the time after the push, and says nothing of the tilts of the whole run.
+    // Theory applies to the time after the push, so it predicts no tilt of the whole run.
     assert!(json["predicted_highest_tilt_deg"].is_null());
     has_all(
         lab.stdout("run wobble-push"),
@@ -758,7 +758,7 @@ fn the_summary_shows_the_extremes_and_every_key_of_the_json_is_listed() {
 }
 
 #[test]
-fn the_next_export_removes_what_a_killed_one_has_left() {
+fn an_export_removes_the_temporary_files_of_killed_ones() {
     let ground = Ground::new();
     let mut command = ground.command("run method-2 --steps 1000000000 -o long.csv");
     let mut child = command.stderr(Stdio::null()).spawn().unwrap();
@@ -771,11 +771,11 @@ fn the_next_export_removes_what_a_killed_one_has_left() {
     assert_eq!(ground.files(), ["1.csv", "2.csv"]);
 }
 
-/// The last bits of the C library's sine, root and the like differ from system to system. All of them come from libm, the
-/// crate, in gyrolab and in every crate that it uses.
+/// The last bits of the C library's sine, root and so on differ between systems. gyrolab and all its dependencies use the
+/// crate libm instead.
 #[test]
 #[cfg(target_os = "linux")]
-fn no_number_depends_on_the_c_librarys_mathematics() {
+fn no_number_depends_on_the_c_library() {
     let program = fs::read(env!("CARGO_BIN_EXE_gyrolab")).unwrap();
     let needs = |name: &str| program.windows(name.len()).any(|at| at == name.as_bytes());
     assert!(needs("libc.so"), "the program names the libraries it needs");

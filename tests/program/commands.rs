@@ -1,4 +1,4 @@
-//! `--do` and `check` on files of commands, by the program itself.
+//! `--do` and `check` with command files, in the real program.
 
 use crate::support::ground::{Ground, done, failed, stderr, stdout};
 use crate::support::words::{has, has_all, has_no};
@@ -25,7 +25,7 @@ fn show_prints_the_picture_after_the_commands() {
 }
 
 #[test]
-fn a_fifo_is_read_once() {
+fn a_fifo_of_commands_is_read_once() {
     let ground = Ground::new();
     ground.make_fifo("pipe");
     let mut command = ground.command("show --do pipe");
@@ -35,7 +35,7 @@ fn a_fifo_is_read_once() {
 }
 
 #[test]
-fn what_is_refused_is_told_and_the_picture_up_to_there_shown() {
+fn a_rejected_command_is_reported_and_the_picture_before_it_shown() {
     let ground = Ground::new();
     let text = "[[do]]\nstep = 5\n[[do]]\nredo = 1\n[[do]]\nstep = 5\n";
     ground.write("demo.toml", text);
@@ -43,7 +43,7 @@ fn what_is_refused_is_told_and_the_picture_up_to_there_shown() {
     let words = "demo.toml:3: redo: nothing to redo; the command after it is not carried out";
     failed(&output, &[words]);
     has(stdout(&output), "step    5 of");
-    has_no(stdout(&output), "nothing to redo"); // it is said once
+    has_no(stdout(&output), "nothing to redo"); // it is reported only once
     ground.write("demo.toml", "[[do]]\nstp = 5\n");
     let misspelled = ground.run("show --do demo.toml");
     let advice = "demo.toml:2: do.0.stp: unknown command: did you mean step?";
@@ -54,9 +54,9 @@ fn what_is_refused_is_told_and_the_picture_up_to_there_shown() {
     ground.refused("show", 2, &[]);
 }
 
-/// A limit on the size of files does for a full disk.
+/// A file size limit simulates a full disk.
 #[test]
-fn an_export_that_fails_on_the_way_ends_the_commands() {
+fn a_failed_export_stops_the_commands() {
     let ground = Ground::new();
     let text = "[[do]]\nstep = 2000\n[[do]]\nexport = \"run.csv\"\n[[do]]\nstep = 5\n";
     ground.write("demo.toml", text);
@@ -66,13 +66,13 @@ fn an_export_that_fails_on_the_way_ends_the_commands() {
     assert_eq!(ground.files(), ["demo.toml"]);
 }
 
-/// A step that is never reached, and an export of one: a signal ends the wait. Commands do not go that far.
+/// A signal ends the wait for a step that is too far to reach, and for its export. `go_to` rejects such a distance.
 #[test]
-fn a_signal_ends_show_with_130_and_leaves_nothing() {
+fn a_signal_ends_show_with_130_and_leaves_no_files() {
     let ground = Ground::new();
     ground.write("far.toml", "[[do]]\ngo_to = \"1e12 s\"\n");
     ground.write("never.toml", "[[do]]\nset = { \"motion.steps\" = 9000000000000 }\n[[do]]\nexport = { path = \"run.csv\", to_step = 9000000000000 }\n");
-    // timeout sends its signal to the process and then to the group: twice, and it is meant once.
+    // timeout sends its signal to the process and then to the group, so it arrives twice.
     let script = "timeout --preserve-status -s INT 2 $G show cusps --at 18000000000000000000";
     assert_eq!(ground.shell(script).status.code(), Some(130));
     let far = "far.toml:1: go_to: is more than 10,000,000 steps away: a longer time step";
@@ -83,7 +83,7 @@ fn a_signal_ends_show_with_130_and_leaves_nothing() {
 }
 
 #[test]
-fn check_takes_files_of_commands() {
+fn check_accepts_command_files() {
     let ground = Ground::new();
     ground.write("demo.toml", DEMO);
     ground.write("bad.toml", "[[do]]\nopen = \"method-3\"\n");

@@ -1,4 +1,4 @@
-//! `gyrolab compare`: its table, its CSV, and how it ends.
+//! `gyrolab compare`: its table, its CSV and its exit codes.
 
 use crate::support::ground::{Ground, done};
 use crate::support::words::has;
@@ -21,7 +21,7 @@ const COLUMNS: [&str; 11] = [
 /// A mass off the axle.
 const LUMP: &str = "body.point.2={name='lump',at_m=[0.5,0,1],mass_kg=1}";
 
-/// What `gyrolab compare` with `args` says, which must succeed without a word on stderr.
+/// Runs `gyrolab compare` with `args`, which must succeed without output on stderr, and returns its stdout.
 #[track_caller]
 fn told(ground: &Ground, args: &str) -> String {
     told_by(ground.run(&format!("compare {args}")))
@@ -33,9 +33,9 @@ fn told_by(output: Output) -> String {
     String::from_utf8(done(output).stdout).unwrap()
 }
 
-/// The rows of a CSV, as text, in the order of `COLUMNS`.
+/// Parses the rows of a CSV as text, in the order of `COLUMNS`.
 fn rows(csv: &str) -> Vec<Vec<String>> {
-    // Above them stands the run file of the scenario that was compared.
+    // The run file of the compared scenario precedes them.
     let mut reader = csv::ReaderBuilder::new()
         .comment(Some(b'#'))
         .from_reader(csv.as_bytes());
@@ -45,7 +45,7 @@ fn rows(csv: &str) -> Vec<Vec<String>> {
         .collect()
 }
 
-/// The table's lines, heads first: what stands between the two empty lines.
+/// Returns the lines of the table, headings first: those between the two empty lines.
 fn table(text: &str) -> Vec<&str> {
     let lines = text.lines().skip_while(|line| !line.is_empty()).skip(1);
     lines.take_while(|line| !line.is_empty()).collect()
@@ -58,13 +58,13 @@ fn number(row: &[String], column: &str) -> f64 {
         .unwrap_or_else(|_| panic!("{column} is {cell}"))
 }
 
-/// The schemes that make an error.
+/// The schemes with a truncation error.
 fn with_error() -> impl Iterator<Item = (&'static str, u32)> {
     let schemes = SCHEMES.iter();
     schemes.filter_map(|scheme| Some((scheme.name, scheme.order?)))
 }
 
-/// Time steps at which a scheme of this order shows it on the cusps.
+/// Time steps at which a scheme of this order converges visibly on the preset cusps.
 fn steps_for(order: u32) -> &'static str {
     match order {
         1 => "0.0002,0.0001,0.00005",
@@ -96,7 +96,7 @@ fn the_orders_of_the_schemes_are_in_the_table() {
 }
 
 #[test]
-fn the_table_names_scenario_kind_and_columns() {
+fn the_table_names_scenario_reference_and_columns() {
     let lab = Ground::new();
     let text = told(&lab, "cusps --duration 1");
     let begin = "Cusps, 1 s, against the exact motion (closed form)\n\n";
@@ -104,7 +104,7 @@ fn the_table_names_scenario_kind_and_columns() {
     let words = |line: &str| line.split_whitespace().collect::<Vec<_>>().join(" ");
     let heads = "scheme dt s steps error m at end m order energy L.axle L_z ns/step";
     assert_eq!(words(table(&text)[0]), heads);
-    // All schemes that make an error; the scenario's time step, a half, a quarter, an eighth.
+    // All schemes with a truncation error, at the scenario's time step and 1/2, 1/4 and 1/8 of it.
     let expected: Vec<_> = with_error()
         .flat_map(|(scheme, _)| {
             ["0.001 1000", "0.0005 2000", "0.00025 4000", "0.000125 8000"]
@@ -121,7 +121,7 @@ fn the_table_names_scenario_kind_and_columns() {
 }
 
 #[test]
-fn schemes_and_time_steps_are_those_asked_for() {
+fn the_requested_schemes_and_time_steps_are_compared() {
     let lab = Ground::new();
     let args =
         "method-2 --duration 2 --schemes strang,exact,report --time-steps 0.01,0.05,0.02,0.05 -o -";
@@ -148,11 +148,11 @@ fn schemes_and_time_steps_are_those_asked_for() {
 }
 
 #[test]
-fn the_numbers_of_the_table_are_those_of_the_wobble() {
-    // A push that is counted in steps keeps its 20 s at every time step.
+fn the_wobble_shrinks_with_the_time_step() {
+    // A push counted in steps still lasts 20 s at every time step.
     let args = "wobble-push --schemes report --time-steps 0.1,0.02,0.01,0.001 -o -";
     let csv = told(&Ground::new(), args);
-    // 14 % up of z0 = 0.8 m and 23 % down at 0.1 and 0.02 s, and aside as much again.
+    // At 0.1 and 0.02 s: 14 % of z0 = 0.8 m up and 23 % down, and as much to the side.
     for (row, expected) in rows(&csv).iter().zip([0.386, 0.391, 1.9e-3, 1.2e-4]) {
         let ratio = number(row, "error_m") / expected;
         assert!((ratio - 1.0).abs() < 0.05, "{csv}");
@@ -161,13 +161,13 @@ fn the_numbers_of_the_table_are_those_of_the_wobble() {
 }
 
 #[test]
-fn a_file_is_written_whole_and_not_written_over() {
+fn a_comparison_file_is_complete_and_not_overwritten() {
     let lab = Ground::new();
     let args = "cusps --duration 0.1 -o table.csv";
     let text = told(&lab, args);
     let csv = lab.read("table.csv");
     assert_eq!(rows(&csv).len(), 4 * with_error().count());
-    has(&text, "ns/step"); // the table is for the reader all the same
+    has(&text, "ns/step"); // the table is printed as well
     lab.refused(&format!("compare {args}"), 1, &["--force"]);
     assert_eq!(lab.read("table.csv"), csv);
     told(&lab, &format!("{args} --schemes rk4 --force"));
@@ -177,7 +177,7 @@ fn a_file_is_written_whole_and_not_written_over() {
 }
 
 #[test]
-fn a_scheme_that_is_named_twice_is_compared_once() {
+fn a_repeated_scheme_is_compared_once() {
     let rows = |schemes: &str| {
         let args = format!("compare torque-free --duration 0.01 -o - --schemes {schemes}");
         rows(&Ground::new().stdout(&args)).len()
@@ -186,7 +186,7 @@ fn a_scheme_that_is_named_twice_is_compared_once() {
 }
 
 #[test]
-fn what_cannot_be_compared_is_refused() {
+fn invalid_comparisons_are_rejected() {
     let lab = Ground::new();
     let too_long = format!("cusps --duration 1e7 --set \"{LUMP}\"");
     for (args, code, words) in [
@@ -219,7 +219,7 @@ fn what_cannot_be_compared_is_refused() {
 }
 
 #[test]
-fn a_scheme_whose_numbers_break_has_no_error_to_show() {
+fn a_scheme_with_non_finite_numbers_has_no_error() {
     let lab = Ground::new();
     let args = |momentum: &str| {
         let set = format!("start.momentum_Js=[0,0,{momentum}]");
@@ -240,7 +240,7 @@ fn a_scheme_whose_numbers_break_has_no_error_to_show() {
         let none = row[3..6].iter().all(|cell| cell == "n/a");
         assert_eq!(broke, none, "{csv}");
     }
-    // Nor has one beside an exact motion that leaves the range of numbers.
+    // There is no error either if the exact motion overflows.
     let unbounded = told(&lab, &format!("{} -o -", args("1e100")));
     assert!(
         rows(&unbounded).iter().all(|row| row[3] == "n/a"),
@@ -249,13 +249,13 @@ fn a_scheme_whose_numbers_break_has_no_error_to_show() {
 }
 
 #[test]
-fn one_core_and_two_give_the_same_numbers() {
+fn results_do_not_depend_on_the_number_of_threads() {
     let lab = Ground::new();
     let numbers = |threads: &str| {
         let mut command = lab.command("compare wobble-push --duration 30 -o -");
         let output = command.env("RAYON_NUM_THREADS", threads).output().unwrap();
         let mut rows = rows(&told_by(output));
-        rows.iter_mut().for_each(|row| row.truncate(9)); // all but what it cost
+        rows.iter_mut().for_each(|row| row.truncate(9)); // without the time per step
         rows
     };
     let one = numbers("1");
@@ -264,7 +264,7 @@ fn one_core_and_two_give_the_same_numbers() {
 }
 
 #[test]
-fn runs_that_break_down_are_told_below_the_table() {
+fn runs_that_break_down_are_listed_below_the_table() {
     for (scheme, breaks) in [("rk4", true), ("srkn11b", false)] {
         let args = format!("compare method-2 --duration 1 --schemes {scheme}");
         let table = Ground::new().stdout(&args);

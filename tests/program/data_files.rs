@@ -1,4 +1,4 @@
-//! Files of measured data as people have them, from standard input too, and scenarios with names in wide characters.
+//! Files of measured data in common formats, also from standard input, and scenarios with names in wide characters.
 
 use crate::support::ground::{Ground, code, done, stderr, stdout};
 use crate::support::words::{has, has_all};
@@ -23,7 +23,7 @@ time_step_s = 0.01
 steps = 200
 "#;
 
-/// The rates of the symmetric body with I3 = 1.5 I1, as a logger writes them in ms and degrees a second.
+/// The angular rates of the symmetric body with I3 = 1.5 I1, as logged in ms and degrees per second.
 fn logged() -> String {
     let mut text = "timestamp_ms,gx_dps,gy_dps,gz_dps\n".to_owned();
     for row in 0..100 {
@@ -37,7 +37,7 @@ fn logged() -> String {
 }
 
 #[test]
-fn units_in_names_of_columns_are_converted() {
+fn units_in_column_names_are_converted() {
     let ground = Ground::new();
     ground.write("sym.toml", SYMMETRIC);
     ground.write("log.csv", &logged());
@@ -68,7 +68,7 @@ fn units_in_names_of_columns_are_converted() {
 }
 
 #[test]
-fn standard_input_is_read_for_data_or_scenario() {
+fn data_and_scenarios_are_read_from_standard_input() {
     let ground = Ground::new();
     ground.write("sym.toml", SYMMETRIC);
     ground.write("log.csv", &logged());
@@ -90,7 +90,7 @@ fn standard_input_is_read_for_data_or_scenario() {
         "$G fit - --in sym.toml {free} -o fit.csv < log.csv"
     )));
     ground.refused("verify fit.csv", 1, &["standard input"]);
-    // A run of a scenario, and of a CSV that begins with one.
+    // Runs of a scenario, and of a CSV whose header is one.
     let rows = ground.stdout("run sym.toml -o -");
     for line in [
         "$G run - -o - < sym.toml",
@@ -104,7 +104,7 @@ fn standard_input_is_read_for_data_or_scenario() {
 }
 
 #[test]
-fn one_column_measured_again_and_again_is_fitted() {
+fn one_column_of_repeated_measurements_can_be_fitted() {
     let ground = Ground::new();
     ground.write(
         "periods.csv",
@@ -120,7 +120,7 @@ fn one_column_measured_again_and_again_is_fitted() {
 }
 
 #[test]
-fn rows_outside_of_the_time_that_is_fitted_are_counted() {
+fn rows_outside_the_fitted_time_are_counted() {
     let ground = Ground::new();
     ground.write("sym.toml", SYMMETRIC);
     ground.write("log.csv", &logged().replacen("\n0,", "\n-1.6,", 1));
@@ -133,7 +133,7 @@ fn rows_outside_of_the_time_that_is_fitted_are_counted() {
 }
 
 #[test]
-fn what_cannot_be_right_is_pointed_out() {
+fn implausible_data_are_reported() {
     let ground = Ground::new();
     ground.write(
         "tip.csv",
@@ -156,7 +156,7 @@ fn what_cannot_be_right_is_pointed_out() {
 }
 
 #[test]
-fn pictures_have_their_width_with_wide_characters() {
+fn pictures_with_wide_characters_keep_their_width() {
     let ground = Ground::new();
     let scenario = SYMMETRIC
         .replace("free symmetric", "陀螺仪的进动实验 速い独楽は倒れずに")

@@ -1,12 +1,12 @@
-//! Names that could steer the terminal, in every place where the user or the machine may put one: none of them gets
-//! there as it is.
+//! Names with control sequences for the terminal, wherever the user or the system may supply one: none is printed
+//! unescaped.
 
 use crate::support::ground::Ground;
 use crate::support::pty::LEAVES_ALTERNATE_SCREEN;
 use gyrolab::engine::text::printable::is_steering;
 use std::process::Output;
 
-/// Sets a window's title, turns text round, and hides.
+/// Control characters that set a window title, reverse the text direction and hide text.
 const NASTY: &str = "x\u{1b}]0;P\u{7}\u{202e}\u{200b}\u{2028}\u{feff}\u{e0041}\u{9b}2Jy";
 
 const BODY: &str = "[[body.point]]\nname = 'top'\nat_m = [0, 0, 1]\nmass_kg = 1\n[[body.point]]\nname = 'a'\n\
@@ -23,7 +23,7 @@ fn is_printable(args: &str, output: &Output) {
 }
 
 #[test]
-fn no_argument_steers_the_terminal() {
+fn control_sequences_in_arguments_are_escaped() {
     let ground = Ground::named(NASTY);
     let good = format!("{NASTY}.toml");
     std::fs::write(ground.file(&good), format!("title = 'A top'\n{BODY}")).unwrap();
@@ -111,7 +111,7 @@ fn no_argument_steers_the_terminal() {
 }
 
 #[test]
-fn the_lab_and_its_farewell_show_names_escaped() {
+fn the_lab_and_its_last_message_escape_names() {
     let ground = Ground::named(NASTY);
     let file = format!("{NASTY}.toml");
     std::fs::write(ground.file(&file), format!("title = 'A top'\n{BODY}")).unwrap();
@@ -138,7 +138,7 @@ fn the_lab_and_its_farewell_show_names_escaped() {
     let sent = terminal.sent_text();
     assert!(!sent.contains("]0;P\u{7}"));
     let (_, farewell) = sent.rsplit_once(LEAVES_ALTERNATE_SCREEN).unwrap();
-    // The last sequence of the lab's own gives the cursor back.
+    // The lab's own last sequence restores the cursor.
     let (_, own) = farewell.rsplit_once("\u{1b}[").unwrap();
     let own_end = own.find(|c: char| c.is_ascii_alphabetic()).unwrap();
     let lines: Vec<_> = own[own_end + 1..].lines().collect();
@@ -156,9 +156,9 @@ fn the_lab_and_its_farewell_show_names_escaped() {
 }
 
 #[test]
-fn what_clap_says_of_arguments_on_a_terminal_is_escaped() {
+fn argument_errors_on_a_terminal_escape_arguments() {
     let ground = Ground::new();
-    // A whole sequence and nothing else: clap's own plain text leaves such a one out, its coloured text does not.
+    // Only a complete sequence: clap removes it from its plain text, but not from its colored text.
     let title = "x\u{1b}]0;P\u{7}y";
     let option = format!("--bo{title}");
     for args in [option, format!("run cusps --scheme {title}")] {

@@ -1,9 +1,9 @@
-//! The examples of the helps and of the manual, carried out as they are printed.
+//! The examples in the help texts and the manual, executed as printed.
 
 use crate::support::ground::{GYROLAB, Ground, stderr};
 use std::os::unix::fs::symlink;
 
-/// What is not carried out, and why: words that the line holds.
+/// Words of example lines that are not executed, each with the reason.
 const NOT_CARRIED_OUT: &[(&str, &str)] = &[
     ("gyrolab --resume", "needs a terminal and a session"),
     ("asciinema ", "another program"),
@@ -21,7 +21,7 @@ const NOT_CARRIED_OUT: &[(&str, &str)] = &[
     ("--rehearse", "needs a terminal"),
 ];
 
-/// The commands below "Examples:" of a help: each with the lines that continue it.
+/// Returns the commands below "Examples:" in a help text, each with its continuation lines.
 fn examples(help: &str) -> Vec<String> {
     let text = help.split("\nExamples:\n").nth(1).unwrap_or_default();
     assert!(!text.is_empty(), "{help}");
@@ -37,14 +37,14 @@ fn examples(help: &str) -> Vec<String> {
     commands
 }
 
-/// The commands of several words that stand on lines of their own in the topic `text`, with those that continue them.
+/// Returns the commands of several words on their own lines in the topic `text`, with their continuation lines.
 fn commands_of_topic(text: &str) -> Vec<String> {
     let mut commands: Vec<String> = Vec::new();
     let mut is_continued = false;
     for line in text.lines() {
         let command = line.trim_start();
         let is_prose = command.contains("runs it again") || command.contains(" lists them");
-        // Upper case stands for something of the reader's.
+        // Words in capitals are placeholders.
         let is_whole = !command.split(' ').any(|word| {
             word.len() > 2 && word.chars().all(|c| c.is_uppercase() || ".".contains(c))
         });
@@ -67,7 +67,7 @@ fn commands_of_topic(text: &str) -> Vec<String> {
     commands
 }
 
-/// Carries out the commands in a folder of their own, one after the other, in a shell that stops at the first failure.
+/// Executes the commands one after the other in a new folder, in a shell that stops at the first failure.
 #[track_caller]
 fn carry_out(of: &str, commands: &[String]) -> usize {
     let ground = Ground::named("examples");
@@ -95,7 +95,7 @@ fn carry_out(of: &str, commands: &[String]) -> usize {
 }
 
 #[test]
-fn the_examples_of_every_help_work_as_they_are_printed() {
+fn examples_in_every_help_work_as_printed() {
     let ground = Ground::new();
     let mut count = carry_out("gyrolab", &examples(&ground.stdout("--help")));
     for command in ground.subcommands() {
@@ -106,7 +106,7 @@ fn the_examples_of_every_help_work_as_they_are_printed() {
 }
 
 #[test]
-fn the_commands_of_the_topics_work_as_they_are_printed() {
+fn commands_in_manual_topics_work_as_printed() {
     let ground = Ground::new();
     let mut count = 0;
     for topic in ["fit", "schemes", "sweep"] {

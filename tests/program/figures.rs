@@ -1,4 +1,4 @@
-//! `gyrolab figure`: its files, and how it ends.
+//! `gyrolab figure`: its files and its exit codes.
 
 use crate::support::ground::{Ground, code, done, failed, stderr};
 use std::fs;
@@ -11,7 +11,7 @@ fn draws(ground: &Ground, args: &[&str]) -> String {
 }
 
 #[test]
-fn a_figure_is_written_in_each_form() {
+fn a_figure_is_written_in_every_format() {
     let ground = Ground::new();
     for (file, begin) in [
         ("a.svg", &b"<"[..]),
@@ -34,7 +34,7 @@ fn a_figure_is_written_in_each_form() {
 }
 
 #[test]
-fn an_existing_file_stays_unless_it_may_be_replaced() {
+fn an_existing_figure_is_replaced_only_with_force() {
     let ground = Ground::new();
     ground.write("a.svg", "mine");
     let figure = ["figure", "method-2", "--steps", "9", "-o", "a.svg"];
@@ -46,7 +46,7 @@ fn an_existing_file_stays_unless_it_may_be_replaced() {
 }
 
 #[test]
-fn what_cannot_be_drawn_is_refused_and_nothing_is_written() {
+fn invalid_figures_are_rejected_and_write_no_files() {
     let ground = Ground::new();
     let figure = |args: &[&str]| ground.run(&[&["figure"], args].concat());
     failed(
@@ -88,7 +88,7 @@ fn what_cannot_be_drawn_is_refused_and_nothing_is_written() {
 }
 
 #[test]
-fn numbers_that_break_leave_the_figure_up_to_there() {
+fn a_run_with_non_finite_numbers_is_drawn_up_to_them() {
     let ground = Ground::new();
     let push = "push.0={point=\"top\", force_N=[1e300,0,0], first_step=25, steps=1}";
     let broken = ["figure", "method-2", "--set", push, "-o", "a.svg"];
@@ -100,7 +100,7 @@ fn numbers_that_break_leave_the_figure_up_to_there() {
 }
 
 #[test]
-fn an_exported_run_and_a_comparison_are_drawn_from_their_files() {
+fn exported_runs_and_comparisons_are_drawn_from_their_files() {
     let ground = Ground::new();
     done(ground.run("run method-2 --steps 40 -o run.csv"));
     draws(&ground, &["run.csv", "--kind", "tilt_deg", "-o", "run.svg"]);

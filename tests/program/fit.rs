@@ -1,4 +1,4 @@
-//! `gyrolab fit`: what it prints, its CSV, its figure, its exit codes, and what it refuses.
+//! `gyrolab fit`: its output, CSV, figure, exit codes and error messages.
 
 use crate::support::ground::{Ground, code, done, stdout};
 use crate::support::words::{has, has_no};
@@ -7,7 +7,7 @@ const NUTATION: &str = "fit heidelberg-nutation --in heidelberg --set body.point
     --free=body.part.0.moments_kg_m2.2";
 
 #[test]
-fn it_says_the_value_with_its_uncertainty_and_whether_the_model_fits() {
+fn a_fit_prints_values_uncertainties_and_goodness_of_fit() {
     let output = done(Ground::new().run(NUTATION));
     assert!(output.stderr.is_empty());
     let told = stdout(&output);
@@ -19,7 +19,7 @@ fn it_says_the_value_with_its_uncertainty_and_whether_the_model_fits() {
 }
 
 #[test]
-fn json_has_what_the_text_has() {
+fn the_json_of_a_fit_has_the_numbers_of_the_text() {
     let json = Ground::new().json(&format!("{NUTATION} --json"));
     let near = |value: &serde_json::Value, wanted: f64| {
         let value = value.as_f64().unwrap();
@@ -34,7 +34,7 @@ fn json_has_what_the_text_has() {
 }
 
 #[test]
-fn a_fit_by_another_scheme_than_the_scenario_has_says_so_wherever_it_is_quoted() {
+fn a_fit_with_another_scheme_than_the_scenarios_remarks_on_it() {
     let ground = Ground::new();
     let data = "t_s,tilt_deg\n0,45.1\n0.5,45\n1,44.9\n1.5,45.1\n";
     ground.write("tilt.csv", data);
@@ -46,7 +46,7 @@ fn a_fit_by_another_scheme_than_the_scenario_has_says_so_wherever_it_is_quoted()
     assert_eq!(json["remarks"][0], remark);
     let csv = ground.stdout(&format!("{fit} -o -"));
     has(csv, "\n# # scheme = \"exact\"\n");
-    // Where the scheme was asked for, it is no surprise.
+    // There is no remark if the scheme was requested.
     for asked in ["--scheme report", "--set motion.scheme=exact"] {
         let told = ground.stdout(&format!("{fit} {asked}"));
         has(&told, "scheme ");
@@ -55,7 +55,7 @@ fn a_fit_by_another_scheme_than_the_scenario_has_says_so_wherever_it_is_quoted()
 }
 
 #[test]
-fn the_csv_is_drawn_and_runs_again() {
+fn the_csv_of_a_fit_can_be_drawn_run_and_verified() {
     let ground = Ground::new();
     let into_file = format!("{NUTATION} -o fit.csv");
     let output = done(ground.run(&into_file));
@@ -81,7 +81,7 @@ fn the_csv_is_drawn_and_runs_again() {
         assert_eq!(code(&verified), 1);
         has(stdout(&verified), reason);
     }
-    // Where its data stand in another place, that is said.
+    // If the data file has moved, the message says so.
     for (old, new, reason) in [
         (
             "fit heidelberg-nutation ",
@@ -106,7 +106,7 @@ fn the_csv_is_drawn_and_runs_again() {
 }
 
 #[test]
-fn what_is_wrong_is_told_with_the_remedy() {
+fn fit_errors_name_the_remedy() {
     let ground = Ground::new();
     ground.write("lab.csv", "t_s,tilt_deg\n0,20\n");
     for (args, code, words) in [
@@ -131,9 +131,9 @@ fn what_is_wrong_is_told_with_the_remedy() {
     }
 }
 
-/// Of two throws in one recording each is fitted by itself, and its CSV is computed again.
+/// Each of two throws in one recording is fitted separately, and its CSV is verified.
 #[test]
-fn a_part_of_a_recording_is_fitted_from_its_beginning_on() {
+fn a_part_of_a_recording_is_fitted_from_its_own_start() {
     let ground = Ground::new();
     let columns = "--columns t_s,w1_rad_per_s,w2_rad_per_s,w3_rad_per_s";
     let mut recording = String::new();
@@ -169,7 +169,7 @@ fn a_part_of_a_recording_is_fitted_from_its_beginning_on() {
     ground.refused(&none, 1, &["throws.csv: has no value measured"]);
 }
 
-/// A recording of two throws, between which the phone lies still, with a jolt where it is caught.
+/// Writes a recording of two throws. The phone rests between them, with a jolt at each catch.
 fn two_throws(ground: &Ground) {
     let columns = "--columns t_s,w1_rad_per_s,w2_rad_per_s,w3_rad_per_s";
     let mut recording = String::new();
@@ -193,7 +193,7 @@ fn two_throws(ground: &Ground) {
 }
 
 #[test]
-fn throws_are_found_listed_and_fitted_one_by_one() {
+fn throws_are_found_listed_and_fitted_separately() {
     let ground = Ground::new();
     two_throws(&ground);
     let fit =
@@ -222,7 +222,7 @@ fn throws_are_found_listed_and_fitted_one_by_one() {
 }
 
 #[test]
-fn a_recording_without_a_flight_is_refused_with_what_to_do() {
+fn a_recording_without_a_flight_is_rejected_with_a_remedy() {
     let ground = Ground::new();
     let rows = (0..100).map(|row| format!("{},{},0.1,0\n", f64::from(row) / 100.0, row % 5));
     let head = "t_s,w1_rad_per_s,w2_rad_per_s,w3_rad_per_s\n".to_owned();

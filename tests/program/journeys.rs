@@ -1,5 +1,4 @@
-//! Journeys of a user through the lab, from its opening to its end, with what is on the screen and the disk then. The
-//! program itself runs in a pty.
+//! Complete sessions of a user, with checks of the screen and the disk. The real program runs in a pty.
 
 use crate::support::dice::Dice;
 use crate::support::ground::{Ground, done};
@@ -18,7 +17,7 @@ const CLEAR: &str = "\u{15}";
 /// The message of a lab that has resumed a session.
 const AS_LEFT: &str = "session resumed";
 
-/// The lab with Method 2, standing still at `step`.
+/// Opens the lab with Method 2, paused at `step`.
 fn paused_at(ground: &Ground, step: u64) -> Terminal {
     let step = step.to_string();
     let lab = ground.open(&format!("--paused --at {step}"));
@@ -26,7 +25,7 @@ fn paused_at(ground: &Ground, step: u64) -> Terminal {
     lab
 }
 
-/// The lab of the newest session, once it has arrived at the step where it was left.
+/// Resumes the newest session and waits for the step at which it was closed.
 fn resumed(ground: &Ground) -> Terminal {
     let lab = ground.open("--resume");
     lab.wait_for(AS_LEFT);
@@ -34,12 +33,12 @@ fn resumed(ground: &Ground) -> Terminal {
     lab
 }
 
-/// Types `text` into the dialog that is open, in place of what is there.
+/// Replaces the text of the open dialog with `text` and confirms it.
 fn answer(lab: &mut Terminal, text: &str) {
     lab.press(&format!("{CLEAR}{text}\r"));
 }
 
-/// Selects the value that is found by `name`.
+/// Selects the value `name` by the filter of the values pane.
 #[track_caller]
 fn select(lab: &mut Terminal, name: &str) {
     lab.press("/");
@@ -50,20 +49,20 @@ fn select(lab: &mut Terminal, name: &str) {
     });
 }
 
-/// Types `value` for the value that is selected: the run begins again with it.
+/// Sets the selected value to `value` and reruns.
 fn set(lab: &mut Terminal, value: &str) {
     lab.ask("\r", "Enter: ");
     answer(lab, value);
 }
 
-/// Types `value` for the value that is selected, from the next step on.
+/// Sets the selected value to `value` from the next step on.
 fn set_from_now_on(lab: &mut Terminal, value: &str) {
     lab.ask("\r", "Enter: rerun from the start");
     lab.ask("\t", "Enter: from now on");
     answer(lab, value);
 }
 
-/// Goes to `step`, once all that was pressed before has been done.
+/// Jumps to `step` after all earlier keys have taken effect.
 #[track_caller]
 fn go_to(lab: &mut Terminal, step: u64) {
     lab.ask(&step.to_string(), &format!("{step}: press a key"));
@@ -74,17 +73,17 @@ fn go_to(lab: &mut Terminal, step: u64) {
     });
 }
 
-/// Presses the keys of steps, and waits for the step to which they lead.
+/// Presses `keys` that move by steps, and waits for `step`.
 #[track_caller]
 fn steps(lab: &mut Terminal, keys: &str, step: u64) {
     lab.press(keys);
     lab.wait_for_step(step);
 }
 
-/// Gives the push to come, and waits for the message about it.
+/// Applies the next push, and waits for the message about it.
 #[track_caller]
 fn push(lab: &mut Terminal) {
-    lab.ask("1", "1: press a key"); // what was said of the push before has gone
+    lab.ask("1", "1: press a key"); // clears the message about the previous push
     lab.press("p");
     lab.wait_until("a push", |lab| {
         let words = lab.words();
@@ -92,7 +91,7 @@ fn push(lab: &mut Terminal) {
     });
 }
 
-/// Saves the run file as `name`, and reads it.
+/// Saves the run file as `name` and returns its text.
 #[track_caller]
 fn saved(lab: &mut Terminal, name: &str) -> String {
     lab.ask("s", "save the run file");
@@ -101,7 +100,7 @@ fn saved(lab: &mut Terminal, name: &str) -> String {
     lab.ground().read(name)
 }
 
-/// Exports every row as `name`, and reads it.
+/// Exports every row to `name` and returns the bytes.
 #[track_caller]
 fn exported(lab: &mut Terminal, name: &str) -> Vec<u8> {
     lab.ask("x", "export steps 0 to");
@@ -111,12 +110,12 @@ fn exported(lab: &mut Terminal, name: &str) -> Vec<u8> {
     fs::read(lab.ground().file(name)).unwrap()
 }
 
-/// The CSV that `gyrolab run` writes for the file `name`.
+/// Returns the CSV that `gyrolab run` writes for the file `name`.
 fn run(ground: &Ground, name: &str) -> Vec<u8> {
     done(ground.run(&format!("run {name} -o -"))).stdout
 }
 
-/// Step, time and place of the axle top, as they are shown.
+/// Returns the step, the time and the position of the axle top shown on the screen.
 fn shown(lab: &Terminal) -> [Option<String>; 3] {
     let shown = ["x m", "y m", "z m"].map(|label| lab.value(label));
     let is_whole = shown.iter().all(Option::is_some);
@@ -125,7 +124,7 @@ fn shown(lab: &Terminal) -> [Option<String>; 3] {
 }
 
 #[test]
-fn a_value_is_nudged_and_typed_refused_and_taken_back() {
+fn values_are_nudged_typed_rejected_and_undone() {
     let ground = Ground::new();
     let mut lab = paused_at(&ground, 100);
     select(&mut lab, "dt");
@@ -136,7 +135,7 @@ fn a_value_is_nudged_and_typed_refused_and_taken_back() {
     for (value, why) in [("-1", "greater than zero"), ("soon", "number")] {
         set(&mut lab, value);
         lab.wait_for(why);
-        lab.wait_for(&format!("{value}_")); // it stays, to be corrected
+        lab.wait_for(&format!("{value}_")); // the text stays for correction
         lab.ask(ESC, "L lessons");
         lab.wait_for("dt 0.05 s");
     }
@@ -164,9 +163,9 @@ fn a_value_is_nudged_and_typed_refused_and_taken_back() {
     lab.quit();
 }
 
-/// The run that is exported has every kind of change in it.
+/// The exported run contains every kind of change.
 #[test]
-fn an_export_is_the_run_that_was_saved() {
+fn an_export_equals_the_csv_of_the_saved_run() {
     let ground = Ground::new();
     let mut lab = paused_at(&ground, 50);
     push(&mut lab);
@@ -194,7 +193,7 @@ fn an_export_is_the_run_that_was_saved() {
     assert!(csv == run(&ground, "run.toml"), "other bytes");
     assert!(csv == run(&ground, "run.csv"), "other bytes from the CSV");
 
-    // A file that exists goes at the second word only.
+    // An existing file is replaced only after a second confirmation.
     fs::write(ground.file("mine.csv"), "mine").unwrap();
     lab.ask("x", "file method-2.csv_");
     lab.press(ESC);
@@ -229,7 +228,7 @@ fn the_present_state_is_saved_as_a_scenario_that_runs() {
 }
 
 #[test]
-fn an_export_that_cannot_be_says_why_and_loses_nothing() {
+fn a_rejected_export_gives_the_reason_and_loses_nothing() {
     let ground = Ground::new();
     let mut lab = paused_at(&ground, 50);
     fs::create_dir(ground.file("gone")).unwrap();
@@ -258,7 +257,7 @@ fn an_export_that_cannot_be_says_why_and_loses_nothing() {
 }
 
 #[test]
-fn an_export_whose_folder_goes_away_says_so_and_the_lab_stays() {
+fn an_export_into_a_deleted_folder_fails_and_the_lab_continues() {
     let ground = Ground::new();
     fs::create_dir(ground.file("gone")).unwrap();
     let mut lab = long_run(&ground);
@@ -271,7 +270,7 @@ fn an_export_whose_folder_goes_away_says_so_and_the_lab_stays() {
     lab.quit();
 }
 
-/// A run of this many steps is played in less than a second, and its export takes seconds.
+/// The number of steps of a run that plays in less than a second, but takes seconds to export.
 const LONG: u64 = 1_000_000;
 
 fn long_run(ground: &Ground) -> Terminal {
@@ -288,11 +287,11 @@ fn begin_export(lab: &mut Terminal) {
 }
 
 #[test]
-fn an_export_is_stopped_by_esc_and_by_the_second_q_and_leaves_nothing() {
+fn esc_and_a_second_q_stop_an_export_and_leave_no_file() {
     let ground = Ground::new();
     let mut lab = long_run(&ground);
     begin_export(&mut lab);
-    lab.press(ESC); // it may close the notice
+    lab.press(ESC); // closes the notice, if it is still there
     lab.wait_until("the line without the notice", |lab| {
         !lab.words().contains("in the background")
     });
@@ -306,7 +305,7 @@ fn an_export_is_stopped_by_esc_and_by_the_second_q_and_leaves_nothing() {
 }
 
 #[test]
-fn a_line_that_is_lost_in_an_export_leaves_no_part_and_is_told_of() {
+fn a_lost_line_during_an_export_is_reported_and_leaves_no_file() {
     all_at_once(&["HUP", "line"], |end| {
         let ground = Ground::new();
         let mut lab = long_run(&ground);
@@ -319,7 +318,7 @@ fn a_line_that_is_lost_in_an_export_leaves_no_part_and_is_told_of() {
     });
 }
 
-/// Runs `test` with all `cases` at once: they wait more than they compute.
+/// Runs `test` for all `cases` in parallel, since they mostly wait.
 fn all_at_once(cases: &[&str], test: impl Fn(&str) + Sync) {
     thread::scope(|scope| {
         for case in cases {
@@ -328,7 +327,7 @@ fn all_at_once(cases: &[&str], test: impl Fn(&str) + Sync) {
     });
 }
 
-/// Ends the lab by the signal `by`, or by the loss of its line; gives its exit code.
+/// Ends the lab by the signal `by`, or by closing its line. Returns its exit code.
 fn ended(lab: &mut Terminal, by: &str) -> u32 {
     match by {
         "line" => lab.lose_line(),
@@ -337,7 +336,7 @@ fn ended(lab: &mut Terminal, by: &str) -> u32 {
     lab.wait_for_end().exit_code()
 }
 
-/// The content of all session files.
+/// Returns the contents of all session files.
 fn kept(ground: &Ground) -> String {
     let folder = ground.state().join("gyrolab");
     let names = ground.kept(".session").into_iter();
@@ -346,7 +345,7 @@ fn kept(ground: &Ground) -> String {
 }
 
 #[test]
-fn all_of_it_at_every_size_and_back_with_resume() {
+fn a_run_edited_at_every_screen_size_is_resumed() {
     let ground = Ground::new();
     let mut lab = paused_at(&ground, 40);
     push(&mut lab);
@@ -361,7 +360,7 @@ fn all_of_it_at_every_size_and_back_with_resume() {
     answer(&mut lab, "0.05");
     lab.resize((1, 1));
     lab.press("40.");
-    lab.press("s"); // a dialog that nobody sees
+    lab.press("s"); // a dialog that the screen is too small to show
     lab.resize((5, 3));
     lab.press(CLEAR);
     lab.press("small.toml\r");
@@ -395,7 +394,7 @@ fn all_of_it_at_every_size_and_back_with_resume() {
     second.press("q");
     second.wait_for_end();
 
-    // What was taken back stays so, and the other run is still there.
+    // Undone changes stay undone, and the other run still exists.
     let mut third = resumed(&ground);
     third.press("u");
     third.wait_for("dt 0.1 s");
@@ -409,7 +408,7 @@ fn all_of_it_at_every_size_and_back_with_resume() {
 }
 
 #[test]
-fn a_screen_that_is_small_for_a_moment_is_drawn_again() {
+fn a_briefly_small_screen_is_redrawn() {
     let ground = Ground::new();
     let mut lab = paused_at(&ground, 40);
     for small in [(1, 1), (79, 1), (40, 10), (1, 24)].repeat(3) {
@@ -423,7 +422,7 @@ fn a_screen_that_is_small_for_a_moment_is_drawn_again() {
 }
 
 #[test]
-fn no_key_is_lost_when_the_size_changes_at_the_same_moment() {
+fn no_key_is_lost_during_a_resize() {
     let ground = Ground::new();
     let mut lab = paused_at(&ground, 40);
     for step in 41..100 {
@@ -433,9 +432,9 @@ fn no_key_is_lost_when_the_size_changes_at_the_same_moment() {
     lab.quit();
 }
 
-/// Keys may arrive together with the end of the program, from a fast typist on a slow line.
+/// A fast typist on a slow line may send keys together with the key that quits.
 #[test]
-fn what_is_pressed_just_before_the_end_is_kept() {
+fn keys_pressed_just_before_the_end_are_saved() {
     all_at_once(&["q", "\u{3}"], |end| {
         let ground = Ground::new();
         let mut lab = paused_at(&ground, 30);
@@ -447,10 +446,8 @@ fn what_is_pressed_just_before_the_end_is_kept() {
     });
 }
 
-/// Waits until Ctrl-Z has stopped the process.
-#[track_caller]
 #[test]
-fn after_every_end_there_is_all_that_was_done() {
+fn every_way_to_end_the_lab_saves_all_changes() {
     all_at_once(&["TERM", "HUP", "INT", "QUIT", "line"], |end| {
         let ground = Ground::new();
         let mut lab = paused_at(&ground, 30);
@@ -475,7 +472,7 @@ fn after_every_end_there_is_all_that_was_done() {
 
 #[test]
 #[cfg(debug_assertions)]
-fn after_a_panic_there_is_all_that_was_done() {
+fn a_panic_saves_all_changes() {
     let ground = Ground::new();
     let panic = ("GYROLAB_PANIC_AFTER_MS", "3000");
     let variables = [("TERM", "xterm"), ("LANG", "C.UTF-8"), panic];
@@ -499,7 +496,7 @@ fn after_a_panic_there_is_all_that_was_done() {
 }
 
 #[test]
-fn a_shell_stops_it_and_brings_it_back() {
+fn a_shell_suspends_and_resumes_the_lab() {
     let ground = Ground::new();
     let mut lab = ground.open_shell();
     lab.wait_for("shell>");
@@ -527,7 +524,7 @@ fn a_shell_stops_it_and_brings_it_back() {
 }
 
 #[test]
-fn two_labs_have_two_sessions_and_a_third_begins_anew() {
+fn two_labs_have_two_sessions_and_a_third_starts_a_new_one() {
     let ground = Ground::new();
     let mut labs = [paused_at(&ground, 30), paused_at(&ground, 50)];
     assert_eq!(ground.kept(".lock").len(), 2);
@@ -549,14 +546,14 @@ fn two_labs_have_two_sessions_and_a_third_begins_anew() {
     third.wait_for("Method 2");
 }
 
-/// Waits until the step of `lab` is on the disk.
+/// Waits until the step of `lab` is saved.
 fn wait_until_kept(lab: &Terminal, ground: &Ground) {
     let step = format!("step = {}\n", lab.step().unwrap());
     lab.wait_until("what it does on the disk", |_| kept(ground).contains(&step));
 }
 
 #[test]
-fn without_a_session_resume_opens_a_new_lab_and_says_so() {
+fn resume_without_a_session_reports_it_and_opens_a_new_lab() {
     let ground = Ground::new();
     let mut lab = ground.open("--resume --paused");
     lab.wait_for("no session to come back to: this is a new one");
@@ -583,12 +580,12 @@ fn a_damaged_session_is_named_and_left_alone() {
     after.press(" ");
     after.quit();
     assert_eq!(fs::read_to_string(&path).unwrap(), text[..text.len() / 2]);
-    // The lab that was opened instead has a session of its own.
+    // The lab that opened instead has its own session.
     resumed(&ground);
 }
 
 #[test]
-fn without_a_place_for_sessions_the_lab_opens_and_says_so() {
+fn an_unusable_session_folder_is_reported_when_the_lab_opens() {
     let ground = Ground::new();
     fs::write(ground.state(), "in the way").unwrap();
     for (args, words) in [
@@ -604,7 +601,7 @@ fn without_a_place_for_sessions_the_lab_opens_and_says_so() {
 }
 
 #[test]
-fn a_place_for_sessions_that_is_lost_is_told_of_and_found_again() {
+fn a_lost_session_folder_is_reported_and_restored() {
     let ground = Ground::new();
     let mut lab = paused_at(&ground, 30);
     wait_until_kept(&lab, &ground);
@@ -622,10 +619,10 @@ fn a_place_for_sessions_that_is_lost_is_told_of_and_found_again() {
     assert_eq!(resumed(&ground).step(), Some(31));
 }
 
-/// A lab that resumes at a far step is on its way for a second. If it ends on the way, it must still resume there.
+/// Resuming at a distant step takes a second. If the lab ends meanwhile, the session must still resume at that step.
 #[test]
 #[ignore = "goes 12 million steps, four times: ten seconds"]
-fn an_end_on_the_way_back_costs_nothing() {
+fn an_end_while_resuming_loses_nothing() {
     let ground = Ground::new();
     let mut lab = paused_at(&ground, 12_000_000);
     push(&mut lab);
@@ -641,9 +638,9 @@ fn an_end_on_the_way_back_costs_nothing() {
     assert_eq!(last.step(), Some(12_000_000));
 }
 
-/// On the way to a step that the user asked for, it resumes at the step that it had reached.
+/// A lab that ends during a seek resumes at the step that it had reached.
 #[test]
-fn an_end_on_the_way_further_costs_nothing_either() {
+fn an_end_while_seeking_loses_nothing() {
     let ground = Ground::new();
     paused_at(&ground, 40).quit();
     let mut lab = resumed(&ground);
@@ -655,9 +652,9 @@ fn an_end_on_the_way_further_costs_nothing_either() {
     assert!(after.step() >= step, "{:?} {step:?}", after.step());
 }
 
-/// What a session must contain after a kill.
+/// The minimum contents of a session after a kill.
 struct Kept {
-    /// The step at which the run was saved, and the run file.
+    /// The step at which the run file was saved.
     step: u64,
     run: String,
     /// A step that the lab showed more than a second before the kill, and how many pushes the run had then.
@@ -665,7 +662,7 @@ struct Kept {
     pushes: usize,
 }
 
-/// What the screen showed at some time.
+/// The contents of the screen at some time.
 struct Observed {
     at: Instant,
     step: u64,
@@ -674,7 +671,7 @@ struct Observed {
 
 #[test]
 #[ignore = "uses the lab for a second or two before each kill: ten seconds"]
-fn twenty_kills_cost_no_more_than_the_last_second() {
+fn twenty_kills_lose_at_most_the_last_second() {
     thread::scope(|scope| {
         for seed in 1..=4 {
             scope.spawn(move || five_kills(seed));
@@ -701,7 +698,7 @@ fn five_kills(seed: u64) {
     }
 }
 
-/// Changes the run at random and saves it; then adds to it for a second or two, and is killed.
+/// Changes the run at random and saves it. Then adds to it for a second or two, and kills the lab.
 fn is_used_until_killed(lab: &mut Terminal, dice: &mut Dice, kill: usize) -> Kept {
     for _ in 0..dice.whole(1, 6) {
         changes_something(lab, dice);
@@ -740,7 +737,7 @@ fn is_used_until_killed(lab: &mut Terminal, dice: &mut Dice, kill: usize) -> Kep
     }
 }
 
-/// A random change of the run, at any of its steps.
+/// Makes a random change to the run at any of its steps.
 fn changes_something(lab: &mut Terminal, dice: &mut Dice) {
     match dice.whole(0, 7) {
         0 => push(lab),
@@ -760,7 +757,7 @@ fn changes_something(lab: &mut Terminal, dice: &mut Dice) {
     }
 }
 
-/// A random action that only adds to the run; returns how many pushes it gave.
+/// Performs a random action that only adds to the run. Returns the number of pushes added.
 fn adds_something(lab: &mut Terminal, dice: &mut Dice) -> usize {
     match dice.whole(0, 4) {
         0 => {

@@ -1,25 +1,25 @@
-//! `gyrolab lesson`, and `check` of lessons.
+//! `gyrolab lesson`, and `gyrolab check` for lessons.
 
 use crate::support::ground::{Ground, code, done, failed, stderr, stdout};
 use crate::support::words::{has, has_all, has_no};
 use gyrolab::lessons::shipped::{LESSONS, TEMPLATE};
 use std::fs;
 
-/// A ground with the template as `my.md`.
+/// A working directory with the lesson template as `my.md`.
 fn ground() -> Ground {
     let ground = Ground::new();
     ground.write("my.md", TEMPLATE);
     ground
 }
 
-/// The line of the template that begins with `text`.
+/// Returns the number of the template line that begins with `text`.
 fn line_of(text: &str) -> usize {
     let line = TEMPLATE.lines().position(|line| line.starts_with(text));
     1 + line.unwrap()
 }
 
 #[test]
-fn exit_codes() {
+fn exit_codes_of_lesson_distinguish_failure_and_misuse() {
     let ground = ground();
     for (args, expected) in [
         ("lesson", 0),
@@ -54,13 +54,13 @@ fn exit_codes() {
 }
 
 #[test]
-fn a_full_disk_is_told_with_the_file() {
+fn a_full_disk_error_names_the_file() {
     let words = "cannot write /dev/full: No space left on device";
     ground().refused("lesson my.md --handout -o /dev/full", 1, &[words]);
 }
 
 #[test]
-fn without_a_name_there_is_a_line_for_each_lesson_and_nothing_else() {
+fn lesson_without_a_name_prints_one_line_per_lesson() {
     let known: String = LESSONS
         .iter()
         .map(|lesson| {
@@ -72,7 +72,7 @@ fn without_a_name_there_is_a_line_for_each_lesson_and_nothing_else() {
 }
 
 #[test]
-fn the_long_list_has_every_lesson_under_its_level_in_the_order_of_the_short_one() {
+fn the_long_list_groups_the_lessons_by_level_in_order() {
     let list = Ground::new().stdout("lesson --list");
     let places: Vec<_> = LESSONS
         .iter()
@@ -92,7 +92,7 @@ fn the_long_list_has_every_lesson_under_its_level_in_the_order_of_the_short_one(
 }
 
 #[test]
-fn the_template_passes_its_own_check_and_says_how_to_begin() {
+fn the_template_passes_check_and_explains_how_to_start() {
     let ground = Ground::new();
     assert_eq!(ground.stdout("lesson --template"), TEMPLATE);
     done(ground.run("lesson --template -o my.md"));
@@ -103,7 +103,7 @@ fn the_template_passes_its_own_check_and_says_how_to_begin() {
         stdout(&checked),
         "my.md: good: \"Does a faster spin precess faster?\", 3 pages, 1 prediction, 1 check\n"
     );
-    // Every kind of block is shown once, with a comment of its own.
+    // The template shows every kind of block once, each with a comment.
     for word in "lesson lab task predict compare check notes text".split(' ') {
         has(TEMPLATE, format!("\n```{word}\n"));
     }
@@ -111,7 +111,7 @@ fn the_template_passes_its_own_check_and_says_how_to_begin() {
 }
 
 #[test]
-fn a_handout_obeys_the_rules_for_files() {
+fn a_handout_follows_the_rules_for_output_files() {
     let ground = ground();
     let printed = done(ground.run("lesson my.md --handout"));
     let paper = stdout(&printed);
@@ -155,7 +155,7 @@ fn a_handout_obeys_the_rules_for_files() {
         1,
         &[no_folder],
     );
-    // A lesson that cannot be played leaves nothing behind.
+    // A lesson that cannot be played leaves no file.
     ground.write(
         "wrong.md",
         &TEMPLATE.replacen("open = \"fast-top\"", "open = \"./nowhere.toml\"", 1),
@@ -170,7 +170,7 @@ fn a_handout_obeys_the_rules_for_files() {
 }
 
 #[test]
-fn check_tells_what_is_wrong_with_a_lesson_and_plays_it() {
+fn check_reports_mistakes_in_a_lesson_and_plays_it() {
     let ground = ground();
     ground.write("key.md", &TEMPLATE.replace("hint = ", "hin = "));
     ground.write(
@@ -214,11 +214,11 @@ fn check_tells_what_is_wrong_with_a_lesson_and_plays_it() {
         assert!(refused.stdout.is_empty());
         assert!(!refused.stderr.contains(&0x1b));
     }
-    // One after the other: what is good is said, and the whole has failed.
+    // Of several files, good ones are reported, and the command fails as a whole.
     let both = ground.run("check my.md key.md");
     assert_eq!(code(&both), 1);
     assert!(stdout(&both).starts_with("my.md: good: "));
-    // A number that cannot be stated is told, and is no mistake.
+    // A number that the run cannot determine is reported, but it is not a mistake.
     ground.write(
         "unstated.md",
         &TEMPLATE.replace("{L_axle_Js:.0}", "{1 / (t_s - t_s):.0}"),
@@ -232,7 +232,7 @@ fn check_tells_what_is_wrong_with_a_lesson_and_plays_it() {
 }
 
 #[test]
-fn without_a_terminal_a_page_is_printed_with_its_picture() {
+fn without_a_terminal_a_page_and_its_picture_are_printed() {
     let ground = ground();
     let first = done(ground.run("lesson my.md"));
     assert!(stderr(&first).contains("page 1 of 3 is printed"));
@@ -247,7 +247,7 @@ fn without_a_terminal_a_page_is_printed_with_its_picture() {
         third.starts_with("## Your turn\n\n```text\nA fast top"),
         "{third}"
     );
-    has(&third, "t  10.000 s"); // the page stands on the one before
+    has(&third, "t  10.000 s"); // the page continues the run of the previous page
     let words = "--page 4: my.md has the pages 1 to 3";
     ground.refused("lesson my.md --page 4", 1, &[words]);
 }

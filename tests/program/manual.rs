@@ -1,4 +1,4 @@
-//! The manual's pages, and completion in the shells that are there.
+//! The pages of the manual, and completion in the installed shells.
 
 use crate::support::ground::{GYROLAB, Ground, done, stdout};
 use crate::support::words::{has, has_all, has_no};
@@ -23,16 +23,16 @@ fn every_command_has_a_page_with_examples() {
     for section in "ENVIRONMENT|FILES|\"EXIT STATUS\"|\"KEYS IN THE LAB\"".split('|') {
         has(&whole, format!(".SH {section}\n"));
     }
-    has_no(&whole, "gyrolab\\-help"); // a page that there is not
+    has_no(&whole, "gyrolab\\-help"); // there is no such page
     let words = "man1/gyrolab.1 exists; --force replaces it";
     ground.refused("man --all -o man1", 1, &[words]);
     done(ground.run("man --all -o man1 --force"));
     ground.refused("man verfy", 1, &["did you mean verify?"]);
 }
 
-/// The pages in roff are those of --all.
+/// `man` prints plain text; only `--all` writes roff.
 #[test]
-fn the_manual_is_printed_as_text() {
+fn the_manual_is_printed_as_plain_text() {
     let ground = Ground::new();
     let whole = ground.stdout("man");
     let page = ground.stdout("man run");
@@ -48,14 +48,14 @@ fn the_manual_is_printed_as_text() {
     for section in ["ENVIRONMENT", "FILES", "EXIT STATUS", "KEYS IN THE LAB"] {
         has(&whole, format!("\n{section}\n"));
     }
-    // A topic that is a command's, too, says where the options are.
+    // A topic with the name of a command says where its options are listed.
     let topic = ground.stdout("man sweep");
     let words = "The options of the command: gyrolab sweep --help.";
     assert_eq!(topic.lines().last(), Some(words));
 }
 
 #[test]
-fn no_line_is_wider_than_80_columns() {
+fn topics_are_at_most_80_columns_wide() {
     let ground = Ground::new();
     let topics = " class csv fit friction glossary lab numbers own-code scenario schemes sweep run";
     for topic in topics.split(' ') {
@@ -69,9 +69,9 @@ fn no_line_is_wider_than_80_columns() {
     }
 }
 
-/// The checkers of manual pages find nothing, where they are installed.
+/// Skips checkers that are not installed.
 #[test]
-fn checkers_of_manual_pages_find_nothing() {
+fn manual_pages_pass_the_installed_checkers() {
     let ground = Ground::new();
     done(ground.run("man --all -o man1"));
     for checker in ["mandoc -Tlint -W warning", "man -l --warnings"] {
@@ -89,7 +89,7 @@ fn checkers_of_manual_pages_find_nothing() {
 }
 
 #[test]
-fn the_topics_hold_the_tables_of_the_program() {
+fn the_topics_contain_the_tables_of_the_program() {
     let ground = Ground::new();
     for (topic, words) in [
         ("scenario", "motion.time_step_s (required)"),
@@ -111,7 +111,7 @@ fn the_topics_hold_the_tables_of_the_program() {
     }
 }
 
-/// What bash completes `line` to, its words parted as bash parts them.
+/// Returns bash's completions of `line`, split into words like bash does.
 fn in_bash(ground: &Ground, line: &str) -> String {
     let words = line.replace('=', " = ");
     let script = format!(
@@ -187,7 +187,7 @@ fn zsh_and_fish_complete_keys() {
         }
         done(ground.shell(&format!("{shell} -n completion.{shell}")));
     }
-    // What the scripts ask, and what they are told.
+    // The requests of the scripts, and the replies.
     let ask = |shell: &str, index: &str| {
         let mut command = ground.command("-- gyrolab run cusps --set motion.sch");
         command

@@ -1,4 +1,4 @@
-//! Measured data beside a run in the real program.
+//! Measured data shown with a run in the real program.
 
 use crate::support::ground::{Ground, code, stderr, stdout};
 use crate::support::words::{has, has_all, has_no};
@@ -15,9 +15,9 @@ fn one_key_shows_the_residuals() {
     lab.press("q");
 }
 
-/// Commands that take no measured data say which do.
+/// Commands that accept no measured data name those that do.
 #[test]
-fn a_run_without_them_says_where_they_stand() {
+fn commands_without_measured_data_name_those_with_it() {
     let ground = Ground::new();
     for command in ["run", "compare", "fit"] {
         let ran = ground.run(&format!("{command} method-2 --measured bench.csv"));
@@ -37,7 +37,7 @@ fn a_run_without_them_says_where_they_stand() {
 }
 
 #[test]
-fn broken_data_are_refused_before_the_screen_opens() {
+fn broken_data_are_rejected_before_the_screen_opens() {
     let ground = Ground::new();
     ground.write("bad.csv", "t_s,tilt_deg\n0,1\n1,high\n");
     for command in ["method-2", "show method-2"] {

@@ -1,4 +1,4 @@
-//! What the program says where something is wrong: each message names what the user typed, and what to do.
+//! Error messages on the command line: each quotes what the user typed and says what to do.
 
 use crate::support::ground::{Ground, done, failed, refused, stderr};
 use crate::support::pty::Terminal;
@@ -6,14 +6,14 @@ use crate::support::words::{has, has_no};
 
 const PUSHED: &str = "[[push]]\npoint = \"top\"\nforce_N = [0, 0, 1]\n";
 
-/// A scenario of its own in the file `name`: Method 2 with `more` at its end.
+/// Writes a scenario to the file `name`: Method 2 with `more` appended.
 fn scenario(ground: &Ground, name: &str, more: &str) {
     let method_2 = ground.stdout("presets method-2");
     ground.write(name, &format!("{method_2}\n{more}"));
 }
 
 #[test]
-fn wrong_arguments_are_told_in_words() {
+fn wrong_arguments_have_specific_messages() {
     let ground = Ground::new();
     let whole = "must be a whole number of steps, 1 or more";
     let no_number = "must be a number greater than zero";
@@ -67,7 +67,7 @@ fn wrong_arguments_are_told_in_words() {
             "run method-2 --steps 20s",
             "without a unit (s), in time steps",
         ),
-        // What is no number is told as before.
+        // Other text gets the general message.
         ("run method-2 --duration long", no_number),
         ("run method-2 --duration=-2s", no_number),
         ("run method-2 --duration inf", no_number),
@@ -81,12 +81,12 @@ fn wrong_arguments_are_told_in_words() {
         }
     }
     assert_eq!(ground.files(), [""; 0]);
-    // The colour of the British is an option too.
+    // The British spelling of --color works too.
     done(ground.run("cusps --colour never"));
 }
 
 #[test]
-fn wrong_settings_and_values_are_named_without_a_file_that_nobody_named() {
+fn errors_in_options_name_the_option_and_no_file() {
     let ground = Ground::new();
     for (option, words) in [
         (
@@ -126,7 +126,7 @@ fn wrong_settings_and_values_are_named_without_a_file_that_nobody_named() {
 }
 
 #[test]
-fn a_file_is_what_its_name_says() {
+fn files_are_judged_by_their_extensions() {
     let ground = Ground::new();
     for command in [
         "run cusps -o x.xlsx",
@@ -139,14 +139,14 @@ fn a_file_is_what_its_name_says() {
     ground.write("t.csv.part", &ground.read("s.csv"));
     let words = ["t.csv.part", "an unfinished sweep"];
     ground.refused("figure t.csv.part -o x.svg", 1, &words);
-    // Every number there is, of which a page holds a few.
+    // A page has room for only a few of all numbers.
     let too_many = "do not fit on a page: choose some with --kind";
     ground.refused("figure s.csv -o x.svg", 1, &[too_many]);
     done(ground.run("figure s.csv -o x.svg --kind z_m,tilt_deg"));
 }
 
 #[test]
-fn a_time_step_longer_than_the_run_is_refused() {
+fn a_time_step_longer_than_the_run_is_rejected() {
     let ground = Ground::new();
     let run = "run wobble-push --time-step";
     let begin = "gyrolab: --time-step 1000: ";
@@ -156,7 +156,7 @@ fn a_time_step_longer_than_the_run_is_refused() {
 }
 
 #[test]
-fn mistakes_in_files_of_commands_are_told_with_the_remedy() {
+fn mistakes_in_command_files_are_reported_with_a_remedy() {
     let ground = Ground::new();
     for (text, words) in [
         (
@@ -175,7 +175,7 @@ fn mistakes_in_files_of_commands_are_told_with_the_remedy() {
 }
 
 #[test]
-fn a_push_that_never_acts_is_told() {
+fn a_push_that_never_acts_is_reported() {
     let ground = Ground::new();
     let never = "push.0 never acts: it begins at";
     for (push, words) in [
@@ -196,7 +196,7 @@ fn a_push_that_never_acts_is_told() {
 }
 
 #[test]
-fn every_time_step_of_a_run_is_told() {
+fn the_summary_lists_every_time_step_of_a_run() {
     let ground = Ground::new();
     let edit = "[[edit]]\nstep = 40\nset = { \"motion.time_step_s\" = 0.05 }\n";
     scenario(&ground, "mine.toml", edit);
@@ -207,7 +207,7 @@ fn every_time_step_of_a_run_is_told() {
 }
 
 #[test]
-fn a_written_file_is_named_with_its_rows() {
+fn the_message_about_a_written_file_counts_its_rows() {
     let ground = Ground::new();
     let said = ground.stderr("run cusps --every 100 -o x.csv");
     assert_eq!(said.lines().last(), Some("gyrolab: 101 rows in x.csv"));
@@ -215,14 +215,14 @@ fn a_written_file_is_named_with_its_rows() {
 }
 
 #[test]
-fn a_precession_that_there_is_not_is_told_why() {
+fn a_missing_precession_rate_is_explained() {
     let words = "none in this run: the axle passes through the vertical";
     has(Ground::new().stdout("run method-1"), words);
 }
 
 const NO_COLOR: [(&str, &str); 3] = [("TERM", "xterm"), ("LANG", "C.UTF-8"), ("NO_COLOR", "1")];
 
-/// The lab where NO_COLOR is set.
+/// Opens the lab with NO_COLOR set.
 fn without_colors(ground: &Ground) -> Terminal {
     let lab = ground.open_with("method-2 --paused", &NO_COLOR);
     lab.wait_for("L lessons");
@@ -230,7 +230,7 @@ fn without_colors(ground: &Ground) -> Terminal {
 }
 
 #[test]
-fn colors_that_were_turned_off_and_on_again_are_no_choice() {
+fn colors_turned_off_and_on_again_are_not_remembered() {
     let ground = Ground::new();
     let has_kept = |choice: &str| {
         let settings = ground.read("state/gyrolab/settings.toml");
@@ -246,7 +246,7 @@ fn colors_that_were_turned_off_and_on_again_are_no_choice() {
     has_kept("auto");
     let mut plain = without_colors(&ground);
     assert!(!is_colored(&plain));
-    // What is remembered does not win over NO_COLOR either; the user's own file does.
+    // Remembered settings do not override NO_COLOR either; the user's own file does.
     plain.ask("c\x1b[B\x1b[B\x1b[B\x1b[B\r", "colors 16");
     plain.ask("\x1b", "L lessons");
     plain.quit();
@@ -262,7 +262,7 @@ fn colors_that_were_turned_off_and_on_again_are_no_choice() {
 }
 
 #[test]
-fn what_is_not_there_is_refused_before_a_picture_is_promised() {
+fn errors_precede_the_message_about_the_printed_picture() {
     let ground = Ground::new();
     for (args, words) in [
         ("method2", "did you mean method-2?"),
@@ -278,7 +278,7 @@ fn what_is_not_there_is_refused_before_a_picture_is_promised() {
 }
 
 #[test]
-fn a_scenario_given_as_measured_data_is_told_once() {
+fn a_scenario_given_as_measured_data_is_reported_once() {
     let ground = Ground::new();
     ground.write("own.toml", &ground.stdout("presets wobble-push"));
     for args in [
@@ -290,7 +290,7 @@ fn a_scenario_given_as_measured_data_is_told_once() {
         failed(&output, &["own.toml: is a scenario, not measured data"]);
         assert_eq!(stderr(&output).lines().count(), 1, "{args}");
     }
-    // A table of numbers that is no scenario is told its rows as before.
+    // For a table that is not a scenario, the message still names the row.
     ground.write("bad.csv", "t_s,tilt_deg\n0,1\n1,2,3\n");
     let output = ground.run("show method-2 --measured bad.csv");
     has(stderr(&output), "bad.csv:3: this row");

@@ -1,13 +1,13 @@
-//! The mouse in the real program: reports as a terminal sends them, and whose the mouse is.
+//! The mouse in the real program: reports in the encoding of a terminal, and whether lab or terminal has the mouse.
 
 use crate::support::pty::{MOUSE_OFF, MOUSE_ON, Terminal};
 
-/// The report of a press at the cell `x`, `y`, counted from 1.
+/// Encodes a press at the cell `x`, `y`, counted from 1.
 fn press((x, y): (u16, u16)) -> String {
     format!("\u{1b}[<0;{x};{y}M\u{1b}[<0;{x};{y}m")
 }
 
-/// The first cell of `words` on the screen, counted from 1.
+/// Returns the first cell of `words` on the screen, counted from 1.
 #[track_caller]
 fn cell(lab: &Terminal, words: &str) -> (u16, u16) {
     let screen = lab.screen();
@@ -19,7 +19,7 @@ fn cell(lab: &Terminal, words: &str) -> (u16, u16) {
     found.unwrap_or_else(|| panic!("no {words} in\n{screen}"))
 }
 
-/// The lines of the screen, without blanks at their ends.
+/// Returns the lines of the screen without trailing blanks.
 fn lines(lab: &Terminal) -> Vec<String> {
     let screen = lab.screen();
     screen
@@ -29,21 +29,21 @@ fn lines(lab: &Terminal) -> Vec<String> {
 }
 
 #[test]
-fn what_is_pressed_is_done() {
+fn clicks_act_on_what_is_under_the_pointer() {
     let mut lab = Terminal::open("--paused --at 900");
     lab.wait_for("L lessons");
     lab.wait_until("the mouse", |lab| lab.sent_text().contains(MOUSE_ON));
-    // The traces: the cursor.
+    // A press in the traces sets the cursor.
     lab.ask(&press((20, 14)), "◊");
-    // A pane, by its rule.
+    // A press on the rule of a pane selects it.
     let pane = cell(&lab, "values");
     lab.ask(&press(pane), "/ find");
-    // The overview: near its left end is the start.
+    // A press near the left end of the overview jumps to the start.
     let (_, overview) = cell(&lab, "whole run");
     lab.press(&press((9, overview + 1)));
     lab.wait_until("the start", |lab| lab.step().is_some_and(|step| step < 100));
     let before = lab.step().unwrap();
-    // The keys: a step, and the list of presets.
+    // A press on a key in the footer acts like the key: a step, and the list of presets.
     let steps = cell(&lab, ". , step");
     lab.press(&press(steps));
     lab.wait_for_step(before + 1);
@@ -55,7 +55,7 @@ fn what_is_pressed_is_done() {
     lab.wait_until("Loops", |lab| {
         lab.screen().starts_with("Loops") && !lab.words().contains("type to filter")
     });
-    // The wheel over the traces shows less time: an overview appears.
+    // The wheel over the traces zooms in, and an overview appears.
     lab.press(" ");
     lab.ask("\u{1b}[<64;16;6M", "whole run");
     lab.press("q");
@@ -64,7 +64,7 @@ fn what_is_pressed_is_done() {
 }
 
 #[test]
-fn hostile_places_do_nothing() {
+fn invalid_mouse_positions_are_ignored() {
     let mut lab = Terminal::open("--paused --at 10");
     lab.wait_for("L lessons");
     lab.wait_for("a: dt 0.002 s");
@@ -97,7 +97,7 @@ fn hostile_places_do_nothing() {
 }
 
 #[test]
-fn the_mouse_can_stay_with_the_terminal() {
+fn the_mouse_can_be_left_to_the_terminal() {
     let mut lab = Terminal::open("--paused --no-mouse");
     lab.wait_for("L lessons");
     lab.ask(".", "step 1");

@@ -1,10 +1,10 @@
-//! The files and messages that the README and the manual show are what the program takes and says.
+//! The files and messages in the README and the manual agree with the program.
 
 use crate::support::ground::Ground;
 use gyrolab::engine::scenario::schema::SchemaRow;
 use gyrolab::lab::storage::settings;
 
-/// The blocks of `kind` in the README, in order.
+/// Returns the code blocks of the language `kind` in the README, in order.
 fn blocks(kind: &str) -> Vec<String> {
     let readme = include_str!("../../README.md");
     let begin = format!("```{kind}\n");
@@ -14,7 +14,7 @@ fn blocks(kind: &str) -> Vec<String> {
         .collect()
 }
 
-/// The only block of `kind` that holds `word`.
+/// Returns the only code block of `kind` that contains `word`.
 #[track_caller]
 fn block(kind: &str, word: &str) -> String {
     let mut found = blocks(kind);
@@ -23,7 +23,7 @@ fn block(kind: &str, word: &str) -> String {
     found.remove(0)
 }
 
-/// The lines of the manual's topic around the one that is `line`, as far as they are indented as it is.
+/// Returns the lines around `line` in the manual's `topic` that are indented like it.
 #[track_caller]
 fn example(topic: &str, line: &str) -> String {
     let ground = Ground::new();
@@ -50,7 +50,7 @@ fn said(bytes: &[u8]) -> String {
 }
 
 #[test]
-fn the_file_of_commands_can_be_played_again() {
+fn the_command_file_can_be_played_twice() {
     let ground = Ground::new();
     ground.write("demo.toml", &example("lab", "[[do]]"));
     for _ in 0..2 {
@@ -61,7 +61,7 @@ fn the_file_of_commands_can_be_played_again() {
 }
 
 #[test]
-fn the_scenario_is_good_and_its_mistakes_are_told_as_shown() {
+fn the_scenario_is_valid_and_its_mistakes_are_reported_as_shown() {
     let ground = Ground::new();
     let scenario = block("toml", "title = ");
     ground.write("my.toml", &scenario);
@@ -76,7 +76,7 @@ fn the_scenario_is_good_and_its_mistakes_are_told_as_shown() {
     assert_eq!(shown, format!("$ gyrolab check with-mistakes.toml\n{told}"));
 }
 
-/// What the command in the first line of the only block with `command` prints, and what the block shows of it.
+/// Runs the command in the first line of the only block with `command`. Returns its output, and the output in the block.
 fn printed_and_shown(command: &str) -> [String; 2] {
     let block = block("text", command);
     let (line, shown) = block.split_once('\n').unwrap();
@@ -87,7 +87,7 @@ fn printed_and_shown(command: &str) -> [String; 2] {
 }
 
 #[test]
-fn the_summary_is_shown() {
+fn the_summary_is_printed_as_shown() {
     let texts = printed_and_shown("gyrolab run wobble-push");
     let [printed, shown] = texts.map(|text| {
         let lines = text.lines().filter(|line| !line.starts_with("  wall time"));
@@ -97,7 +97,7 @@ fn the_summary_is_shown() {
 }
 
 #[test]
-fn the_demonstration_is_recorded_to_its_end() {
+fn the_demonstration_can_be_recorded_to_its_end() {
     let ground = Ground::new();
     let demo = include_str!("../../presets/commands/demo.toml");
     ground.write("demo.toml", demo);
@@ -108,9 +108,9 @@ fn the_demonstration_is_recorded_to_its_end() {
     assert_eq!(markers, demo.matches("chapter = ").count());
 }
 
-/// The picture at the README's head is what its command draws, to the byte.
+/// The command below the picture at the top of the README draws it byte for byte.
 #[test]
-fn the_picture_is_what_its_command_draws() {
+fn the_picture_equals_the_output_of_its_command() {
     let ground = Ground::new();
     let readme = include_str!("../../README.md");
     let command = readme
@@ -129,7 +129,7 @@ fn the_picture_is_what_its_command_draws() {
 }
 
 #[test]
-fn the_steady_start_is_steady() {
+fn the_example_of_a_steady_start_is_steady() {
     let ground = Ground::new();
     let scenario = block("toml", "title = ");
     let tables = example("scenario", "steady = true");
@@ -146,7 +146,7 @@ fn the_steady_start_is_steady() {
 }
 
 #[test]
-fn the_settings_are_good_and_all_of_them_are_shown() {
+fn the_example_of_settings_is_valid_and_complete() {
     let ground = Ground::new();
     ground.write("config.toml", &example("lab", "marker = "));
     let read = settings::read_config(&ground.file("config.toml"));

@@ -1,4 +1,4 @@
-//! Sessions as the program keeps, lists and confines them: the program itself in a pty.
+//! Sessions: how the program saves, lists and confines them. The real program runs in a pty.
 
 use crate::support::ground::{Ground, code, names, stderr};
 use crate::support::pty::Terminal;
@@ -8,12 +8,12 @@ use std::os::unix::fs::symlink;
 
 const ESC: &str = "\u{1b}";
 const CTRL_Z: &str = "\u{1a}";
-/// Takes away what a dialog offers, or what was typed into it.
+/// Ctrl-U: clears the field of a dialog.
 const CLEAR: &str = "\u{15}";
 const AS_LEFT: &str = "session resumed";
 
 #[test]
-fn seventy_six_acts_each_earlier_than_the_one_before_are_come_back_to() {
+fn resume_restores_backdated_edits() {
     let ground = Ground::new();
     let mut lab = ground.open("method-2 --paused");
     lab.wait_for("L lessons");
@@ -31,9 +31,9 @@ fn seventy_six_acts_each_earlier_than_the_one_before_are_come_back_to() {
     resumed.quit();
 }
 
-/// A file size limit of zero does for a full disk: a file can be made, and no byte of it be written.
+/// A file size limit of zero simulates a full disk: files can be created, but not written to.
 #[test]
-fn on_a_full_disk_the_trouble_stays_and_nothing_is_promised() {
+fn a_full_disk_is_reported_until_the_session_is_saved() {
     let ground = Ground::new();
     let mut lab = ground.open_shell();
     lab.wait_for("shell>");
@@ -51,9 +51,9 @@ fn on_a_full_disk_the_trouble_stays_and_nothing_is_promised() {
     assert!(!lab.words().contains("comes back to"), "{}", lab.words());
 }
 
-/// Nothing can be written any more, and what was kept before is still there.
+/// Nothing more can be saved, but the earlier session is intact.
 #[test]
-fn on_a_full_disk_the_end_names_the_step_that_the_disk_has() {
+fn on_a_full_disk_the_last_message_names_the_saved_step() {
     let ground = Ground::new();
     let mut lab = ground.open("--paused --at 30");
     lab.wait_for("L lessons");
@@ -72,7 +72,7 @@ fn on_a_full_disk_the_end_names_the_step_that_the_disk_has() {
 }
 
 #[test]
-fn a_session_of_another_version_is_named_and_left_alone() {
+fn sessions_of_other_versions_are_named_and_left_alone() {
     let ground = Ground::new();
     let folder = ground.state().join("gyrolab");
     fs::create_dir_all(&folder).unwrap();
@@ -90,7 +90,7 @@ fn a_session_of_another_version_is_named_and_left_alone() {
 }
 
 #[test]
-fn a_command_behind_its_options_is_told_where_it_belongs() {
+fn a_command_after_options_is_rejected_with_the_right_order() {
     let words = |name: &str| {
         format!(
             "gyrolab: {name} is a command, and commands come before their options: gyrolab {name} ..."
@@ -107,7 +107,7 @@ fn a_command_behind_its_options_is_told_where_it_belongs() {
 }
 
 #[test]
-fn sessions_are_listed_and_one_is_taken_by_its_name() {
+fn sessions_are_listed_and_resumed_by_name() {
     let ground = Ground::new();
     for (preset, step) in [("cusps", "20"), ("method-2", "30")] {
         let mut lab = ground.open(&format!("{preset} --paused --at {step}"));
@@ -134,7 +134,7 @@ fn sessions_are_listed_and_one_is_taken_by_its_name() {
     first.quit();
 }
 
-/// A lab confined to the folder `inside`; beside it lies `secret.toml`.
+/// Opens a lab confined to the folder `inside`, next to which is `secret.toml`.
 fn confined(ground: &Ground) -> Terminal {
     let inside = ground.file("inside");
     if !inside.exists() {
@@ -153,7 +153,7 @@ fn confined(ground: &Ground) -> Terminal {
 }
 
 #[test]
-fn a_confined_lab_writes_in_its_folder_alone() {
+fn a_confined_lab_writes_only_in_its_folder() {
     let ground = Ground::new();
     let mut lab = confined(&ground);
     for key in ["x", "s", "S"] {
@@ -187,7 +187,7 @@ fn a_confined_lab_writes_in_its_folder_alone() {
 }
 
 #[test]
-fn a_confined_lab_reads_in_its_folder_alone() {
+fn a_confined_lab_reads_only_in_its_folder() {
     let ground = Ground::new();
     let mut lab = confined(&ground);
     lab.press("o");

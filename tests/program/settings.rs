@@ -1,4 +1,4 @@
-//! What is chosen in the lab is remembered, and the user's own file of settings wins: the program itself in a pty.
+//! Settings: the lab remembers choices, and the user's own file overrides them. The real program runs in a pty.
 
 use crate::support::ground::{Ground, stdout};
 use crate::support::pty::Terminal;
@@ -9,7 +9,7 @@ use std::path::PathBuf;
 const PLAIN: [&str; 2] = ["method-2", "--paused"];
 const BLUE: &str = "\u{1b}[38;";
 
-/// The file that the program has written.
+/// Returns the path of the settings file that the program writes.
 fn remembered(ground: &Ground) -> PathBuf {
     ground.state().join("gyrolab/settings.toml")
 }
@@ -34,7 +34,7 @@ fn has_colors(lab: &Terminal) -> bool {
 }
 
 #[test]
-fn what_was_chosen_is_there_at_the_next_start() {
+fn choices_are_restored_at_the_next_start() {
     let ground = Ground::new();
     let mut lab = open(&ground, &[]);
     assert!(!is_ascii(&lab) && has_colors(&lab));
@@ -62,17 +62,17 @@ fn what_was_chosen_is_there_at_the_next_start() {
         );
         again.quit();
     }
-    // An option wins.
+    // Options override remembered choices.
     let mut with_options = open(&ground, &["--markers", "braille", "--color", "always"]);
     assert!(!is_ascii(&with_options) && has_colors(&with_options));
     with_options.quit();
-    // A picture does not depend on what was chosen.
+    // A printed picture does not depend on remembered choices.
     let shown = ground.run("show method-2");
     assert!(stdout(&shown).contains('─'));
 }
 
 #[test]
-fn the_users_own_file_wins_and_is_never_written() {
+fn the_users_own_file_takes_precedence_and_is_never_written() {
     let ground = Ground::new();
     let text = "marker = 'ascii'\ncolour = 'never' # mine\nfps = 5\n";
     configure(&ground, text);
@@ -96,7 +96,7 @@ fn the_users_own_file_wins_and_is_never_written() {
 }
 
 #[test]
-fn broken_files_are_told_and_keep_nobody_out() {
+fn broken_settings_are_reported_and_the_lab_still_opens() {
     let ground = Ground::new();
     configure(
         &ground,
@@ -129,7 +129,7 @@ fn broken_files_are_told_and_keep_nobody_out() {
 }
 
 #[test]
-fn a_confined_lab_remembers_in_its_folder_and_reads_no_other() {
+fn a_confined_lab_uses_only_the_settings_in_its_folder() {
     let ground = Ground::new();
     configure(&ground, "marker = 'ascii'\n");
     fs::create_dir(ground.file("inside")).unwrap();
@@ -146,7 +146,7 @@ fn a_confined_lab_remembers_in_its_folder_and_reads_no_other() {
 }
 
 #[test]
-fn dots_that_this_terminal_cannot_show_are_not_taken_from_another() {
+fn markers_remembered_from_a_better_terminal_are_ignored() {
     let ground = Ground::new();
     let mut lab = open(&ground, &["--markers", "ascii"]);
     lab.ask("c\x1b[B\x1b[B\x1b[B\r", "markers braille");

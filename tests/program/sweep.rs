@@ -1,4 +1,4 @@
-//! `gyrolab sweep`: its CSV, how it goes on, what it refuses, and how shards become one file.
+//! `gyrolab sweep`: its CSV, resuming, error messages, and joining shards.
 
 use crate::support::dice::Dice;
 use crate::support::ground::{Ground, code, names, refused};
@@ -14,12 +14,12 @@ use std::time::Duration;
 const GRID: &str = "cusps --set motion.steps=400 --vary start.momentum_Js.2=10..400:20 \
     --vary motion.scheme=report,rk4,exact --measure=z_m,tilt_deg,path,measured_tilt_swing_deg,most_distance_m";
 
-/// The command that sweeps `args` into the file `output`.
+/// Returns the command that sweeps `args` into the file `output`.
 fn sweep(args: &str, output: &str) -> String {
     format!("sweep {args} -o {output}")
 }
 
-/// Sweeps, which must succeed with nothing on stdout, and returns what is said on stderr.
+/// Runs a sweep, which must succeed without output on stdout, and returns its stderr.
 #[track_caller]
 fn make(ground: &Ground, args: &str, output: &str) -> String {
     made(&ground.run(&sweep(args, output)))
@@ -37,7 +37,7 @@ fn refuse(ground: &Ground, args: &str, output: &str, words: &[&str]) {
     ground.refused(&sweep(args, output), 1, words);
 }
 
-/// The lines of a CSV below its sweep file.
+/// Returns the lines of a CSV below the sweep file in its header.
 fn rows(csv: &str) -> Vec<&str> {
     csv.lines().filter(|line| !line.starts_with('#')).collect()
 }
@@ -46,7 +46,7 @@ fn remove(ground: &Ground, name: &str) {
     fs::remove_file(ground.file(name)).unwrap();
 }
 
-/// Makes each shard of the sweep `args`: `1.csv` and so on.
+/// Computes each shard of the sweep `args` into `1.csv` and so on.
 #[track_caller]
 fn shards(ground: &Ground, args: &str, of: usize) {
     for shard in 1..=of {
@@ -56,7 +56,7 @@ fn shards(ground: &Ground, args: &str, of: usize) {
 }
 
 #[test]
-fn rows_are_those_of_single_runs_in_the_order_of_the_grid() {
+fn rows_equal_single_runs_in_grid_order() {
     let ground = Ground::new();
     make(&ground, GRID, "grid.csv");
     let csv = ground.read("grid.csv");
@@ -68,7 +68,7 @@ fn rows_are_those_of_single_runs_in_the_order_of_the_grid() {
     assert_eq!(rows.len(), 61);
     assert!(rows[1].starts_with("10.0,report,") && rows[2].starts_with("10.0,rk4,"));
     assert!(rows[60].starts_with("400.0,exact,"));
-    // The row of a point is what run says of the same scenario, to the last digit.
+    // The row of a point equals the output of `run` to the last digit.
     let json =
         ground.stdout("run cusps --steps 400 --set start.momentum_Js.2=400 --scheme rk4 --json");
     let cells: Vec<_> = rows[59].split(',').collect();
@@ -83,7 +83,7 @@ fn rows_are_those_of_single_runs_in_the_order_of_the_grid() {
 }
 
 #[test]
-fn its_csv_is_its_sweep_file() {
+fn the_csv_of_a_sweep_is_its_sweep_file() {
     let ground = Ground::new();
     make(&ground, GRID, "grid.csv");
     make(&ground, "grid.csv", "again.csv");
@@ -97,12 +97,12 @@ fn its_csv_is_its_sweep_file() {
     for name in ["grid.csv", "grid.toml"] {
         has(ground.stdout(&format!("check {name}")), "rows: 60");
     }
-    // A scenario it is not.
+    // It is not a scenario.
     ground.refused("run grid.csv", 1, &["grid.csv", "gyrolab sweep"]);
 }
 
 #[test]
-fn a_scenario_is_found_from_the_sweep_file_on() {
+fn scenario_paths_are_relative_to_the_sweep_file() {
     let ground = Ground::new();
     fs::create_dir(ground.file("deep")).unwrap();
     ground.write("deep/mine.toml", &ground.stdout("presets cusps"));
@@ -111,7 +111,7 @@ fn a_scenario_is_found_from_the_sweep_file_on() {
     ground.write("deep/sweep.toml", file);
     make(&ground, "deep/sweep.toml", "out.csv");
     assert_eq!(rows(&ground.read("out.csv")).len(), 3);
-    // --vary takes the place of the file's values, and --measure of its readouts.
+    // --vary replaces the values of the file, and --measure its readouts.
     let args = "deep/sweep.toml --vary motion.steps=1..5:5 --measure t_s";
     make(&ground, args, "other.csv");
     let other = ground.read("other.csv");
@@ -120,14 +120,14 @@ fn a_scenario_is_found_from_the_sweep_file_on() {
 }
 
 #[test]
-fn neither_threads_nor_shards_change_a_byte() {
+fn results_do_not_depend_on_threads_or_shards() {
     let ground = Ground::new();
     make(&ground, GRID, "whole.csv");
     let whole = ground.read("whole.csv");
     for (variable, value) in [
         ("RAYON_NUM_THREADS", "1"),
         ("RAYON_NUM_THREADS", "7"),
-        // A stack larger than any memory: no thread can be had.
+        // A thread stack larger than the memory: no thread can be created.
         ("RUST_MIN_STACK", "4611686018427387904"),
     ] {
         let mut command = ground.command(&sweep(GRID, "threads.csv"));
@@ -142,13 +142,13 @@ fn neither_threads_nor_shards_change_a_byte() {
     let join = "--join 7.csv 3.csv 1.csv 2.csv 5.csv 4.csv 6.csv";
     make(&ground, join, "joined.csv");
     assert_eq!(ground.read("joined.csv"), whole);
-    // What is there and whole is left as it is.
+    // A complete file is left unchanged.
     make(&ground, join, "joined.csv");
     make(&ground, join, "whole.csv");
 }
 
 #[test]
-fn killed_twenty_times_it_ends_with_the_same_bytes() {
+fn a_sweep_killed_twenty_times_ends_with_the_same_bytes() {
     let ground = Ground::new();
     let args = "cusps --set motion.steps=4000 --vary start.momentum_Js.2=20..400:60 \
         --measure z_m,measured_precession_rad_per_s";
@@ -166,17 +166,16 @@ fn killed_twenty_times_it_ends_with_the_same_bytes() {
             sleep(Duration::from_millis(1));
         }
         sleep(Duration::from_micros(dice.whole(0, 20_000)));
-        // SIGKILL.
         child.kill().unwrap();
         child.wait().unwrap();
         let Ok(text) = fs::read_to_string(&part) else {
-            // It has become whole: from the beginning once more.
+            // The sweep is complete: start over.
             let _ = fs::remove_file(ground.file("killed.csv"));
             continue;
         };
         assert!(whole.starts_with(&text), "{text}");
         most = most.max(rows(&text).len());
-        // What a crash of the machine would tear.
+        // Cut off a row, as a crash of the machine could.
         if kill % 3 == 0 && text.ends_with('\n') {
             fs::write(&part, &text[..text.len() - 1]).unwrap();
         }
@@ -188,11 +187,11 @@ fn killed_twenty_times_it_ends_with_the_same_bytes() {
 }
 
 #[test]
-fn a_part_of_the_file_is_gone_on_with_and_no_row_is_computed_again() {
+fn a_sweep_resumes_from_a_partial_file() {
     let ground = Ground::new();
     make(&ground, GRID, "whole.csv");
     let whole = ground.read("whole.csv");
-    // Goes on behind `part`, of which so many rows are kept.
+    // Asserts that the sweep resumes from `part` and keeps `kept` of its rows.
     let goes_on = |part: &[u8], kept: usize| {
         fs::write(ground.file("cut.csv.part"), part).unwrap();
         let told = make(&ground, GRID, "cut.csv");
@@ -208,7 +207,7 @@ fn a_part_of_the_file_is_gone_on_with_and_no_row_is_computed_again() {
             .map_or(0, |last| rows(&whole[..last]).len());
         goes_on(&whole.as_bytes()[..cut], kept.saturating_sub(1));
     }
-    // What is no row, and all behind it, is computed anew: a cell too few, another point, other bytes.
+    // An invalid row (a missing cell, another point, other bytes) and all rows after it are computed again.
     let row = rows(&whole)[30];
     let (begin, _) = row.rsplit_once(',').unwrap();
     let field = |cell: &str| format!("{begin},{cell}");
@@ -228,7 +227,7 @@ fn a_part_of_the_file_is_gone_on_with_and_no_row_is_computed_again() {
 }
 
 #[test]
-fn what_is_not_this_sweep_is_refused_and_left_alone() {
+fn files_of_other_sweeps_are_rejected_and_left_alone() {
     let ground = Ground::new();
     make(&ground, GRID, "grid.csv");
     let whole = ground.read("grid.csv");
@@ -263,7 +262,7 @@ fn what_is_not_this_sweep_is_refused_and_left_alone() {
 }
 
 #[test]
-fn two_at_once_do_not_write_into_each_others_rows() {
+fn two_processes_cannot_write_one_sweep() {
     let ground = Ground::new();
     let file = fs::File::create(ground.file("grid.csv.part")).unwrap();
     file.lock().unwrap();
@@ -272,7 +271,7 @@ fn two_at_once_do_not_write_into_each_others_rows() {
 }
 
 #[test]
-fn wrong_keys_values_and_readouts_are_refused_before_anything_runs() {
+fn wrong_keys_values_and_readouts_are_rejected_before_any_run() {
     let ground = Ground::new();
     for (args, words) in [
         ("cusps", &["vary", "--vary"][..]),
@@ -327,7 +326,7 @@ fn wrong_keys_values_and_readouts_are_refused_before_anything_runs() {
             "cusps --vary motion.steps=1..2000000:2000000 --vary motion.time_step_s=1e-9..1e-8:1000",
             &["gyrolab: --vary: is a grid of 2000000000 points: at most"],
         ),
-        // Steps and seconds of a push are not mixed.
+        // A push has its times either in steps or in seconds.
         (
             "wobble-push --time-step=0.01 --vary=push.0.steps=20,200",
             &[
@@ -368,7 +367,7 @@ fn wrong_keys_values_and_readouts_are_refused_before_anything_runs() {
 }
 
 #[test]
-fn what_is_wrong_in_a_sweep_file_is_told_with_its_line() {
+fn mistakes_in_a_sweep_file_are_reported_with_their_line() {
     let ground = Ground::new();
     let good = "title = \"t\"\nscenario = \"cusps\"\nmeasure = [\"z_m\"]\n[[vary]]\nkey = \"motion.steps\"\nvalues = [1, 2]\n";
     let values = "values = [1, 2]";
@@ -410,7 +409,7 @@ fn what_is_wrong_in_a_sweep_file_is_told_with_its_line() {
         ground.refused("check s.toml", 1, words);
         refuse(&ground, "s.toml", "out.csv", words);
     }
-    // The scenario itself, in the file.
+    // The file contains the scenario.
     let inside = "[scenario]\ntitle = \"x\"\n[scenario.start]\nmomentum_Js = [0, 0, 1]\n[scenario.motion]\ntime_step_s = 0.1\nsteps = 0\n";
     let text = format!("{}{inside}", good.replace("scenario = \"cusps\"\n", ""));
     ground.write("s.toml", &text);
@@ -418,11 +417,11 @@ fn what_is_wrong_in_a_sweep_file_is_told_with_its_line() {
     ground.refused("check s.toml", 1, &words);
 }
 
-/// A sweep over the scheme, of which the rows by rk4 break down.
+/// A sweep over the scheme whose rk4 runs break down.
 const SOME_ROWS_FAIL: &str = "method-2 --set motion.steps=40 --vary motion.scheme=report,rk4";
 
 #[test]
-fn a_point_that_fails_is_a_row_without_readouts_and_its_reason_is_told() {
+fn a_failed_point_has_an_empty_row_and_a_reported_reason() {
     let ground = Ground::new();
     let args =
         format!("{SOME_ROWS_FAIL} --vary=body.rim.height_m=0.5,0,1e200 --measure=z_m,path,steps");
@@ -446,9 +445,9 @@ fn a_point_that_fails_is_a_row_without_readouts_and_its_reason_is_told() {
     assert_eq!(csv, ground.read("again.csv"));
 }
 
-/// A file does not say why a row is empty: of such a row the point is named.
+/// The file does not say why a row is empty, so commands name the point of the row.
 #[test]
-fn rows_without_readouts_are_told_by_every_command_that_finds_them() {
+fn every_command_reports_the_rows_without_readouts() {
     let ground = Ground::new();
     let args = &format!("{SOME_ROWS_FAIL} --vary=body.rim.height_m=0.5,1e200 --measure=z_m");
     let is_told = |told: &str| {
@@ -466,7 +465,7 @@ fn rows_without_readouts_are_told_by_every_command_that_finds_them() {
     is_told(&told);
     has(&told, "0.5: the numbers are no longer finite");
     let whole = ground.read("whole.csv");
-    // A file that is whole already, and one that was ended behind its second row or before its last.
+    // A complete file, and files that end after their second row or before their last.
     is_told(&make(&ground, args, "whole.csv"));
     for (kept, empty) in [(2, 1), (3, 2)] {
         let lost = rows(&whole)
@@ -483,7 +482,7 @@ fn rows_without_readouts_are_told_by_every_command_that_finds_them() {
         assert_eq!(ground.read("cut.csv"), whole);
         remove(&ground, "cut.csv");
     }
-    // Shards joined, and once more where the file is whole.
+    // Joined shards, and the same once the joined file is complete.
     shards(&ground, args, 2);
     for _ in 0..2 {
         is_told(&make(&ground, "--join 1.csv 2.csv", "joined.csv"));
@@ -492,7 +491,7 @@ fn rows_without_readouts_are_told_by_every_command_that_finds_them() {
 }
 
 #[test]
-fn a_time_step_that_varies_holds_the_seconds() {
+fn varying_the_time_step_keeps_durations_in_seconds() {
     let ground = Ground::new();
     let args = "wobble-push --vary motion.time_step_s=0.1,0.05,0.2,500 --measure t_s,steps,measured_lowest_z_m";
     let told = make(&ground, args, "out.csv");
@@ -503,18 +502,18 @@ fn a_time_step_that_varies_holds_the_seconds() {
     for (row, beginning) in rows[1..].iter().zip(beginnings) {
         assert!(row.starts_with(beginning), "{csv}");
     }
-    // As `run --time-step` has it: the push lasts 20 s.
+    // The push lasts 20 s, as with `run --time-step`.
     let json = ground.json("run wobble-push --time-step 0.05 --json");
     let lowest = json["measured_lowest_z_m"].as_f64().unwrap();
     assert!(rows[2].ends_with(&format!(",{lowest}")), "{csv} {lowest}");
-    // A push that accumulates is another at another time step.
+    // An accumulating push depends on the time step.
     let accumulating = "wobble-push-accumulating --vary motion.time_step_s=0.1,0.05 --measure t_s";
     let of_one = make(&ground, accumulating, "acc.csv");
     has_all(of_one, ["rows without readouts: 1 of 2", "accumulates"]);
 }
 
 #[test]
-fn ctrl_c_keeps_what_was_done() {
+fn ctrl_c_keeps_the_finished_rows() {
     let ground = Ground::new();
     let args =
         "cusps --set motion.steps=2000 --vary start.momentum_Js.2=20..400:100000 --measure z_m";
@@ -534,13 +533,13 @@ fn ctrl_c_keeps_what_was_done() {
 }
 
 #[test]
-fn a_disk_that_is_full_and_a_folder_that_takes_no_file() {
+fn a_full_disk_or_unwritable_folder_fails_a_sweep() {
     let ground = Ground::new();
     let grid = "\"$G\" sweep cusps --set motion.steps=2 --vary start.momentum_Js.2=10..400:2000 --measure z_m,x_m,y_m";
     let full = ground.shell(&format!("ulimit -f 40; {grid} -o out.csv"));
     let words = ["out.csv.part", "large", "of 2000 rows are in", "goes on"];
     refused("a full disk", &full, 1, &words);
-    // With room again the same command goes on, and nothing is lost or twice.
+    // With space available again, the same command continues; no row is lost or repeated.
     let told = made(&ground.shell(&format!("{grid} -o out.csv")));
     has(&told, "going on behind");
     made(&ground.shell(&format!("{grid} -o whole.csv")));
@@ -563,13 +562,13 @@ fn a_disk_that_is_full_and_a_folder_that_takes_no_file() {
     }
     let files = ["folder", "link.csv.part", "out.csv", "whole.csv"];
     assert_eq!(ground.files(), files);
-    // Joining writes the whole at once.
+    // Joining writes the whole file at once.
     shards(&ground, args, 1);
     refuse(&ground, "--join 1.csv", "/proc/out.csv", &[advice]);
 }
 
 #[test]
-fn only_whole_shards_of_one_sweep_are_joined() {
+fn only_complete_shards_of_one_sweep_are_joined() {
     let ground = Ground::new();
     shards(&ground, GRID, 3);
     let other = GRID.replace("steps=400", "steps=300");
@@ -635,7 +634,7 @@ fn the_shipped_sweeps_are_listed_and_printed() {
     }
 }
 
-/// On a terminal there is something to see before the first row, and no rate or time left is made up.
+/// A terminal shows progress before the first row, without an invented rate or time left.
 #[test]
 fn progress_is_shown_from_the_beginning() {
     let args = "cusps --vary start.tilt_deg=10..40:1000 --set motion.steps=100000000 --measure=z_m";
@@ -648,7 +647,7 @@ fn progress_is_shown_from_the_beginning() {
 }
 
 #[test]
-fn a_value_may_be_an_empty_text() {
+fn a_value_may_be_an_empty_string() {
     let ground = Ground::new();
     let args = "cusps --set=motion.steps=2 --vary 'about=\"\",x,\"a,b\"' --measure=z_m";
     make(&ground, args, "out.csv");
@@ -659,9 +658,9 @@ fn a_value_may_be_an_empty_text() {
     assert_eq!(ground.read("joined.csv"), ground.read("out.csv"));
 }
 
-/// What differs between two sweeps comes first, cut short, and the users' own words are left as they are.
+/// The message begins with the shortened difference between the sweeps, and does not alter the users' own words.
 #[test]
-fn another_sweep_is_told_by_the_first_key_that_differs() {
+fn a_different_sweep_is_identified_by_the_first_differing_line() {
     let ground = Ground::new();
     for (title, shard) in [("a top here and there", 1), ("a top", 2)] {
         let args = format!(
@@ -688,7 +687,7 @@ fn another_sweep_is_told_by_the_first_key_that_differs() {
 }
 
 #[test]
-fn a_symbolic_link_is_kept_and_the_file_behind_it_replaced() {
+fn a_symbolic_link_is_kept_and_its_target_replaced() {
     let ground = Ground::new();
     let args = "cusps --measure=z_m --vary=motion.steps=2,3";
     fs::create_dir(ground.file("deep")).unwrap();
@@ -704,7 +703,7 @@ fn a_symbolic_link_is_kept_and_the_file_behind_it_replaced() {
 }
 
 #[test]
-fn more_shards_than_files_may_be_open_are_joined() {
+fn joining_works_with_more_shards_than_open_files_allowed() {
     let ground = Ground::new();
     let grid =
         "cusps --set motion.steps=2 --vary start.momentum_Js.2=10..400:200 --measure z_m,x_m,y_m";
@@ -731,7 +730,7 @@ fn more_shards_than_files_may_be_open_are_joined() {
 }
 
 #[test]
-fn the_length_of_every_run_of_a_sweep_is_chosen() {
+fn options_set_the_length_of_every_run_of_a_sweep() {
     let ground = Ground::new();
     let steps = |args: &str| {
         let vary = "--vary start.tilt_deg=20,30 --measure t_s";

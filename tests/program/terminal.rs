@@ -1,4 +1,4 @@
-//! The program itself in a pty: what it does to a terminal, and how it gives it back at every end.
+//! The real program in a pty: how it uses a terminal, and how it restores it whenever it ends.
 
 use crate::support::ground::{Args, Ground, done, stderr};
 use crate::support::pty::{LEAVES_ALTERNATE_SCREEN, Terminal};
@@ -6,7 +6,7 @@ use crate::support::words::has_all;
 use std::thread;
 use std::time::Duration;
 
-/// The lab in a new working directory, once its keys are on the screen.
+/// Opens the lab in a new working directory, and waits until its footer is on the screen.
 fn opened(args: impl Args) -> Terminal {
     let terminal = Terminal::open(args);
     terminal.wait_for("L lessons");
@@ -14,7 +14,7 @@ fn opened(args: impl Args) -> Terminal {
 }
 
 #[test]
-fn it_opens_runs_and_leaves() {
+fn the_lab_opens_runs_and_quits() {
     let mut terminal = opened("");
     terminal.wait_for("Method 2");
     terminal.wait_for("► ×20");
@@ -23,7 +23,7 @@ fn it_opens_runs_and_leaves() {
 }
 
 #[test]
-fn a_screen_is_prepared_in_one_command() {
+fn one_command_prepares_the_screen() {
     let terminal = Terminal::open("cusps --paused --at 500 --set start.tilt_deg=20");
     terminal.wait_for("paused");
     terminal.wait_for("step 500");
@@ -31,7 +31,7 @@ fn a_screen_is_prepared_in_one_command() {
 }
 
 #[test]
-fn not_a_byte_while_it_stands_still() {
+fn a_paused_lab_sends_no_bytes() {
     let terminal = opened("--paused");
     thread::sleep(Duration::from_millis(300));
     let before = terminal.sent().len();
@@ -49,7 +49,7 @@ fn keys_are_answered_at_top_speed() {
 }
 
 #[test]
-fn it_follows_the_size_of_the_screen() {
+fn the_lab_follows_resizes() {
     let mut terminal = opened("--paused");
     for size in [(200, 50), (40, 10), (1, 1), (120, 40)] {
         terminal.resize(size);
@@ -60,7 +60,7 @@ fn it_follows_the_size_of_the_screen() {
 }
 
 #[test]
-fn a_window_of_any_size_is_drawn_within_little_memory() {
+fn a_huge_window_is_drawn_in_little_memory() {
     let mut shell = Ground::new().open_shell();
     shell.wait_for("shell>");
     let program = env!("CARGO_BIN_EXE_gyrolab");
@@ -73,7 +73,7 @@ fn a_window_of_any_size_is_drawn_within_little_memory() {
 
 #[test]
 #[cfg(debug_assertions)]
-fn a_panic_in_the_background_waits_for_the_end_to_be_told() {
+fn a_panic_of_a_background_thread_is_reported_at_the_end() {
     let variables = [("TERM", "xterm"), ("GYROLAB_PANIC_ASIDE_AFTER_MS", "300")];
     let mut terminal = Terminal::open_with(&[], &variables);
     terminal.wait_for("L lessons");
@@ -90,17 +90,17 @@ fn a_panic_in_the_background_waits_for_the_end_to_be_told() {
 }
 
 #[test]
-fn a_lost_line_ends_it() {
+fn a_lost_line_ends_the_lab() {
     for _ in 0..3 {
         let mut terminal = opened("");
         terminal.lose_line();
-        // By the signal, or by the frame that could not be written: whichever comes first.
+        // Ended by the signal or by the failed write of a frame, whichever comes first.
         assert!([1, 129].contains(&terminal.wait_for_end().exit_code()));
     }
 }
 
 #[test]
-fn a_line_lost_without_a_signal_ends_it_and_keeps_the_session() {
+fn a_line_lost_without_a_signal_ends_the_lab_and_saves_the_session() {
     for args in [&["--paused"][..], &[]] {
         let ground = Ground::new();
         let mut terminal = ground.open_uncontrolled(args);
@@ -119,11 +119,11 @@ fn a_line_lost_without_a_signal_ends_it_and_keeps_the_session() {
 }
 
 #[test]
-fn keys_in_bulk_are_all_taken_at_once() {
+fn thousands_of_keys_at_once_are_all_handled() {
     let mut terminal = opened("--paused");
     terminal.press(&".".repeat(2000));
     terminal.wait_for_step(2000);
-    // More than a terminal holds, with sequences that come apart anywhere in it.
+    // More bytes than a terminal buffers, with escape sequences that may be split anywhere.
     terminal.ask("r", "step 0");
     terminal.press(&"..\u{1b}[6~,\u{1b}[5~".repeat(1000));
     terminal.wait_for_step(1000);
@@ -131,14 +131,14 @@ fn keys_in_bulk_are_all_taken_at_once() {
 }
 
 #[test]
-fn a_sequence_that_never_ends_does_not_swallow_what_follows() {
+fn an_unfinished_escape_sequence_does_not_swallow_later_keys() {
     let cut_off = |sequence: &str| {
         let mut terminal = opened("--paused");
-        // Ctrl-C ends the lab, however soon it follows.
+        // Ctrl-C ends the lab even immediately after the sequence.
         terminal.press(&format!("{sequence}abc\u{3}"));
         assert_eq!(terminal.wait_for_end().exit_code(), 0, "{sequence:?}");
         let mut another = opened("--paused");
-        // And after a while any key means what it says.
+        // After a while, every key has its usual effect.
         another.press(sequence);
         thread::sleep(Duration::from_millis(3500));
         another.ask("?", "help: type");
@@ -152,7 +152,7 @@ fn a_sequence_that_never_ends_does_not_swallow_what_follows() {
 }
 
 #[test]
-fn a_paste_into_a_field_is_cut_and_says_so() {
+fn a_long_paste_into_a_field_is_truncated_with_a_message() {
     let mut terminal = opened("--paused --at 10");
     let paste = |text: &str| format!("\u{1b}[200~{text}\u{1b}[201~");
     terminal.ask("x", "export steps 0 to 10");
@@ -166,7 +166,7 @@ fn a_paste_into_a_field_is_cut_and_says_so() {
     terminal.ask(&paste(&"x".repeat(20_000)), "xxxxx...");
     terminal.wait_for("no matching preset or file");
     terminal.ask("\u{15}\u{1b}", "type to filter");
-    // Where nothing is typed, pasted letters are no keys.
+    // Without a text field, pasted letters do not act as keys.
     terminal.press("\u{1b}");
     terminal.wait_until("the lab", |terminal| {
         !terminal.words().contains("type to filter")
@@ -175,9 +175,9 @@ fn a_paste_into_a_field_is_cut_and_says_so() {
     terminal.quit();
 }
 
-/// As a terminal pastes them: with Enter at the ends of the lines, and in pieces.
+/// The rows are pasted like from a terminal: with Enter at the ends of lines, and in pieces.
 #[test]
-fn rows_that_are_pasted_are_judged_until_they_are_taken_back() {
+fn pasted_rows_are_judged_until_they_are_undone() {
     let ground = Ground::new();
     let mut terminal = ground.open("method-1 --paused");
     terminal.wait_for("L lessons");
@@ -188,7 +188,7 @@ fn rows_that_are_pasted_are_judged_until_they_are_taken_back() {
     assert_eq!(ground.files(), ["pasted.csv", "state"]);
     terminal.ask("M", "step 1");
     terminal.quit();
-    // They are there again, and one undo takes them back.
+    // The rows are restored with the session, and one undo removes them.
     let mut again = ground.open("--resume");
     again.wait_for("L lessons");
     again.ask("M", "step 1");
@@ -209,8 +209,8 @@ fn rows_that_are_pasted_are_judged_until_they_are_taken_back() {
 }
 
 #[test]
-fn without_threads_the_lab_opens_acts_and_ends() {
-    // A stack larger than any memory: no thread can be had.
+fn the_lab_works_without_threads() {
+    // A thread stack larger than the memory: no thread can be created.
     let variables = [
         ("TERM", "xterm"),
         ("LANG", "C.UTF-8"),
@@ -234,7 +234,7 @@ fn without_threads_the_lab_opens_acts_and_ends() {
 }
 
 #[test]
-fn nothing_is_saved_where_it_could_hang_the_lab_or_write_over_the_picture() {
+fn fifos_and_devices_are_rejected_as_files_to_save() {
     let mut terminal = Terminal::open("--paused --at 10");
     terminal.ground().make_fifo("fifo");
     terminal.wait_for("L lessons");
@@ -250,7 +250,7 @@ fn nothing_is_saved_where_it_could_hang_the_lab_or_write_over_the_picture() {
             terminal.wait_until("the lab", |terminal| !terminal.words().contains(title));
         }
     }
-    // "-" is a name like others: the picture has stdout.
+    // "-" is a file name here, since stdout shows the lab.
     terminal.ask("s", "save the run file");
     terminal.ask("\u{15}-\r", "the run is in");
     terminal.quit();
@@ -259,7 +259,7 @@ fn nothing_is_saved_where_it_could_hang_the_lab_or_write_over_the_picture() {
 
 #[test]
 #[ignore = "waits three seconds until the terminal is full"]
-fn a_terminal_that_takes_no_bytes_does_not_hold_up_the_end() {
+fn a_stopped_terminal_does_not_block_the_exit() {
     let mut terminal = opened("--fps 60 --set motion.steps=1000000000");
     terminal.press("99+");
     terminal.set_stopped(true);
@@ -270,7 +270,7 @@ fn a_terminal_that_takes_no_bytes_does_not_hold_up_the_end() {
 }
 
 #[test]
-fn ctrl_l_draws_all_of_it_again() {
+fn ctrl_l_redraws_the_screen() {
     let mut terminal = opened("--paused");
     thread::sleep(Duration::from_millis(300));
     terminal.forget();
@@ -283,11 +283,11 @@ const CTRL_Z: &str = "\u{1a}";
 const NO_SHELL: &str = "no shell to return to";
 
 #[test]
-fn ctrl_z_is_refused_where_the_lab_leads_its_session() {
+fn ctrl_z_is_rejected_if_the_lab_is_the_session_leader() {
     let mut terminal = opened("--paused");
     terminal.ask(CTRL_Z, NO_SHELL);
     terminal.ask(".", "step 1 ");
-    // The signal is no other request than the key.
+    // The signal is handled like the key.
     terminal.signal("TSTP");
     terminal.wait_for(NO_SHELL);
     terminal.ask(".", "step 2 ");
@@ -295,9 +295,9 @@ fn ctrl_z_is_refused_where_the_lab_leads_its_session() {
 }
 
 #[test]
-fn ctrl_z_is_refused_where_the_process_group_is_orphaned() {
+fn ctrl_z_is_rejected_in_an_orphaned_process_group() {
     let ground = Ground::new();
-    // A shell without job control that leads the session, as sshd starts it, is in the group of the lab.
+    // The lab shares its process group with a shell without job control that leads the session, as under sshd.
     let mut terminal = ground.open_command("--paused; true");
     terminal.wait_for("L lessons");
     terminal.ask(CTRL_Z, NO_SHELL);
@@ -306,7 +306,7 @@ fn ctrl_z_is_refused_where_the_process_group_is_orphaned() {
 }
 
 #[test]
-fn a_script_in_a_shell_with_job_control_is_suspended_with_its_lab() {
+fn ctrl_z_suspends_a_script_together_with_its_lab() {
     let mut shell = Ground::new().open_shell();
     shell.wait_for("shell>");
     let program = env!("CARGO_BIN_EXE_gyrolab");
@@ -322,8 +322,8 @@ fn a_script_in_a_shell_with_job_control_is_suspended_with_its_lab() {
     shell.has_given_the_terminal_back();
 }
 
-/// Whatever happens, it may not stay stopped. A busy machine may put much time between the two signals: the shell then
-/// takes the terminal, and that attempt does not count.
+/// The lab must never stay stopped. On a busy machine, the shell may take the terminal between the two signals; such an
+/// attempt does not count.
 #[test]
 fn a_sigcont_soon_after_a_sigtstp_leaves_the_lab_running() {
     let mut shell = Ground::new().open_shell();
@@ -353,14 +353,14 @@ fn a_sigcont_soon_after_a_sigtstp_leaves_the_lab_running() {
     assert!(is_left_running);
     shell.wait_for("L lessons");
     shell.ask(".", "step 1 ");
-    // The terminal may have been given back before the last `forget`, so that is not counted here.
+    // The terminal may have been restored before the last `forget`, so this is not checked here.
     shell.forget();
     shell.press("q");
     shell.wait_for("shell>");
 }
 
 #[test]
-fn no_color_means_no_colour_and_the_selection_still_shows() {
+fn no_color_disables_colors_and_the_selection_is_still_visible() {
     let variables = [("TERM", "xterm"), ("LANG", "C.UTF-8"), ("NO_COLOR", "1")];
     let mut terminal = Terminal::open_with(&["--paused"], &variables);
     terminal.wait_for("L lessons");
@@ -385,7 +385,7 @@ fn a_locale_without_utf8_gets_ascii() {
 }
 
 #[test]
-fn without_a_terminal_it_shows_the_picture_and_says_so() {
+fn without_a_terminal_the_picture_is_printed_with_a_note() {
     let ground = Ground::new();
     let shown = done(ground.run("cusps"));
     let words = ["no terminal", "at the end of the run"];
@@ -398,7 +398,7 @@ fn without_a_terminal_it_shows_the_picture_and_says_so() {
 }
 
 #[test]
-fn show_prints_plain_text_of_the_size_asked_for() {
+fn show_prints_plain_text_of_the_requested_size() {
     let ground = Ground::new();
     for (size, lines, columns) in [("80x24", 24, 80), ("200x50", 50, 200), ("1x1", 1, 1)] {
         let text = ground.stdout(&format!("show method-2 --size {size}"));
@@ -420,7 +420,7 @@ fn show_prints_plain_text_of_the_size_asked_for() {
 }
 
 #[test]
-fn what_is_wrong_on_the_command_line_is_refused_in_words() {
+fn errors_on_the_command_line_are_reported() {
     for (args, code, words) in [
         ("no-such-preset", 1, "no preset of that name"),
         ("show", 2, "SCENARIO"),
@@ -439,7 +439,7 @@ fn what_is_wrong_on_the_command_line_is_refused_in_words() {
 }
 
 #[test]
-fn a_time_step_is_gone_through_phase_by_phase() {
+fn the_step_pane_advances_phase_by_phase() {
     let mut lab = Terminal::open("--paused");
     lab.wait_for("L lessons");
     lab.ask("v", "No time step has been taken yet");

@@ -1,12 +1,12 @@
-//! Figures that carry their run: taken in place of a scenario, drawn again, and what is said of those that were changed.
+//! Figures with an embedded run: used as scenarios, redrawn, and verified after changes.
 
 use crate::support::dice::Dice;
 use crate::support::ground::{Ground, code, done, failed, stderr, stdout};
 use crate::support::words::{has, has_all};
 use std::fs;
 
-/// Draws `figure` of what `what` names, and asserts that its file alone gives the same bytes again and is found good. Then
-/// changes `flips` bits of it, one at a time, each of which must be found.
+/// Draws `figure` with the arguments `what`. Asserts that its file alone reproduces the same bytes and passes `verify`, and
+/// that `verify` detects each of `flips` single-bit changes.
 #[track_caller]
 fn travels(ground: &Ground, what: &str, figure: &str, flips: u32, dice: &mut Dice) {
     done(ground.run(&format!("figure {what} -o {figure}")));
@@ -38,7 +38,7 @@ fn travels(ground: &Ground, what: &str, figure: &str, flips: u32, dice: &mut Dic
     }
 }
 
-/// Tables of each kind, and data.
+/// Writes tables of each kind, and measured data.
 fn prepare(ground: &Ground) {
     done(ground.run("sweep cusps --vary start.tilt_deg=10..40:4 --measure measured_tilt_swing_deg,tilt_deg -o sweep.csv"));
     done(ground.run("compare cusps --duration 0.1 --schemes report,rk4 -o compare.csv"));
@@ -48,7 +48,7 @@ fn prepare(ground: &Ground) {
 }
 
 #[test]
-fn a_figure_of_each_form_is_drawn_again_from_its_file() {
+fn figures_of_every_format_are_reproduced_from_their_files() {
     let (ground, mut dice) = (Ground::new(), Dice(31));
     prepare(&ground);
     for (what, figure) in [
@@ -71,7 +71,7 @@ fn a_figure_of_each_form_is_drawn_again_from_its_file() {
 
 #[test]
 #[ignore = "draws 200 figures of every kind and form, twice each: minutes"]
-fn two_hundred_figures_are_drawn_again_from_their_files() {
+fn two_hundred_figures_are_reproduced_from_their_files() {
     let (ground, mut dice) = (Ground::new(), Dice(200));
     prepare(&ground);
     let options = [
@@ -141,7 +141,7 @@ fn two_hundred_figures_are_drawn_again_from_their_files() {
 }
 
 #[test]
-fn a_figure_stands_where_a_scenario_does() {
+fn a_figure_can_be_used_as_a_scenario() {
     let ground = Ground::new();
     done(ground.run(
         "figure wobble-push --set start.tilt_deg=3 --steps 40 --schemes strang,report -o a.pdf",
@@ -151,7 +151,7 @@ fn a_figure_stands_where_a_scenario_does() {
     assert_eq!(ground.read("a.csv"), ground.read("b.csv"));
     has(stdout(&done(ground.run("check a.pdf"))), "a.pdf: good: ");
     has(stdout(&done(ground.run("show a.pdf"))), "strang");
-    // What is given holds, the rest is the figure's.
+    // Given options override those of the figure.
     done(ground.run("figure a.pdf --kind above --title New -o b.svg"));
     has_all(
         ground.read("b.svg"),
@@ -167,7 +167,7 @@ fn a_figure_stands_where_a_scenario_does() {
 }
 
 #[test]
-fn no_folder_of_the_machine_is_told() {
+fn figures_contain_no_folder_names() {
     let ground = Ground::new();
     done(ground.run("run cusps --steps 9 -o run.csv"));
     let path = ground.file("run.csv").display().to_string();
@@ -178,7 +178,7 @@ fn no_folder_of_the_machine_is_told() {
 }
 
 #[test]
-fn what_holds_no_run_says_so() {
+fn figures_without_a_valid_run_are_rejected() {
     let ground = Ground::new();
     done(ground.run("figure cusps --steps 9 -o a.svg"));
     let svg = ground.read("a.svg");
@@ -218,7 +218,7 @@ fn what_holds_no_run_says_so() {
 }
 
 #[test]
-fn data_that_are_too_large_to_travel_are_asked_for() {
+fn data_too_large_to_embed_must_be_supplied() {
     let ground = Ground::new();
     let mut dice = Dice(4);
     let mut number = || dice.unit();
@@ -242,7 +242,7 @@ fn data_that_are_too_large_to_travel_are_asked_for() {
 }
 
 #[test]
-fn a_write_up_is_verified_as_a_whole() {
+fn verify_checks_a_write_up_as_a_whole() {
     let ground = Ground::new();
     let heidelberg = "writeup heidelberg --steps 60 --measured heidelberg-spin-decay -o w";
     done(ground.run(heidelberg));
@@ -259,7 +259,7 @@ fn a_write_up_is_verified_as_a_whole() {
         ],
     );
     has(told, "w/heidelberg-spin-decay.csv: measured data");
-    // A file of the student's own is named, and is no fault.
+    // A file added by the student is named, but it is not a difference.
     ground.write("w/notes.txt", "mine");
     let again = done(ground.run("verify w"));
     has(stdout(&again), "w: 1 file not of the write-up: notes.txt");

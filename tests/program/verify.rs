@@ -1,9 +1,9 @@
-//! `gyrolab run` with chosen rows and columns, and `gyrolab verify`.
+//! `gyrolab run` with selected rows and columns, and `gyrolab verify`.
 
 use crate::support::ground::{Ground, code, done, failed, stdout};
 use crate::support::words::{has, has_all};
 
-/// What is said of `a.csv` with the content `text`, which must be refused.
+/// Returns the report of `verify` on `a.csv` with the content `text`, which must differ.
 #[track_caller]
 fn differs(ground: &Ground, text: &str) -> String {
     ground.write("a.csv", text);
@@ -42,7 +42,7 @@ fn exports_of_every_kind_are_verified() {
             "ns_per_step and wall_s are measured computing times",
         ],
     );
-    // The columns on request say what the readouts say at the end.
+    // The optional columns agree with the readouts at the end of the run.
     let json = ground.json("run wobble-push --steps 40 --scheme strang --json");
     let ends = [&json["t_s"], &json["spin_rpm"], &json["L_axle_Js"]];
     let spins = ground.read("spin.csv");
@@ -56,7 +56,7 @@ fn exports_of_every_kind_are_verified() {
     let excel = ground.read("excel.csv");
     assert!(excel.starts_with("\u{feff}# # excel = true\n# gyrolab = "));
     assert!(excel.contains("\n40;4,0;"));
-    // Run again, each of them gives the same file; options change what they are about.
+    // Each file reproduces itself; options change only what they name.
     for name in [
         "whole.csv",
         "part.csv",
@@ -71,7 +71,7 @@ fn exports_of_every_kind_are_verified() {
     done(ground.run("run whole.csv --every 10 --to 3.5 --columns t_s,z_m -o other.csv"));
     let rows = |name: &str| ground.read(name).split_once("\nt_s,").unwrap().1.to_owned();
     assert_eq!(rows("again.csv"), rows("other.csv"));
-    // The columns of a row for each step are not those of a row for each point.
+    // Rows per step and rows per point have different columns.
     done(ground.run("run part.csv --points -o again.csv --force"));
     done(ground.run("verify again.csv"));
     done(ground.shell("cat part.csv | $G run - -o again.csv --force"));
@@ -79,7 +79,7 @@ fn exports_of_every_kind_are_verified() {
 }
 
 #[test]
-fn what_differs_is_told_with_exit_code_1() {
+fn differences_are_reported_with_exit_code_1() {
     let ground = Ground::new();
     done(ground.run("run method-2 --steps 40 -o a.csv"));
     let good = ground.read("a.csv");
@@ -96,7 +96,7 @@ fn what_differs_is_told_with_exit_code_1() {
 }
 
 #[test]
-fn a_long_run_that_differs_is_not_played_on() {
+fn a_difference_ends_the_recomputation_of_a_long_run() {
     let ground = Ground::new();
     done(ground.run("run method-2 --steps 3 -o a.csv"));
     let good = ground.read("a.csv");
@@ -106,7 +106,7 @@ fn a_long_run_that_differs_is_not_played_on() {
 }
 
 #[test]
-fn a_header_that_was_changed_by_hand_is_told_as_such() {
+fn an_edited_header_is_reported_as_such() {
     let ground = Ground::new();
     done(ground.run("run cusps --steps 5 -o a.csv"));
     let good = ground.read("a.csv");
@@ -120,7 +120,7 @@ fn a_header_that_was_changed_by_hand_is_told_as_such() {
 }
 
 #[test]
-fn rows_and_columns_that_cannot_be_are_refused() {
+fn invalid_rows_and_columns_are_rejected() {
     let ground = Ground::new();
     for (options, exit, words) in [
         (
@@ -152,7 +152,7 @@ fn rows_and_columns_that_cannot_be_are_refused() {
 }
 
 #[test]
-fn a_comparison_is_given_as_json() {
+fn compare_prints_json() {
     let ground = Ground::new();
     let table = ground.json("compare steady-slow --duration 0.2 --schemes report,exact --json");
     assert_eq!(table["energy_drift_unit"], "M g |c|");
@@ -173,7 +173,7 @@ fn small_sweep(ground: &Ground) -> String {
 }
 
 #[test]
-fn the_field_of_a_sweep_that_differs_is_told() {
+fn the_differing_field_of_a_sweep_is_named() {
     let ground = Ground::new();
     let good = small_sweep(&ground);
     let told = |text: &str| differs(&ground, text);
@@ -193,7 +193,7 @@ fn the_field_of_a_sweep_that_differs_is_told() {
         &columns,
         " is \"motion.steps,motion.scheme,path,z_m\", computed \"motion.steps,motion.scheme,z_m,path\"",
     );
-    // What would steer the terminal is shown as an escape, and cut short, wherever it stands.
+    // Control sequences are escaped and shortened in every place.
     let steering = format!("\u{1b}]0;title\u{7}{}", "x".repeat(100_000));
     let last = good.trim_end().len();
     for text in [
@@ -212,7 +212,7 @@ fn the_field_of_a_sweep_that_differs_is_told() {
 }
 
 #[test]
-fn ends_of_lines_are_told_of_a_sweep_as_of_a_run() {
+fn line_ends_of_sweeps_and_runs_are_reported_alike() {
     let ground = Ground::new();
     let sweep = small_sweep(&ground);
     done(ground.run("run cusps --steps 4 -o run.csv"));
@@ -237,9 +237,9 @@ fn ends_of_lines_are_told_of_a_sweep_as_of_a_run() {
     }
 }
 
-/// A program's own rows: the exit code says whether they agree, the JSON holds the keys of its table, a broken file is refused.
+/// The exit code says whether the rows agree, the JSON has the documented keys, and a broken file is rejected.
 #[test]
-fn own_rows_are_held_against_a_scenario() {
+fn the_rows_of_a_users_program_are_compared_with_a_scenario() {
     let ground = Ground::new();
     done(ground.run("run every-slip --steps 50 --columns step,z_m,spin_rpm -o mine.csv"));
     let agrees = done(ground.run("verify mine.csv --against every-slip"));

@@ -1,4 +1,4 @@
-//! `gyrolab writeup`: what is in the folder, that the same run gives the same bytes, and that no file is lost.
+//! `gyrolab writeup`: the contents of the folder, byte-for-byte reproduction, and the safety of existing files.
 
 use crate::support::ground::{Ground, code, done, failed, names};
 use crate::support::words::{has, has_all, has_no};
@@ -6,7 +6,7 @@ use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 
-/// Every file of the folder with its bytes, in the order of the names.
+/// Returns the name and the bytes of every file in the folder, sorted by name.
 fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
     names(folder)
         .into_iter()
@@ -25,7 +25,7 @@ fn row_of(page: &str, what: &str) -> Vec<String> {
 }
 
 #[test]
-fn the_folder_says_what_was_run_and_makes_it_again() {
+fn a_write_up_describes_and_reproduces_its_run() {
     let lab = Ground::new();
     let set = "push.0.force_N=[0,0,-50]";
     done(lab.run(&format!("writeup wobble-push --set {set} --steps 700 -o w")));
@@ -58,7 +58,7 @@ fn the_folder_says_what_was_run_and_makes_it_again() {
             "(`measured_nutation_period_s`)",
             "; strobed: the time step is too long to see the nutation, and ",
             "as the steps show it; since the forces last changed, at t = 20 s (`measured_tilt_swing_deg`)\n",
-            // The line of the preset speaks of another run.
+            // The preset's look_at line describes another run.
             "\n\nDiffers from the preset wobble-push: other pushes\n\n",
             "\n\nOf the preset wobble-push as it was: ",
         ],
@@ -70,12 +70,12 @@ fn the_folder_says_what_was_run_and_makes_it_again() {
 }
 
 #[test]
-fn measured_data_stand_beside_the_run() {
+fn measured_data_are_compared_with_the_run() {
     let lab = Ground::new();
     done(lab.run("run method-2 --steps 40 -o run.csv --columns x_m"));
     let csv = lab.read("run.csv");
     let x: Vec<f64> = csv.lines().filter_map(|line| line.parse().ok()).collect();
-    // Two uncertainties off, and one value after the run, which ends at 4 s.
+    // Two values that are two uncertainties off, and one after the end of the run at 4 s.
     let data = format!(
         "# our wheel\nt_s,x_m,x_uncertainty_m\n1,{},0.01\n2,{},0.01\n100,0.5,0.01\n",
         x[10] + 0.02,
@@ -107,7 +107,7 @@ fn measured_data_stand_beside_the_run() {
     has(lab.read("w/measured.svg"), "measured: bench (2 points)");
     done(lab.shell("cd w && \"$G\" writeup run.toml --measured bench.csv -o ../again"));
     assert_eq!(contents(&lab.file("w")), contents(&lab.file("again")));
-    // What has no place beside a run is refused before there is a folder.
+    // Data that cannot be compared with a run are rejected before the folder is created.
     let refused = |file: &str| lab.run(&format!("writeup method-2 --measured {file} -o no"));
     failed(&refused("heidelberg-precession"), &["is a table of runs"]);
     failed(&refused("nothing.csv"), &["there is no such file"]);
@@ -115,7 +115,7 @@ fn measured_data_stand_beside_the_run() {
 }
 
 #[test]
-fn the_numbers_of_the_page_are_those_of_the_summary() {
+fn the_numbers_of_the_page_equal_those_of_the_summary() {
     let lab = Ground::new();
     done(lab.run("writeup cusps -o w"));
     let page = lab.read("w/README.md");
@@ -137,25 +137,25 @@ fn the_numbers_of_the_page_are_those_of_the_summary() {
     assert!((difference - (measured - predicted)).abs() <= 0.05 * difference.abs());
     let in_errors: f64 = row[5].parse().unwrap();
     assert!((in_errors - (measured - predicted) / sigma).abs() < 0.01 * in_errors.abs() + 0.01);
-    // Of the swing theory says the difference of its greatest and its least tilt.
+    // Theory predicts the swing as the difference between the maximum and the minimum tilt.
     let swing = row_of(&page, "tilt swing");
     let range = number("predicted_highest_tilt_deg") - number("predicted_lowest_tilt_deg");
     assert_eq!(swing[3], format!("{range:.6}"));
-    // What the clock says differs each time: it is not in the folder.
+    // The measured wall time varies, so it is not in the folder.
     let readouts: serde_json::Value = serde_json::from_str(&lab.read("w/readouts.json")).unwrap();
     assert_eq!(readouts["measured_precession_rad_per_s"], measured);
     assert!(readouts.get("wall_s").is_none() && json.get("wall_s").is_some());
 }
 
 #[test]
-fn what_a_user_wrote_is_not_said_to_be_a_presets() {
+fn texts_of_changed_scenarios_are_not_attributed_to_the_preset() {
     let lab = Ground::new();
     let cusps = lab.stdout("presets cusps");
     let line = |key: &str| {
         let begin = format!("{key} = ");
         cusps.lines().find(|line| line.starts_with(&begin)).unwrap()
     };
-    // The look_at line is left as it was, which is now of another motion.
+    // The look_at line is unchanged, but it now describes another motion.
     let mine = cusps
         .replace(line("source"), "source = \"my homework\"")
         .replace(line("tilt_deg"), "tilt_deg = 50");
@@ -169,7 +169,7 @@ fn what_a_user_wrote_is_not_said_to_be_a_presets() {
     assert!(page.contains("\n\nMy top.\n\n"), "{page}");
     assert!(page.contains("\n\nSource: my homework\n\n"), "{page}");
     assert!(page.contains("Differs from the preset cusps: "), "{page}");
-    // A new look_at line alone: the preset's other words are of another motion all the same.
+    // With a new look_at line, the preset's other texts still describe another motion.
     let set = "--set 'view.look_at=My line.' --set start.tilt_deg=50";
     done(lab.run(&format!("writeup cusps --steps 50 -o line {set}")));
     let own_line = lab.read("line/README.md");
@@ -177,9 +177,9 @@ fn what_a_user_wrote_is_not_said_to_be_a_presets() {
     has(&own_line, "\n\nOf the preset cusps as it was: ");
 }
 
-/// Least and greatest values are of the whole run, theory is of the motion since the push has ended: page and readouts say so.
+/// Minima and maxima are those of the whole run; theory applies after the push. Page and readouts say so.
 #[test]
-fn theory_is_of_the_motion_since_the_forces_changed() {
+fn theory_applies_after_the_last_change_of_forces() {
     let lab = Ground::new();
     done(lab.run("writeup wobble-push --time-step 0.01 -o w"));
     let page = lab.read("w/README.md");
@@ -200,7 +200,7 @@ fn a_folder_in_use_is_left_alone_unless_forced() {
     let lab = Ground::new();
     let args = "writeup method-1 --steps 20 -o w";
     fs::create_dir(lab.file("w")).unwrap();
-    done(lab.run(args)); // an empty one may be used
+    done(lab.run(args)); // an empty folder is accepted
     lab.write("w/README.md", "mine");
     lab.write("w/notes.txt", "mine too");
     lab.refused(args, 1, &["w holds files", "--force"]);
@@ -209,14 +209,14 @@ fn a_folder_in_use_is_left_alone_unless_forced() {
     let told = lab.stderr(&format!("{args} --force"));
     assert!(lab.read("w/README.md").starts_with("# Method 1"));
     assert_eq!(lab.read("w/notes.txt"), "mine too");
-    // What the new page does not speak of is named.
+    // Files that do not belong to the new write-up are named.
     let left = "not of this write-up, left as found: notes.txt, swings.svg";
     assert!(told.contains(left), "{told}");
     assert_eq!(lab.files(), ["w"], "no temporary folder is left");
 }
 
 #[test]
-fn what_cannot_be_written_is_refused_with_its_reason() {
+fn an_unwritable_folder_is_rejected_with_a_reason() {
     let lab = Ground::new();
     let write_to = |folder: &str| lab.run(&format!("writeup method-1 --steps 20 -o {folder}"));
     lab.write("file", "");
@@ -228,7 +228,7 @@ fn what_cannot_be_written_is_refused_with_its_reason() {
     mode(0o500).unwrap();
     let output = write_to("closed/w");
     mode(0o700).unwrap();
-    // The superuser may write everywhere.
+    // Root can write everywhere.
     if code(&output) != 0 {
         failed(&output, &["cannot write closed/w", "ermission"]);
     }
@@ -236,7 +236,7 @@ fn what_cannot_be_written_is_refused_with_its_reason() {
 }
 
 #[test]
-fn a_run_that_breaks_down_is_written_up_to_there() {
+fn a_run_that_breaks_down_is_written_up_to_that_step() {
     let lab = Ground::new();
     let push = "push.0={point=\"top\", force_N=[1e300,0,0], first_step=25, steps=1}";
     let output = lab.run(&format!("writeup method-2 --set '{push}' -o w"));
@@ -248,13 +248,13 @@ fn a_run_that_breaks_down_is_written_up_to_there() {
 }
 
 #[test]
-fn a_figure_that_is_covered_says_so_and_names_a_stretch_that_is_not() {
+fn an_unresolved_figure_suggests_a_shorter_time_range() {
     let lab = Ground::new();
     done(lab.run("writeup method-1 -o w"));
     let page = lab.read("w/README.md");
     let begin = "In this figure, on 86 mm about 203 swings are not told apart";
     let remark = page.lines().find(|line| line.starts_with(begin)).unwrap();
-    // The command is one that works.
+    // The suggested command works.
     let command = remark.split('`').find(|part| part.starts_with("gyrolab "));
     let args = command.unwrap().strip_prefix("gyrolab ").unwrap();
     let said = lab.stderr(&args.replace("run.toml", "w/run.toml"));
@@ -263,7 +263,7 @@ fn a_figure_that_is_covered_says_so_and_names_a_stretch_that_is_not() {
 }
 
 #[test]
-fn a_run_of_the_exact_motion_is_said_to_be_it() {
+fn a_run_of_the_exact_motion_is_described_as_such() {
     let lab = Ground::new();
     done(lab.run("writeup heidelberg --steps 300 -o w"));
     let page = lab.read("w/README.md");

@@ -69,7 +69,7 @@ fn endless() -> Arc<Scenario> {
 }
 
 #[test]
-fn the_file_is_the_one_that_run_writes() {
+fn an_export_equals_the_file_of_the_run_command() {
     let folder = tempfile::tempdir().unwrap();
     for (preset, n) in PRESETS.iter().flat_map(|preset| [(preset, 1), (preset, 7)]) {
         let scenario = scenario(preset.name, &[]);
@@ -94,7 +94,7 @@ fn the_file_is_the_one_that_run_writes() {
 }
 
 #[test]
-fn the_estimate_is_close_to_the_export() {
+fn the_estimated_size_is_within_5_percent() {
     for (preset, n) in PRESETS.iter().flat_map(|preset| [(preset, 1), (preset, 7)]) {
         let scenario = scenario(preset.name, &[]);
         let told = estimate(&scenario, every(n));
@@ -108,7 +108,7 @@ fn the_estimate_is_close_to_the_export() {
 }
 
 #[test]
-fn the_estimate_of_no_rows_but_two_is_right() {
+fn the_estimate_is_right_for_two_rows() {
     let scenario = scenario("cusps", &["motion.steps=1"]);
     let told = estimate(&scenario, every(1000));
     assert_eq!(told.rows, 2);
@@ -116,7 +116,7 @@ fn the_estimate_of_no_rows_but_two_is_right() {
 }
 
 #[test]
-fn it_reports_progress_and_leaves_no_file_when_cancelled() {
+fn a_canceled_export_reports_progress_and_leaves_no_file() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.csv");
     let mut exporting =
@@ -133,7 +133,7 @@ fn it_reports_progress_and_leaves_no_file_when_cancelled() {
 }
 
 #[test]
-fn dropping_it_leaves_no_file() {
+fn a_dropped_export_leaves_no_file() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.csv");
     drop(Exporting::begin(endless(), &path, CsvLayout::every(every(1000)), false).unwrap());
@@ -141,7 +141,7 @@ fn dropping_it_leaves_no_file() {
 }
 
 #[test]
-fn a_file_that_is_there_is_told_of_and_replaced_only_when_asked() {
+fn an_existing_file_is_replaced_only_on_request() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.csv");
     fs::write(&path, "old").unwrap();
@@ -161,7 +161,7 @@ fn a_file_that_is_there_is_told_of_and_replaced_only_when_asked() {
 }
 
 #[test]
-fn one_that_comes_up_meanwhile_is_not_replaced() {
+fn a_file_created_during_the_export_is_not_replaced() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.csv");
     let scenario = scenario("method-2", &["motion.steps=300000"]);
@@ -175,7 +175,7 @@ fn one_that_comes_up_meanwhile_is_not_replaced() {
 }
 
 #[test]
-fn what_cannot_be_written_is_refused_at_once_in_words() {
+fn an_unwritable_path_is_rejected_at_once() {
     let folder = tempfile::tempdir().unwrap();
     let fifo = folder.path().join("fifo");
     let made = Command::new("mkfifo").arg(&fifo).status();
@@ -211,7 +211,7 @@ fn what_cannot_be_written_is_refused_at_once_in_words() {
 }
 
 #[test]
-fn the_rows_before_numbers_that_are_not_finite_are_kept() {
+fn the_rows_before_the_first_non_finite_number_are_kept() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.csv");
     let sets = [
@@ -233,7 +233,7 @@ fn the_rows_before_numbers_that_are_not_finite_are_kept() {
 }
 
 #[test]
-fn a_dash_is_a_file_in_the_lab() {
+fn a_dash_is_a_file_name_in_the_lab() {
     let exporting = Exporting::begin(
         endless(),
         Path::new("-"),
@@ -275,7 +275,7 @@ fn child() {
     assert!(exporting.outcome().is_none());
     assert_eq!(names(folder).len(), 1, "the temporary file");
     at_exit::run_hooks(Release::Exit);
-    std::process::exit(42); // nothing is dropped
+    std::process::exit(42); // runs no destructors
 }
 
 #[test]

@@ -44,7 +44,7 @@ fn make_fifo(path: &Path) {
     mknodat(CWD, path, FileType::Fifo, Mode::from_raw_mode(0o666), 0).unwrap();
 }
 
-/// Calls `what` on a thread, and fails if it does not return in time.
+/// Calls `what` on a thread, and panics if it does not return in time.
 #[track_caller]
 fn within_patience<T: Send + 'static>(what: impl FnOnce() -> T + Send + 'static) -> T {
     let (done, result) = mpsc::channel();
@@ -53,7 +53,7 @@ fn within_patience<T: Send + 'static>(what: impl FnOnce() -> T + Send + 'static)
 }
 
 #[test]
-fn no_link_is_followed() {
+fn links_are_not_followed() {
     let (outer, folder) = folder();
     let victim = outer.path().join("victim");
     fs::write(&victim, "precious").unwrap();
@@ -76,7 +76,7 @@ fn no_link_is_followed() {
 }
 
 #[test]
-fn a_fifo_holds_nobody_up() {
+fn a_fifo_does_not_block_the_search_for_sessions() {
     for end in [".lock", ".session"] {
         let (outer, folder) = folder();
         kept(&folder, "run", &["one", "two"]);
@@ -96,7 +96,7 @@ fn a_fifo_holds_nobody_up() {
 
 /// Only root can change the owner of a file; for other users this test does nothing.
 #[test]
-fn what_belongs_to_another_is_not_taken() {
+fn files_of_another_user_are_not_used() {
     const NOBODY: u32 = 65534;
     for end in [".session", ".lock"] {
         let (_outer, folder) = folder();

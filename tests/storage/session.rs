@@ -14,7 +14,7 @@ use std::time::{Duration, Instant, SystemTime};
 use tempfile::TempDir;
 
 const PATIENCE: Duration = Duration::from_secs(20);
-/// Input that makes such a process run the exit hooks, as a signal would.
+/// Input that makes the child process run the exit hooks, as a signal would.
 const END: &str = "end";
 /// Environment variable that names the sessions' folder for the child process.
 const CHILD: &str = "GYROLAB_TEST_SESSION";
@@ -27,7 +27,7 @@ pub(crate) fn content(work: &str, place: &str) -> SessionContent {
     }
 }
 
-/// The work and the place.
+/// Returns the work and the place as texts.
 pub(crate) fn texts(content: &SessionContent) -> (String, String) {
     (content.work.to_string(), content.place.clone())
 }
@@ -47,7 +47,7 @@ fn any(folder: &Path) -> SessionSearch<(String, String)> {
     resume(folder, None, |content| Ok(texts(content))).unwrap()
 }
 
-/// The content of the newest unused session, which is closed again.
+/// Returns the content of the newest unused session, and closes the session.
 fn newest(folder: &Path) -> Option<(String, String)> {
     let found = any(folder);
     assert!(found.left_alone.is_empty(), "{:?}", found.left_alone);
@@ -67,7 +67,7 @@ fn written(session: &Session) {
     wait_until(|| session.flush());
 }
 
-/// Closes the session, and returns its content as saved.
+/// Closes the session, and asserts that its content was saved.
 #[track_caller]
 fn closed(session: Session) {
     let closed = session.close(PATIENCE);
@@ -87,7 +87,7 @@ fn only(folder: &Path, end: &str) -> PathBuf {
     names.pop().unwrap()
 }
 
-/// The file of the session that ends with that text: its place, then its work.
+/// Returns the path of the session file that ends with `text` (its place, then its work).
 fn file_of(folder: &Path, text: &str) -> PathBuf {
     let mut names = names(folder, ".session").into_iter();
     let end = format!("\n{text}");
@@ -96,7 +96,7 @@ fn file_of(folder: &Path, text: &str) -> PathBuf {
         .unwrap()
 }
 
-/// Sets the modification time of the file `path` so many `seconds` into the past.
+/// Sets the modification time of `path` to `seconds` ago.
 fn age(path: &Path, seconds: u64) {
     let file = fs::File::options().append(true).open(path).unwrap();
     let time = SystemTime::now() - Duration::from_secs(seconds);
@@ -146,7 +146,7 @@ fn the_last_content_is_resumed_and_the_session_continues() {
 }
 
 #[test]
-fn only_the_user_may_read_it() {
+fn only_the_user_may_read_a_session() {
     let (_outer, folder) = folder();
     let session = Session::begin(&folder).unwrap();
     for place in ["one", "two"] {
@@ -161,7 +161,7 @@ fn only_the_user_may_read_it() {
 }
 
 #[test]
-fn it_is_written_without_a_flush() {
+fn a_session_is_written_without_a_flush() {
     let (_outer, folder) = folder();
     let session = Session::begin(&folder).unwrap();
     for place in ["one", "two"] {
@@ -187,7 +187,7 @@ fn a_flush_writes_at_once() {
 }
 
 #[test]
-fn the_newest_that_is_not_in_use_is_taken() {
+fn the_newest_session_not_in_use_is_resumed() {
     let (_outer, folder) = folder();
     kept(&folder, "old", "");
     age(&only(&folder, ".session"), 100);
@@ -202,7 +202,7 @@ fn the_newest_that_is_not_in_use_is_taken() {
     middle.note(content("middle", "2"));
     closed(middle);
     drop(new);
-    // Its place is the newest.
+    // The middle session now has the newest place.
     assert_eq!(newest(&folder), Some(pair("middle", "2")));
 }
 
@@ -227,7 +227,7 @@ fn processes_that_resume_at_the_same_time_get_different_sessions() {
 }
 
 #[test]
-fn what_is_damaged_is_left_alone_and_told_of() {
+fn a_damaged_session_is_reported_and_left_alone() {
     type Damage = fn(&Path);
     let damages: [Damage; 4] = [
         |path| cut(path, 3),
@@ -253,9 +253,9 @@ fn what_is_damaged_is_left_alone_and_told_of() {
     }
 }
 
-/// The file is sparse: reading it whole would take memory, and no disk.
+/// The file is sparse: it takes no disk space, but reading it whole would take memory.
 #[test]
-fn a_session_that_is_too_long_is_left_alone() {
+fn an_oversized_session_is_left_alone() {
     let (_outer, folder) = folder();
     kept(&folder, "the one before", "");
     age(&only(&folder, ".session"), 100);
@@ -275,7 +275,7 @@ fn cut(path: &Path, bytes: u64) {
 }
 
 #[test]
-fn what_the_reader_refuses_is_left_alone_too() {
+fn a_session_with_invalid_content_is_left_alone() {
     let (_outer, folder) = folder();
     kept(&folder, "good", "");
     age(&only(&folder, ".session"), 100);
@@ -294,7 +294,7 @@ fn what_the_reader_refuses_is_left_alone_too() {
 }
 
 #[test]
-fn the_oldest_are_cleared_away_but_none_in_use() {
+fn the_oldest_sessions_not_in_use_are_deleted() {
     let (_outer, folder) = folder();
     let in_use = Session::begin(&folder).unwrap();
     in_use.note(content("in use", ""));
@@ -314,12 +314,12 @@ fn the_oldest_are_cleared_away_but_none_in_use() {
     }
     let works: Vec<_> = found.iter().map(|(_, what)| what.0.clone()).collect();
     let mut wanted: Vec<_> = (10..30).rev().map(|n| n.to_string()).collect();
-    wanted.insert(0, "in use".to_owned()); // it was left last, whenever it was written
+    wanted.insert(0, "in use".to_owned()); // the session that was closed last comes first
     assert_eq!(works, wanted);
 }
 
 #[test]
-fn a_folder_that_cannot_be_had_is_an_error_in_words() {
+fn an_unusable_folder_is_an_error() {
     let (outer, folder) = folder();
     fs::write(outer.path().join("state"), "a file").unwrap();
     let error = Session::begin(&folder).unwrap_err().to_string();
@@ -334,7 +334,7 @@ fn a_folder_that_cannot_be_had_is_an_error_in_words() {
 }
 
 #[test]
-fn trouble_is_told_as_long_as_it_lasts_and_it_is_tried_again() {
+fn saving_is_retried_and_errors_are_reported_until_it_succeeds() {
     let (_outer, folder) = folder();
     let session = Session::begin(&folder).unwrap();
     session.note(content("run", "one"));
@@ -367,14 +367,14 @@ fn trouble_is_told_as_long_as_it_lasts_and_it_is_tried_again() {
 }
 
 #[test]
-fn a_session_without_content_keeps_nothing() {
+fn a_session_without_content_saves_nothing() {
     let (_outer, folder) = folder();
     let closed = Session::begin(&folder).unwrap().close(PATIENCE);
     assert!(closed.kept.is_none() && closed.trouble.is_none());
 }
 
 #[test]
-fn sessions_have_short_names_that_stay() {
+fn sessions_keep_their_short_names() {
     let (_outer, folder) = folder();
     kept(&folder, "first", "");
     let second = Session::begin(&folder).unwrap();
@@ -402,7 +402,7 @@ fn sessions_have_short_names_that_stay() {
 }
 
 #[test]
-fn a_folder_that_was_cleared_away_is_made_again() {
+fn a_deleted_folder_is_created_again() {
     let (_outer, folder) = folder();
     let session = Session::begin(&folder).unwrap();
     session.note(content("run", "one"));
@@ -478,7 +478,7 @@ impl Drop for Other {
 }
 
 #[test]
-fn a_process_that_is_killed_loses_a_second_at_most_and_frees_its_session() {
+fn a_killed_process_loses_at_most_a_second_and_releases_its_session() {
     let (_outer, folder) = folder();
     let mut other = Other::begin(&folder);
     assert_eq!(other.hear("begins"), "begins at new");
@@ -507,7 +507,7 @@ fn the_exit_hook_saves_the_last_content() {
 }
 
 #[test]
-fn killed_at_any_moment_it_leaves_a_whole_session() {
+fn a_process_killed_at_any_time_leaves_a_valid_session() {
     let (_outer, folder) = folder();
     for n in 0..20 {
         let mut other = Other::begin(&folder);
