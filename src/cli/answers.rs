@@ -1,5 +1,5 @@
-//! What the seats of a class have predicted beside what came out: for the teacher a file for each seat, for a student over
-//! SSH their own.
+//! Predictions of the seats of a class next to the results: one file per seat for the teacher, or a student's own
+//! answers over SSH.
 
 use super::args::DisplayArgs;
 use super::class::unread;
@@ -17,10 +17,10 @@ use anyhow::{Context, bail, ensure};
 use std::path::Path;
 use std::process::ExitCode;
 
-/// The command that a student's ssh may name: `ssh class@HOST answers SEAT`.
+/// The command in a student's ssh call: `ssh class@HOST answers SEAT`.
 const ANSWERS: &str = "answers";
 
-/// Writes the answers of each seat into the folder `output`, a Markdown file for each.
+/// Writes the answers of each seat into the folder `output`, one Markdown file per seat.
 pub(super) fn write_all(
     folder: &ClassFolder,
     output: &Path,
@@ -51,8 +51,8 @@ pub(super) fn write_all(
     Ok(code)
 }
 
-/// Prints the answers of the seat that `command`, the command of a student's ssh, names. While a class is on nothing is
-/// printed: the answers tell what comes out.
+/// Prints the answers of the seat in `command`, the command of a student's ssh call. Fails while a class is running,
+/// because the answers contain the results.
 pub(super) fn fetch(
     folder: &ClassFolder,
     command: &str,
@@ -61,7 +61,7 @@ pub(super) fn fetch(
     let words: Vec<_> = command.split_whitespace().collect();
     let [ANSWERS, word] = words[..] else {
         bail!(
-            "{}: this login has one command, {ANSWERS} SEAT (SEAT is the word of your seat, such as anna-471108); \
+            "{}: unknown command; this login has only {ANSWERS} SEAT (SEAT is the word of your seat, such as anna-471108); \
              without a command it opens your lab",
             printable(command)
         );
@@ -72,14 +72,14 @@ pub(super) fn fetch(
         .is_ok_and(|state| state.is_some_and(|state| state.is_on));
     ensure!(
         !(is_on && folder.is_teacher_alive()),
-        "a class is on: fetch your answers when it is over"
+        "a class is running: fetch your answers after it has ended"
     );
     let status = SeatStatus::read(seat);
     let code = unread(std::slice::from_ref(&status));
     let told = told(&status, look, &progress::interruption()?)?;
     if told.text.is_empty() {
         bail!(
-            "{}: this seat has answered no question yet",
+            "{}: this seat has not answered a question yet",
             status.seat.word
         );
     }
@@ -91,11 +91,11 @@ pub(super) fn fetch(
     })
 }
 
-/// What a seat has predicted beside what came out.
+/// Predictions of a seat next to the results.
 struct Told {
-    /// Markdown; empty where nothing was predicted.
+    /// Markdown; empty without predictions.
     text: String,
-    /// Whether a lesson was left out, because it cannot be opened any more.
+    /// True if a lesson is missing because it cannot be opened any more.
     is_partial: bool,
 }
 
@@ -117,7 +117,7 @@ fn told(
             Ok(lesson) => lesson,
             Err(problems) => {
                 tell(format_args!(
-                    "gyrolab: {word}: answers left out: {}",
+                    "gyrolab: {word}: answers are missing: {}",
                     printable(&problems.in_one_line())
                 ));
                 told.is_partial = true;

@@ -1,10 +1,10 @@
-//! How the values of arguments are read.
+//! Parsers for the values of arguments.
 
 use crate::tui::terminal::MOST_SCREEN_CELLS;
 use std::num::NonZeroU64;
 use std::str::FromStr;
 
-/// How a time is given, and a number of steps.
+/// Units of a time, and of a number of steps.
 const MEANT_IN_SECONDS: &str = "in seconds";
 const MEANT_IN_STEPS: &str = "in time steps";
 
@@ -13,7 +13,7 @@ pub(super) fn one_or_more(text: &str) -> Result<NonZeroU64, String> {
         .map_err(|_| "must be a whole number, 1 or more".to_owned())
 }
 
-/// The number `text` that `fits`, which is to be given in the unit `meant`; or what it must be.
+/// Parses the number `text`, checked by `fits`. The error is `rule`, or mentions the unit `meant` if `text` has a unit.
 fn bare<T: FromStr>(
     text: &str,
     fits: fn(&T) -> bool,
@@ -75,7 +75,7 @@ pub(super) fn size(text: &str) -> Result<(u16, u16), String> {
         })
 }
 
-/// What is said of a number with a unit behind it, as `20s`; the number is to be given `meant`.
+/// Returns the error for a number followed by a unit, such as `20s`. `meant` is the expected unit.
 fn without_unit(text: &str, meant: &str) -> Option<String> {
     let number = text.trim_end_matches(char::is_alphabetic).trim_end();
     let unit = text.strip_prefix(number)?.trim_start();
@@ -89,7 +89,7 @@ fn without_unit(text: &str, meant: &str) -> Option<String> {
     })
 }
 
-/// A time from the beginning of the run on, s.
+/// Parses a time since the start of the run, s.
 pub(super) fn time(text: &str) -> Result<f64, String> {
     bare(
         text,

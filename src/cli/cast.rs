@@ -1,7 +1,8 @@
-//! `gyrolab cast`: a recording of the lab while it carries out a file of commands, in the format of asciinema.
+//! `gyrolab cast`: records the lab while it executes a file of commands, in the format of asciinema.
 //!
-//! The lab's own clock tells the time: it goes on by the same step from picture to picture, however long the computer needs
-//! for one. Neither settings nor the environment are read, so that a file of commands has one recording.
+//! The recording has its own clock, which advances by the same amount from picture to picture, independent of the
+//! computer's speed. Settings and the environment are ignored, so that a file of commands always gives the same
+//! recording.
 
 use super::args::SetArgs;
 use super::argument_values::size;
@@ -24,9 +25,9 @@ use std::thread;
 use std::time::Duration;
 
 const CAST_FRAME: Duration = Duration::from_millis(50);
-/// The longest recording: a slip in a number must not fill the disk.
+/// Maximum duration of a recording, so that a mistyped number cannot fill the disk.
 const LONGEST_RECORDING: Duration = Duration::from_secs(3600);
-/// How often to look whether an export is complete: the recording's clock stands still meanwhile.
+/// Interval between checks for a finished export. The recording's clock is stopped meanwhile.
 const CAST_EXPORT_POLL: Duration = Duration::from_millis(2);
 
 #[derive(Debug, Args)]
@@ -40,7 +41,7 @@ pub(super) struct CastArgs {
     #[arg(short, long, value_name = "FILE.cast")]
     pub(super) output: PathBuf,
 
-    /// Columns and lines of the lab
+    /// Columns and rows of the lab
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "100x30", value_parser = size)]
     pub(super) size: (u16, u16),
 
@@ -54,11 +55,11 @@ pub(super) struct CastArgs {
 }
 
 const WHAT_PASSES: &str = "\
-Time passes at run, run_until and wait_s; a recording ends with the last command, so that one of wait_s at its end \
-shows the last picture for so long. chapter makes a marker. The same commands give the same bytes, on every machine.
+Time passes only at run, run_until and wait_s. A recording ends with its last command, so end it with wait_s to show \
+the last picture for some time. chapter adds a marker. The same commands give the same bytes on every machine.
 
-asciinema play shows a recording, from asciinema 3 on; version 2, as Debian 12 has it, plays only the older formats v1 and \
-v2, of which asciinema convert of version 3 makes one.";
+Play a recording with asciinema play, version 3 or later. Version 2, as in Debian 12, plays only the older formats v1 and \
+v2: convert the recording with asciinema convert of version 3.";
 
 pub(super) fn cast(args: &CastArgs) -> anyhow::Result<ExitCode> {
     let commands = command::open(&args.commands)?;
@@ -82,12 +83,12 @@ pub(super) fn cast(args: &CastArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// A recording: a line of JSON for its head and one for each event.
+/// A recording: a line of JSON for the header, and one for each event.
 struct Cast {
     recorder: ScreenRecorder,
     text: String,
     now: Duration,
-    /// The time of the last event.
+    /// Time of the last event.
     written: Duration,
     markers: u64,
 }
@@ -111,7 +112,7 @@ impl Cast {
         })
     }
 
-    /// Lets time pass until all commands are carried out.
+    /// Advances the time until all commands are executed.
     fn record(&mut self, lab: &mut Lab, interruption: &Interruption) -> anyhow::Result<()> {
         loop {
             self.look(lab)?;
@@ -127,14 +128,14 @@ impl Cast {
             }
             ensure!(
                 self.now < LONGEST_RECORDING,
-                "the recording is longer than an hour, the most there may be: shorten its waits, or raise its speed"
+                "the recording is longer than an hour, the maximum: shorten its waits, or raise its speed"
             );
             self.now += CAST_FRAME;
             self.advance_lab(lab, interruption);
         }
     }
 
-    /// Lets the lab take its steps up to now, as many as there are to take. Only a signal cuts them short.
+    /// Lets the lab take all steps up to the current time. Only a signal interrupts it.
     fn advance_lab(&self, lab: &mut Lab, interruption: &Interruption) {
         let mut is_first = true;
         lab.advance(&mut || {
@@ -152,7 +153,7 @@ impl Cast {
         }
     }
 
-    /// Records what there is to see now, and the chapters that begin with it.
+    /// Records the current picture, and the chapters that begin with it.
     fn look(&mut self, lab: &mut Lab) -> anyhow::Result<()> {
         for title in lab.script_mut().take_chapters() {
             self.markers += 1;
@@ -165,7 +166,7 @@ impl Cast {
         Ok(())
     }
 
-    /// An event is the time since the one before, s, its kind and its data.
+    /// Adds an event: the time since the previous one, s, its kind and its data.
     fn event(&mut self, kind: &str, data: &str) {
         let since = (self.now - self.written).as_millis();
         self.written = self.now;

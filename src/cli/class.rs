@@ -27,18 +27,18 @@ use std::process::ExitCode;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// The columns of a board that is printed.
+/// Width of a printed board, in columns.
 const BOARD_WIDTH: usize = 80;
-/// The longest line that is read for a seat, bytes.
+/// Maximum length of a line typed for a seat, bytes.
 const LONGEST_SEAT_LINE: u64 = 200;
-/// How long a wrong word keeps waiting.
+/// Delay after a wrong word.
 const PENALTY: Duration = Duration::from_secs(1);
 
 pub(super) fn class(args: &ClassArgs) -> anyhow::Result<ExitCode> {
     if let Some(players) = args.rehearse {
         return rehearsal::rehearse(args, players);
     }
-    // clap asks for the folder.
+    // clap ensures that a folder is given.
     let dir = args.folder.as_deref().unwrap_or(Path::new("."));
     let at = || ClassFolder::at(dir).map_err(anyhow::Error::msg);
     if args.votes {
@@ -73,39 +73,39 @@ pub(super) fn ensure_terminal() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The teacher's folder, which only one lab may have open. The file is open as long as it has.
+/// Locks the teacher's folder, which only one lab may have open. The lock lasts as long as the returned file is open.
 fn lock_class(folder: &ClassFolder) -> anyhow::Result<File> {
     folder.make_teacher().map_err(anyhow::Error::msg)?;
     let turn = File::open(folder.teacher())?;
     ensure!(
         !matches!(turn.try_lock(), Err(TryLockError::WouldBlock)),
-        "a class is on in {}: its board is gyrolab class --board --folder DIR",
+        "a class is running in {}: show its board with gyrolab class --board --folder DIR",
         PrintablePath(&folder.root)
     );
     Ok(turn)
 }
 
-/// Keeps the seats and the votes in `dir` for the teacher, so that a new group begins with none.
+/// Archives the seats and votes in `dir`, so that a new group starts without any.
 fn begin_anew(dir: &Path) -> anyhow::Result<()> {
     let folder = ClassFolder::open(dir).map_err(anyhow::Error::msg)?;
     let _turn = lock_class(&folder)?;
     let name = Local::now().format("%Y-%m-%d_%H-%M-%S").to_string();
     match folder.keep_as_earlier(&name).map_err(anyhow::Error::msg)? {
         None => tell(format_args!(
-            "gyrolab: no group was in {}: there is nothing to keep",
+            "gyrolab: there is no earlier group in {} to archive",
             PrintablePath(dir)
         )),
         Some(group) => tell(format_args!(
-            "gyrolab: the group before is kept in {group}\n\
-             gyrolab: its votes: gyrolab class --votes --folder {group}",
+            "gyrolab: the previous group is archived in {group}\n\
+             gyrolab: to see its votes, run gyrolab class --votes --folder {group}",
             group = PrintablePath(&group)
         )),
     }
     Ok(())
 }
 
-/// Refuses to begin the lesson `name` once more where the class, whose state was `before`, left it with votes: after a crash
-/// all would be back on its first page.
+/// Returns an error if the class, whose state was `before`, already has votes in the lesson `name`. After a crash,
+/// starting it again would return everyone to page 1.
 fn refuse_begun(folder: &ClassFolder, before: &ClassState, name: &str) -> anyhow::Result<()> {
     let seats = seat_statuses(folder).map_err(anyhow::Error::msg)?;
     let has_voted = |seat: &SeatStatus| {
@@ -114,7 +114,7 @@ fn refuse_begun(folder: &ClassFolder, before: &ClassState, name: &str) -> anyhow
     };
     ensure!(
         before.lesson != name || before.page < 2 || !seats.iter().any(has_voted),
-        "{}: the class is on page {} of it: --resume without the lesson goes on there, --new begins with another group",
+        "{}: the class has reached page {}: --resume without the lesson continues there, --new starts another group",
         printable(folder.short(name)),
         before.page
     );
@@ -130,7 +130,7 @@ pub(super) fn teach(
 ) -> anyhow::Result<ExitCode> {
     ensure_terminal()?;
     let folder = ClassFolder::open(dir).map_err(anyhow::Error::msg)?;
-    let _turn = lock_class(&folder)?; // held until the lab is left
+    let _turn = lock_class(&folder)?; // held until the lab is closed
     let confined = Confined::enter(dir)
         .with_context(|| sessions::named(dir))?
         .keeping_in(folder.teacher());
@@ -142,14 +142,14 @@ pub(super) fn teach(
     let (name, page) = match lesson {
         Some(name) => (opening::full_name(name), 1),
         None if before.lesson.is_empty() => {
-            bail!("no class has begun here: gyrolab class LESSON --folder DIR")
+            bail!("no class has begun here: start one with gyrolab class LESSON --folder DIR")
         }
         None => (before.lesson.clone(), before.page.max(1)),
     };
     if lesson.is_some() && rehearsal.is_none() {
         refuse_begun(&folder, &before, &name)?;
     }
-    admit(&name, &confined).context("the lesson of a class lies in its folder")?;
+    admit(&name, &confined).context("the lesson of a class must be in its folder")?;
     let opened = opening::open(&name)?;
     let workbench = WorkbenchArgs {
         paused: true,
@@ -172,7 +172,7 @@ pub(super) fn teach(
     )
 }
 
-/// Shows the class in `folder` to all of it.
+/// Shows the class in `folder` on a projector.
 fn project(folder: ClassFolder, look: DisplayArgs) -> anyhow::Result<ExitCode> {
     ensure!(
         io::stdin().is_terminal() && io::stdout().is_terminal(),
@@ -194,7 +194,7 @@ fn project(folder: ClassFolder, look: DisplayArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Prints what `csv` makes of the seats in `folder`.
+/// Prints the CSV that `csv` makes of the seats in `folder`.
 fn print_csv(
     folder: &ClassFolder,
     csv: fn(&ClassFolder, &[SeatStatus]) -> Result<String, csv::Error>,
@@ -204,7 +204,7 @@ fn print_csv(
     Ok(unread(&seats))
 }
 
-/// Says which files of `seats` cannot be read. Returns the exit code.
+/// Prints the files of `seats` that cannot be read. Returns the exit code.
 pub(super) fn unread(seats: &[SeatStatus]) -> ExitCode {
     let mut code = ExitCode::SUCCESS;
     for trouble in seats.iter().filter_map(|seat| seat.trouble.as_ref()) {
@@ -224,9 +224,9 @@ fn show_board(folder: &ClassFolder) -> anyhow::Result<ExitCode> {
     Ok(unread(&seat_statuses(folder).map_err(anyhow::Error::msg)?))
 }
 
-/// Asks for a seat of the class in `dir`, and opens its lab.
+/// Asks for a seat in the class in `dir`, and opens its lab.
 pub(super) fn seat(args: &WorkbenchArgs, dir: &Path) -> anyhow::Result<ExitCode> {
-    // sshd sets this where the student's ssh names a command.
+    // sshd sets this variable if the student's ssh command names a command.
     if let Ok(command) = std::env::var("SSH_ORIGINAL_COMMAND") {
         let folder = ClassFolder::open(dir).map_err(anyhow::Error::msg)?;
         return answers::fetch(&folder, &command, args.look);
@@ -235,7 +235,7 @@ pub(super) fn seat(args: &WorkbenchArgs, dir: &Path) -> anyhow::Result<ExitCode>
         io::stdin().is_terminal() && io::stdout().is_terminal(),
         "--seat needs a terminal: it asks for a name"
     );
-    // The teacher reads what the seat writes, and nobody else does; no file takes more than a seat may.
+    // Only the teacher can read the seat's files, and no file may exceed the limit for a seat.
     rustix::process::umask(rustix::fs::Mode::from_raw_mode(0o027));
     let mut limit = rustix::process::getrlimit(Resource::Fsize);
     let now = limit.current.unwrap_or(MOST_OF_SEAT);
@@ -249,7 +249,7 @@ pub(super) fn seat(args: &WorkbenchArgs, dir: &Path) -> anyhow::Result<ExitCode>
     let confined = Confined::enter(&seat.folder)?.as_seat_of(&folder.root);
     let sessions = confined.sessions().map_err(anyhow::Error::msg)?;
     take_over(&sessions);
-    // A file that this version cannot read is left as it is.
+    // A file that this version cannot read is not changed.
     let record = seat
         .record()
         .map_err(anyhow::Error::msg)
@@ -257,14 +257,14 @@ pub(super) fn seat(args: &WorkbenchArgs, dir: &Path) -> anyhow::Result<ExitCode>
     let has_session = session::list(&sessions).is_ok_and(|sessions| !sessions.is_empty());
     let args = WorkbenchArgs {
         resume: has_session.then(String::new),
-        paused: true, // the class's run comes, or the page on which it is waited for
+        paused: true, // the class's run or its waiting page replaces this run
         ..args.clone()
     };
     let student = Box::new(Student::new(folder, seat, lock_token, record));
     open_at(&args, DEFAULT, Some(confined), None, Some(student))
 }
 
-/// Asks for a name or the word of a seat until there is one; `None` where nothing more is typed.
+/// Asks for a name or the word of a seat until one is accepted. Returns `None` at the end of the input.
 fn asked(folder: &ClassFolder) -> anyhow::Result<Option<Seat>> {
     loop {
         let mut stdout = io::stdout();
@@ -280,7 +280,7 @@ fn asked(folder: &ClassFolder) -> anyhow::Result<Option<Seat>> {
                 let word = &seat.word;
                 writeln!(
                     stdout,
-                    "Your seat is {word}: type that when you come back.\nEnter goes on."
+                    "Your seat is {word}: type this word to return.\nPress Enter to continue."
                 )?;
                 return Ok(self::line()?.map(|_| seat));
             }
@@ -292,7 +292,7 @@ fn asked(folder: &ClassFolder) -> anyhow::Result<Option<Seat>> {
     }
 }
 
-/// Reads a line that was typed, cut off where it is too long; `None` at the end.
+/// Reads a typed line, shortened if it is too long. Returns `None` at the end of the input.
 fn line() -> io::Result<Option<String>> {
     let mut stdin = io::stdin().lock();
     let mut bytes = Vec::new();
@@ -309,8 +309,8 @@ fn line() -> io::Result<Option<String>> {
     Ok(Some(String::from_utf8_lossy(&bytes).into_owned()))
 }
 
-/// Waits until no other lab has a session in the folder `sessions`. One that does not end by itself is ended: its line may
-/// be dead, and it waits for somebody to take what it draws.
+/// Waits until no other lab uses a session in the folder `sessions`. A lab that does not end is killed: its connection
+/// may be dead, so that its output blocks.
 fn take_over(sessions: &Path) {
     let holder = || {
         let sessions = session::list(sessions).unwrap_or_default();
@@ -319,7 +319,7 @@ fn take_over(sessions: &Path) {
     };
     for signal in [None, Some(Signal::TERM), Some(Signal::KILL)] {
         if let (Some(signal), Some(process)) = (signal, holder()) {
-            let _ = rustix::process::kill_process(process, signal); // it may have ended meanwhile
+            let _ = rustix::process::kill_process(process, signal); // it may have ended already
         }
         let begin = Instant::now();
         while holder().is_some() && begin.elapsed() < Duration::from_secs(2) {

@@ -1,4 +1,4 @@
-//! `gyrolab compare`: schemes and time steps against the exact motion.
+//! `gyrolab compare`: compares schemes and time steps with the exact motion.
 
 use super::args::{LengthArgs, ScenarioArgs, scenario_of};
 use super::argument_values::positive;
@@ -29,11 +29,11 @@ pub(super) struct CompareArgs {
     #[command(flatten)]
     pub(super) length: LengthArgs,
 
-    /// The schemes to compare [default: all that make an error]
+    /// The schemes to compare [default: all that have an error]
     #[arg(long, value_name = "A,B", value_delimiter = ',', value_parser = PossibleValuesParser::new(scheme::names()))]
     pub(super) schemes: Vec<String>,
 
-    /// The time steps, s [default: the scenario's, and a half, a quarter and an eighth of it]
+    /// The time steps, s [default: the scenario's time step, and 1/2, 1/4 and 1/8 of it]
     #[arg(long, value_name = "0.1,0.05", value_delimiter = ',', value_parser = positive)]
     pub(super) time_steps: Vec<f64>,
 
@@ -41,7 +41,7 @@ pub(super) struct CompareArgs {
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
 
-    /// Give the table as one JSON object
+    /// Print the table as one JSON object
     #[arg(long)]
     pub(super) json: bool,
 
@@ -55,7 +55,7 @@ pub(super) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
     let scenario = scenario_of(&args.scenario, &args.length)?;
     if let Some(why) = cost::why_exact_unavailable(&scenario) {
         bail!(
-            "{}: {why}: give a shorter --duration",
+            "{}: {why}: use a shorter --duration",
             args.scenario.scenario
         );
     }
@@ -88,16 +88,16 @@ pub(super) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
     ))
 }
 
-/// The schemes that are named, or all that can be true to the friction of `scenario`.
+/// Returns the schemes named on the command line, or all that support the friction of `scenario`.
 ///
 /// # Errors
-/// When one that is named cannot be true to it.
+/// Returns an error if a named scheme does not support the friction.
 fn chosen_schemes(
     args: &CompareArgs,
     scenario: &Scenario,
 ) -> anyhow::Result<Vec<&'static SchemeInfo>> {
     let friction = &scenario.friction;
-    let mut seen = HashSet::new(); // one that is named twice is compared once
+    let mut seen = HashSet::new(); // a scheme named twice is compared once
     let chosen: Vec<_> = args
         .schemes
         .iter()
@@ -115,7 +115,7 @@ fn chosen_schemes(
     if let Some((name, why)) = unable {
         let names: Vec<_> = able.map(|scheme| scheme.name).collect();
         bail!(
-            "{}: --schemes {name} cannot be true to this friction: it {why}; take of {}",
+            "{}: --schemes {name} does not support this friction: it {why}; choose from {}",
             args.scenario.scenario,
             names.join(", ")
         );
@@ -123,8 +123,10 @@ fn chosen_schemes(
     Ok(chosen)
 }
 
+/// Returns the time steps to compare, s, longest first.
+///
 /// # Errors
-/// When a time step is so short that the run would have more steps than can be counted.
+/// Returns an error if a time step is so short that the run would have too many steps to count.
 fn chosen_time_steps(args: &CompareArgs, scenario: &Scenario) -> anyhow::Result<Vec<f64>> {
     let mut steps = args.time_steps.clone();
     if steps.is_empty() {
@@ -132,7 +134,7 @@ fn chosen_time_steps(args: &CompareArgs, scenario: &Scenario) -> anyhow::Result<
             .map(|part| scenario.motion.time_step_s / part)
             .to_vec();
     }
-    // From coarse to fine, as the order is measured.
+    // The order is measured from long to short time steps.
     steps.sort_by(|a, b| b.total_cmp(a));
     steps.dedup();
     let duration = Clock::end_s(scenario);
@@ -141,7 +143,7 @@ fn chosen_time_steps(args: &CompareArgs, scenario: &Scenario) -> anyhow::Result<
         .find(|&&step| duration / step > MOST_RUN_STEPS_BY_TIME)
     {
         bail!(
-            "{}: --time-steps {} would be {} steps for {} s, of which {MOST_RUN_STEPS_BY_TIME:e} can be counted: give longer time steps, or a shorter --duration",
+            "{}: --time-steps {} needs {} steps for {} s, but at most {MOST_RUN_STEPS_BY_TIME:e} are possible: use longer time steps, or a shorter --duration",
             args.scenario.scenario,
             shortest(step),
             short(duration / step),
@@ -151,7 +153,7 @@ fn chosen_time_steps(args: &CompareArgs, scenario: &Scenario) -> anyhow::Result<
     Ok(steps)
 }
 
-/// By what the exact motion of `scenario` is obtained.
+/// Describes how the exact motion of `scenario` is computed.
 fn kind_of_truth(scenario: &Scenario, duration_s: f64) -> String {
     let mut truth = Truth::new(Arc::new(scenario.clone()));
     truth.state_at(duration_s);

@@ -1,5 +1,5 @@
-//! Completion in the shell: what fits after the words that are typed. The script that `gyrolab completions` prints asks
-//! the program itself: presets, keys and names are always of this version.
+//! Shell completion of the words on the command line. The script that `gyrolab completions` prints asks the program
+//! itself, so presets, keys and names always match its version.
 
 use super::manual::names_and_commands;
 use super::{command, print};
@@ -24,14 +24,15 @@ use clap_complete::env::{CompleteEnv, Shells};
 use std::ffi::OsStr;
 use std::process::ExitCode;
 
-/// The environment variable by which the script asks; its value is the name of the shell.
+/// The environment variable through which the script asks. Its value is the name of the shell.
 pub(super) const VARIABLE: &str = "GYROLAB_COMPLETE";
 
-/// Names with what they mean, given what is typed before them (a list up to its comma, a key up to its `=`) and of them.
+/// A function that returns names with their meanings. Its arguments are the typed text up to the last comma or `=`, and
+/// the text after it.
 type CompletionSource = fn(&str, &str) -> Vec<(String, String)>;
 
-/// The names that complete the value of the argument `arg` of `command`, and the endings of files that do; `None` where clap
-/// knows better.
+/// Returns the names that complete the argument `arg` of `command`, and the suitable file extensions; `None` if clap
+/// completes it.
 fn completing(command: &str, arg: &str) -> Option<(CompletionSource, &'static [&'static str])> {
     let names: CompletionSource = match (command, arg) {
         ("presets", "name") => |_, _| [presets(), shipped(SWEEPS), shipped(SHIPPED)].concat(),
@@ -65,7 +66,7 @@ fn completing(command: &str, arg: &str) -> Option<(CompletionSource, &'static [&
     Some((names, endings))
 }
 
-/// Answers the shell where it asks; gives whether it did.
+/// Answers a request of the shell. Returns true if there was one.
 pub(super) fn answered() -> Result<bool, clap::Error> {
     let folder = std::env::current_dir().ok();
     CompleteEnv::with_factory(command)
@@ -75,7 +76,7 @@ pub(super) fn answered() -> Result<bool, clap::Error> {
         .try_complete(std::env::args_os(), folder.as_deref())
 }
 
-/// `command` and all of its commands with what completes their values.
+/// Adds completions of argument values to `command` and its subcommands.
 pub(super) fn with_completers(command: Command) -> Command {
     let name = command.get_name().to_owned();
     command
@@ -88,13 +89,13 @@ pub(super) fn with_completers(command: Command) -> Command {
         .mut_subcommands(with_completers)
 }
 
-/// Scripts in place of clap's own, which part a value at `=` (bash), or do nothing at the first use (zsh).
+/// Replacements for clap's scripts, which split a value at `=` (bash) or do nothing on first use (zsh).
 const SCRIPTS: [(Shell, &str); 2] = [
     (Shell::Bash, include_str!("completion.bash")),
     (Shell::Zsh, include_str!("completion.zsh")),
 ];
 
-/// `gyrolab completions`: the script for a shell.
+/// Prints the completion script for a shell.
 pub(super) fn completions(shell: Shell) -> anyhow::Result<ExitCode> {
     let first = match shell {
         Shell::Zsh => "#compdef gyrolab\n", // it must be the first line of a file that compinit finds
@@ -117,7 +118,7 @@ fn script(shell: Shell) -> anyhow::Result<String> {
     String::from_utf8(script).context("the completion script is not text")
 }
 
-/// The names that begin as `current` does behind its last `,` or `=`, and the files and folders that end so.
+/// Returns the names that continue `current` after its last `,` or `=`, and folders and files with these extensions.
 fn completed(
     current: &OsStr,
     names: CompletionSource,
@@ -176,7 +177,7 @@ fn topics() -> Vec<(String, String)> {
     names.map(|name| (name, String::new())).collect()
 }
 
-/// A dotted key with its `=`; behind that the words that it may hold.
+/// Returns dotted keys with `=`, or the possible values after the `=`.
 fn settings(typed: &str, begin: &str) -> Vec<(String, String)> {
     let Some((key, _)) = typed.split_once('=') else {
         return keys(begin, |_| true, "=");
@@ -186,7 +187,7 @@ fn settings(typed: &str, begin: &str) -> Vec<(String, String)> {
     named(&words, |word| (word, ""))
 }
 
-/// The dotted keys that are `wanted`, each with `end`; of a vector that is typed its three numbers.
+/// Returns the `wanted` dotted keys, each followed by `end`. A vector that is typed in full gets its three components.
 fn keys(begin: &str, wanted: fn(&SchemaRow) -> bool, end: &str) -> Vec<(String, String)> {
     let mut found = Vec::new();
     let of_scenario = KEYS.iter().filter(|key| !key.path.starts_with("edit."));
@@ -207,7 +208,7 @@ fn is_free(key: &SchemaRow) -> bool {
         && matches!(key.kind, ValueKind::Number(_) | ValueKind::Vector)
 }
 
-/// The key `path` with a number for each `*`: the one that stands there in `typed`, or else 0.
+/// Replaces each `*` in the key `path` by the number at that position in `typed`, or by 0.
 fn instance(path: &str, typed: &str) -> String {
     let mut typed_parts = typed.split('.');
     path.split('.')

@@ -1,4 +1,4 @@
-//! `gyrolab fit`: keys of a scenario, so that its runs come nearest to measured data.
+//! `gyrolab fit`: finds values of scenario keys whose runs come closest to measured data.
 
 mod throws;
 
@@ -27,15 +27,16 @@ use toml::Value;
 
 #[derive(Clone, Debug, Args)]
 pub(super) struct FitArgs {
-    /// Measured data: a CSV file, a time series or a table of runs, - for stdin, or shipped data such as heidelberg-precession
+    /// Measured data: a CSV file (a time series or a table of runs), - for stdin, or shipped data such as
+    /// heidelberg-precession
     pub(super) measured: String,
 
-    /// The scenario that is fitted: a preset's name, a file (.toml or .csv), or - for stdin
+    /// The scenario to fit: a preset's name, a file (.toml or .csv), or - for stdin
     #[arg(long = "in", value_name = "SCENARIO")]
     pub(super) scenario: String,
 
-    /// The keys whose values are looked for, each from its value in the scenario on, and within FROM..TO where that is
-    /// given [for a body that was thrown by default: two of its moments, and its three rates at the start]
+    /// The keys to fit, each starting from its value in the scenario, optionally within FROM..TO [default for a thrown
+    /// body: two of its moments, and its three rates at the start]
     #[arg(long, value_name = "KEY[=FROM..TO],...", value_delimiter = ',')]
     pub(super) free: Vec<String>,
 
@@ -48,28 +49,28 @@ pub(super) struct FitArgs {
     #[command(flatten)]
     pub(super) columns: MapArgs,
 
-    /// Fit these rows of the data alone, counted from 1, such as 1,3,5-8
+    /// Fit only these rows of the data, counted from 1, such as 1,3,5-8
     #[arg(long, value_name = "ROWS")]
     pub(super) rows: Option<RowRange>,
 
-    /// Of a recording of throws, fit this free flight alone, counted from 1; without it and without --from and --to each
-    /// flight that is found is fitted
+    /// Fit only this free flight of a recording of throws, counted from 1 [default without --from and --to: every
+    /// flight]
     #[arg(long, value_name = "N", conflicts_with_all = ["rows", "from", "to"], value_parser = clap::value_parser!(u64).range(1..))]
     pub(super) flight: Option<u64>,
 
-    /// Begin at this time of the recording, s, which is the run's t = 0; no flights are looked for then
+    /// Start at this time of the recording, s, which becomes t = 0 of the run, without a search for flights
     #[arg(long, value_name = "S", conflicts_with = "rows", value_parser = time)]
     pub(super) from: Option<f64>,
 
-    /// End at this time of the recording, s; no flights are looked for then
+    /// End at this time of the recording, s, without a search for flights
     #[arg(long, value_name = "S", conflicts_with = "rows", value_parser = positive)]
     pub(super) to: Option<f64>,
 
-    /// Write data, model and residuals as CSV to this file, or to stdout for -; gyrolab figure draws it
+    /// Write data, model and residuals as CSV to this file, or to stdout for -; gyrolab figure draws the file
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
 
-    /// Give the result as one JSON object
+    /// Print the result as one JSON object
     #[arg(long)]
     pub(super) json: bool,
 
@@ -78,7 +79,7 @@ pub(super) struct FitArgs {
     pub(super) force: bool,
 }
 
-/// Rows of the data, counted from 1, as they were given.
+/// Rows of the data, counted from 1, as typed.
 #[derive(Clone, Debug)]
 pub(super) struct RowRange {
     text: String,
@@ -106,7 +107,7 @@ impl std::str::FromStr for RowRange {
     }
 }
 
-/// What is fitted when nothing says by which scheme: the true motion, and not the artefacts of a time step.
+/// The scheme of the fitted runs if none is named. It follows the true motion, without errors of the time step.
 const FITTED_SCHEME: &str = "exact";
 
 pub(super) fn fit(args: &FitArgs) -> anyhow::Result<ExitCode> {
@@ -119,7 +120,7 @@ pub(super) fn fit(args: &FitArgs) -> anyhow::Result<ExitCode> {
     tell_notes(&task.measured.notes());
     let Some(keys) = task.usual_keys()?.filter(|_| args.free.is_empty()) else {
         if args.free.is_empty() {
-            let message = "--free KEY,... says which values are looked for; only a body that was thrown needs none";
+            let message = "name the keys to fit with --free KEY,...; only a recording of a thrown body has default keys";
             refuse("fit", ErrorKind::MissingRequiredArgument, message);
         }
         return fit_all(args, &task);
@@ -134,7 +135,7 @@ pub(super) fn fit(args: &FitArgs) -> anyhow::Result<ExitCode> {
     )
 }
 
-/// Fits each flight of the recording, or all of it.
+/// Fits each flight of the recording, or the whole recording.
 fn fit_all(args: &FitArgs, task: &Task) -> anyhow::Result<ExitCode> {
     let Some(throws) = task.throws(args)? else {
         return fit_one(args, task, None);
@@ -144,7 +145,7 @@ fn fit_all(args: &FitArgs, task: &Task) -> anyhow::Result<ExitCode> {
     }
     if args.output.is_some() {
         bail!(
-            "{} has {} free flights, and -o takes one fit: name one by --flight N\n{}",
+            "{} has {} free flights, but -o holds only one fit: choose a flight with --flight N\n{}",
             args.measured,
             throws.len(),
             throws
@@ -157,7 +158,7 @@ fn fit_all(args: &FitArgs, task: &Task) -> anyhow::Result<ExitCode> {
     fit_each(args, task, &throws)
 }
 
-/// Fits each of the `throws`. One that cannot be fitted is told, and the others are.
+/// Fits each of the `throws`. Prints an error for a flight that cannot be fitted, and continues.
 fn fit_each(args: &FitArgs, task: &Task, throws: &[Throw]) -> anyhow::Result<ExitCode> {
     let (_, interruption) = progress::open(None, false)?;
     if !args.json {
@@ -229,12 +230,12 @@ fn fit_one(args: &FitArgs, task: &Task, throw: Option<&Throw>) -> anyhow::Result
     tell_of(&Thrown { report, throw }, args)
 }
 
-/// What is fitted to what, before any flight is chosen.
+/// The data and the scenario of a fit, before a flight is chosen.
 struct Task {
-    /// The rows that --rows, --from and --to leave.
+    /// The rows that --rows, --from and --to select.
     measured: MeasuredData,
     document: Document,
-    /// The scenario's own scheme, where no other was asked for.
+    /// The scenario's own scheme, if the command line names none.
     own_scheme: Option<&'static str>,
 }
 
@@ -245,7 +246,7 @@ impl Task {
             measured.series()?;
             let (from_s, to_s) = (args.from.unwrap_or(0.0), args.to.unwrap_or(f64::INFINITY));
             if !measured.keep_between(from_s, to_s) {
-                let rule = "has no value measured in the time that --from and --to leave";
+                let rule = "has no measured value between --from and --to";
                 return Err(Problems::one(args.measured.clone(), Problem::at("", rule)));
             }
         }
@@ -257,7 +258,7 @@ impl Task {
         })
     }
 
-    /// Returns the keys that are free where none are named; `None` if the data are no recording of a body that was thrown.
+    /// Returns the keys that are free by default; `None` if the data are not a recording of a thrown body.
     fn usual_keys(&self) -> Result<Option<[&'static str; 5]>, Problems> {
         match &self.measured.data {
             DataKind::Series(series) => Ok(thrown::usual_keys(series, &self.document.scenario()?)),
@@ -265,7 +266,7 @@ impl Task {
         }
     }
 
-    /// Returns the flights that are fitted one by one; `None` where the recording is fitted as it is.
+    /// Returns the flights to fit one by one; `None` if the whole recording is fitted.
     fn throws(&self, args: &FitArgs) -> Result<Option<Vec<Throw>>, Problems> {
         let is_asked = args.flight.is_some();
         if args.rows.is_some() || args.from.or(args.to).is_some() {
@@ -278,19 +279,19 @@ impl Task {
         };
         let flights = match found {
             Found::NotThrown if is_asked => {
-                let rule = "--flight takes a recording of w1_rad_per_s, w2_rad_per_s and w3_rad_per_s and a scenario of a body that flies freely, such as thrown-phone";
+                let rule = "--flight needs a recording of w1_rad_per_s, w2_rad_per_s and w3_rad_per_s, and a scenario of a body that flies freely, such as thrown-phone";
                 return Err(refused(rule.to_owned()));
             }
             Found::Whole if args.flight.is_some_and(|number| number > 1) => {
                 return Err(refused(
-                    "is one free flight from end to end: leave --flight out".to_owned(),
+                    "is one free flight from start to end: omit --flight".to_owned(),
                 ));
             }
             Found::NotThrown | Found::Whole => return Ok(None),
             Found::Flights(flights) => flights,
         };
         if flights.is_empty() {
-            return Err(refused("has no free flight: nowhere do the rates stay above 2 rad/s for 0.2 s and change as those of a free body do. Name the time of one by --from and --to; --from 0 alone fits all of the recording".to_owned()));
+            return Err(refused("has no free flight: the rates never stay above 2 rad/s for 0.2 s and change like the rates of a free body. Give the time of a flight with --from and --to; --from 0 alone fits the whole recording".to_owned()));
         }
         let of = flights.len();
         let throws =
@@ -303,7 +304,7 @@ impl Task {
         if chosen.is_empty() {
             let list: Vec<String> = others.iter().map(Throw::to_string).collect();
             return Err(refused(format!(
-                "has no free flight {}, but these:\n{}",
+                "has no free flight {}; choose one of these:\n{}",
                 args.flight.unwrap_or_default(),
                 list.join("\n")
             )));
@@ -311,7 +312,7 @@ impl Task {
         Ok(Some(chosen))
     }
 
-    /// Returns the model for the rows of `throw`, or for all of them.
+    /// Returns the model for the rows of `throw`, or for all rows.
     fn model(&self, args: &FitArgs, throw: Option<&Throw>) -> Result<Model, Problems> {
         let mut measured = self.measured.clone();
         if let Some(Throw { flight, .. }) = throw {
@@ -346,13 +347,13 @@ impl Task {
         }
     }
 
-    /// Returns the scenario's own scheme, where the model has another.
+    /// Returns the scenario's own scheme, if the model uses another one.
     fn other_scheme(&self, model: &Model) -> Option<&'static str> {
         self.own_scheme.filter(|own| *own != model.scheme)
     }
 }
 
-/// The CSV of the fit that the command line `command` makes.
+/// Recomputes the CSV of the fit with the command line `command`.
 pub(super) fn again(command: &str, interruption: &Interruption) -> Result<Vec<u8>, Unverified> {
     let cannot = |why: String| Unverified::from(format!("cannot be recomputed: {why}"));
     let words = shlex::split(command).unwrap_or_default();
@@ -364,12 +365,12 @@ pub(super) fn again(command: &str, interruption: &Interruption) -> Result<Vec<u8
         .try_get_matches_from(words_of_fit.unwrap_or_default())
         .and_then(|matches| FitArgs::from_arg_matches(&matches));
     let Ok(args) = parsed else {
-        let why = "the line command at its top is no command line of a fit";
+        let why = "the line command in its header is not the command line of a fit";
         return Err(cannot(why.to_owned()));
     };
     if [&args.measured, &args.scenario].contains(&&STDIN.to_owned()) {
         return Err(cannot(
-            "it was fitted to what stood on standard input, which no file holds".to_owned(),
+            "its data or scenario came from standard input and are not available".to_owned(),
         ));
     }
     let model = Task::read(&args)
@@ -400,7 +401,7 @@ fn measured(args: &FitArgs) -> Result<MeasuredData, Problems> {
     data::read_with(STDIN_WORDS, &text, &options)
 }
 
-/// The scenario with all that the command line changes in it, and its own scheme, where no other was asked for.
+/// Returns the scenario with the changes of the command line, and its own scheme if the command line names none.
 fn scenario(args: &FitArgs) -> Result<(Document, Option<&'static str>), Problems> {
     let mut document = open(&args.scenario)?;
     let mut own = None;
@@ -411,7 +412,7 @@ fn scenario(args: &FitArgs) -> Result<(Document, Option<&'static str>), Problems
             .iter()
             .any(|set: &String| set.trim_start().starts_with("motion.scheme"))
     {
-        // What is wrong with it is told as it stands in its file.
+        // Checked first, so that errors are reported with the lines of the file.
         own = Some(document.scenario()?.motion.scheme.name);
         let written = document.set_value("motion.scheme", Value::String(FITTED_SCHEME.to_owned()));
         written.map_err(|problem| Problems::one(args.scenario.clone(), problem))?;
@@ -434,7 +435,7 @@ fn chosen(mut measured: MeasuredData, rows: Option<&RowRange>) -> Result<Measure
     };
     if let Some((_, beyond)) = rows.ranges.iter().find(|(_, last)| *last > count) {
         return Err(refused(format!(
-            "there is no row {beyond}: the data have {count}"
+            "there is no row {beyond}: the data have only {count}"
         )));
     }
     let kept = measured.keep_rows(|row| {
@@ -442,7 +443,7 @@ fn chosen(mut measured: MeasuredData, rows: Option<&RowRange>) -> Result<Measure
         ranges.any(|(first, last)| (*first..=*last).contains(&(row + 1)))
     });
     if kept == 0 {
-        return Err(refused("these rows hold no measured value".to_owned()));
+        return Err(refused("these rows contain no measured value".to_owned()));
     }
     Ok(measured)
 }
@@ -483,7 +484,7 @@ fn command(args: &FitArgs) -> String {
             words.extend([option, value]);
         }
     }
-    // No argument of a command line holds the byte that cannot be quoted.
+    // Quoting fails only for a NUL byte, which no command-line argument can contain.
     shlex::try_join(words).unwrap_or_default()
 }
 
@@ -509,7 +510,7 @@ fn write(output: impl Write, report: &FitReport<'_>, args: &FitArgs) -> anyhow::
     Ok(report::write_csv(output, report, &scenario, asked)?)
 }
 
-/// The result, and where its rows are written.
+/// Prints the result, and the path of the CSV.
 fn tell_of(thrown: &Thrown<'_>, args: &FitArgs) -> anyhow::Result<ExitCode> {
     let output = args.output.as_deref();
     print_result(thrown, output, args.json)?;

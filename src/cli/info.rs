@@ -1,4 +1,4 @@
-//! The commands that tell: presets, schemes, keys, readouts, check.
+//! The commands that print information: presets, schemes, keys, readouts, check.
 
 use super::{lesson, print, tell};
 use crate::engine::analysis::readouts::READOUTS;
@@ -52,7 +52,7 @@ fn preset_list() -> anyhow::Result<String> {
     Ok(text)
 }
 
-/// The entry of a list: name and title, and what it is about.
+/// Formats an entry of a list: name, title, and description.
 pub(super) fn listed(name: &str, title: &str, about: Option<&str>) -> String {
     let lines: String = about
         .unwrap_or_default()
@@ -84,8 +84,8 @@ pub(super) fn key_list() -> Result<String, std::fmt::Error> {
         };
         writeln!(text, "{}{must}\n    {}", row.path, row.description())?;
     }
-    text.push_str("\nA * stands for a number from 0: [[body.point]], [[body.part]], [[push]], [[expected]] and [[edit]] may be repeated.\n");
-    text.push_str("A table may be left out whole where none of its keys is wanted, but [start] and [motion].\n");
+    text.push_str("\nReplace a * by a number from 0: [[body.point]], [[body.part]], [[push]], [[expected]] and [[edit]] can be repeated.\n");
+    text.push_str("All tables except [start] and [motion] are optional.\n");
     Ok(text)
 }
 
@@ -100,8 +100,8 @@ pub(super) fn readout_list() -> Result<String, std::fmt::Error> {
         writeln!(text, "{}{unit}", readout.name)?;
         writeln!(text, "    {}; from: {source}", readout.meaning)?;
     }
-    text.push_str("\nBehind \"from:\" stands where each number comes from; predicted_... is theory's, measured_... the run's own.\n");
-    text.push_str("gyrolab run SCENARIO --json gives all of them; null is a number that there is not, or that cannot be stated.\n");
+    text.push_str("\n\"from:\" is followed by the source of each number; predicted_... comes from theory, measured_... from the run.\n");
+    text.push_str("gyrolab run SCENARIO --json prints all of them; null means that a number does not exist or cannot be determined.\n");
     Ok(text)
 }
 
@@ -129,7 +129,7 @@ pub(super) fn check(files: &[PathBuf]) -> anyhow::Result<ExitCode> {
     Ok(code)
 }
 
-/// What to do instead where `file`, which is not there, is the name of a preset or a lesson.
+/// Suggests a command if `file` does not exist but names a preset or a lesson.
 fn hint_of_preset(file: &Path) -> Option<String> {
     let name = file.to_str().filter(|_| !file.exists())?;
     let (what, instead) = if presets::find(name).is_some() {
@@ -138,14 +138,14 @@ fn hint_of_preset(file: &Path) -> Option<String> {
     } else {
         shipped::find(name)?;
         let instead = format!("gyrolab lesson {name} opens it");
-        ("a shipped lesson, which is good", instead)
+        ("a shipped lesson", instead)
     };
     Some(format!(
-        "gyrolab check takes files, and {name} is {what}: {instead}"
+        "gyrolab check needs files, but {name} is {what}: {instead}"
     ))
 }
 
-/// What is in `document`, in words: commands, or else a scenario.
+/// Describes the content of `document`: commands, a sweep or a scenario.
 fn checked(document: &Document) -> Result<String, Problems> {
     if command::is_file_of_commands(document) {
         let commands = command::read(document)?.list.len() as u64;
@@ -159,7 +159,7 @@ fn checked(document: &Document) -> Result<String, Problems> {
         .difference(&scenario)
         .map(|difference| {
             format!(
-                "\n  its look_at line, or its about, is of another motion: this one {difference}"
+                "\n  its look_at line or its about text describes another motion: this one {difference}"
             )
         });
     Ok(described(&scenario) + &words.unwrap_or_default())
@@ -198,7 +198,7 @@ fn described(scenario: &Scenario) -> String {
     )
 }
 
-/// Which pushes of `scenario` never act, since they begin when its run is over.
+/// Describes the pushes of `scenario` that never act because they begin after the end of its run.
 fn pushes_without_effect(scenario: &Scenario) -> String {
     let (steps, end_s) = (scenario.steps, Clock::end_s(scenario));
     let idle = scenario.pushes.iter().enumerate().filter_map(|(index, push)| match push.window {

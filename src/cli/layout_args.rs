@@ -1,4 +1,4 @@
-//! The options for rows and columns of a CSV.
+//! The options for the rows and columns of a CSV.
 
 use super::argument_values::{one_or_more, time};
 use super::refuse;
@@ -14,7 +14,7 @@ use toml::{Table, Value};
 
 const ROWS_HEADING: &str = "Rows and columns of the CSV";
 
-/// Which rows and columns a CSV has, and how its numbers are written: an option for each row of [`LAYOUT_KEYS`].
+/// Rows, columns and number format of a CSV, with one option for each row of [`LAYOUT_KEYS`].
 #[derive(Debug)]
 pub(super) struct LayoutArgs(LayoutFile);
 
@@ -44,8 +44,8 @@ impl FromArgMatches for LayoutArgs {
     }
 }
 
-/// Returns the value of the option for a row of [`LAYOUT_KEYS`], if the command line gives it: the header of a CSV may
-/// have another default.
+/// Returns the value of the option for a row of [`LAYOUT_KEYS`] if the command line sets it. A default does not count,
+/// because the header of a CSV may have another one.
 fn given_value(row: &SchemaRow, matches: &ArgMatches) -> Option<Value> {
     let name = layout_option_name(row);
     if matches.value_source(name) != Some(ValueSource::CommandLine) {
@@ -61,7 +61,7 @@ fn given_value(row: &SchemaRow, matches: &ArgMatches) -> Option<Value> {
     })
 }
 
-/// The option for a row of [`LAYOUT_KEYS`]; one without a default needs an output.
+/// Creates the option for a row of [`LAYOUT_KEYS`]. An option without a default needs an output.
 fn layout_option(row: &SchemaRow) -> Arg {
     let name = layout_option_name(row);
     let arg = Arg::new(name).long(name).help(row.about);
@@ -96,8 +96,8 @@ fn whole(number: NonZeroU64) -> Value {
 }
 
 impl LayoutArgs {
-    /// The layout in the header of a CSV, `of_header`, with these options over it. The process ends where there is none such,
-    /// as it does where clap refuses.
+    /// Combines these options with the layout in the header of a CSV, `of_header`. The options take precedence. Ends
+    /// the process with a message, as clap does, if the layout is not valid.
     pub(super) fn layout(&self, of_header: LayoutFile) -> CsvLayout {
         self.0
             .clone()

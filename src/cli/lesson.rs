@@ -1,4 +1,4 @@
-//! `gyrolab lesson`: the list of lessons, a lesson in the lab, on paper, or to begin from; and `check` of one.
+//! `gyrolab lesson`: lists lessons, opens one in the lab, or prints it; and `check` of a lesson.
 
 use super::args::{DisplayArgs, LessonArgs};
 use super::new_lab::{new_lab, paper_format, refused, write};
@@ -20,9 +20,9 @@ use std::io::{self, IsTerminal};
 use std::path::Path;
 use std::process::ExitCode;
 
-/// Columns and lines of the pictures.
+/// Size of the pictures, in columns and rows.
 const PICTURE: (u16, u16) = (80, 24);
-/// The same of a pane on paper.
+/// Size of a pane's picture on paper.
 const SPACE_PICTURE: (u16, u16) = (72, 26);
 const STEP_PICTURE: (u16, u16) = (80, 29);
 
@@ -90,7 +90,7 @@ fn on_paper(lesson: &Lesson, args: &LessonArgs) -> anyhow::Result<ExitCode> {
     })
 }
 
-/// Checks that the lesson that NAME names comes with the program, or lies in `folder`.
+/// Checks that the lesson `name` is shipped with the program or is in `folder`.
 pub(super) fn admit(name: &str, folder: &Confined) -> anyhow::Result<()> {
     if opening::is_file_name(name) {
         let name = opening::full_name(name);
@@ -102,13 +102,13 @@ pub(super) fn admit(name: &str, folder: &Confined) -> anyhow::Result<()> {
 
 fn print_frame(args: &LessonArgs, name: &str, language: &str) -> anyhow::Result<ExitCode> {
     let frame = shipped::frame(name, language)
-        .with_context(|| format!("{name}: asks for no program; write-it-yourself does"))?;
+        .with_context(|| format!("{name}: has no program to write; use write-it-yourself"))?;
     write(args, |_| Ok(frame.to_owned()))
 }
 
 fn print_page(lesson: &Lesson, page: &LessonPage, look: DisplayArgs) -> anyhow::Result<ExitCode> {
     tell(format_args!(
-        "gyrolab: there is no terminal to open the lesson on, so page {} of {} is printed",
+        "gyrolab: no terminal is available, so page {} of {} is printed",
         page.number,
         lesson.pages.len()
     ));
@@ -121,7 +121,7 @@ fn print_page(lesson: &Lesson, page: &LessonPage, look: DisplayArgs) -> anyhow::
     print(&text)
 }
 
-/// The lessons of the folder and those that come with the program, each with the name by which it is opened.
+/// Returns the lessons in the folder and the shipped ones, each with the name that opens it.
 fn lessons(folder: Option<&Confined>) -> anyhow::Result<Vec<(String, Lesson)>> {
     let mut all = Vec::new();
     for path in folder
@@ -138,7 +138,7 @@ fn lessons(folder: Option<&Confined>) -> anyhow::Result<Vec<(String, Lesson)>> {
     Ok(all)
 }
 
-/// A line for each lesson: its name and its title.
+/// Lists each lesson on a line: name and title.
 fn list(folder: Option<&Confined>) -> anyhow::Result<String> {
     let lines = lessons(folder)?.into_iter();
     Ok(lines
@@ -146,7 +146,7 @@ fn list(folder: Option<&Confined>) -> anyhow::Result<String> {
         .collect())
 }
 
-/// The lessons in the order in which they build on each other, with minutes and needs, under their levels.
+/// Lists the lessons by level, in the order in which they build on each other, with their duration and requirements.
 fn long_list(folder: Option<&Confined>) -> anyhow::Result<String> {
     let lessons = lessons(folder)?;
     let names = lessons.iter().map(|(name, _)| columns(name));
@@ -172,7 +172,7 @@ fn long_list(folder: Option<&Confined>) -> anyhow::Result<String> {
     Ok(text)
 }
 
-/// The page that is asked for; the first where none is.
+/// Returns the requested page, or the first page by default.
 fn page_of<'a>(lesson: &'a Lesson, args: &LessonArgs) -> anyhow::Result<&'a LessonPage> {
     let number = args.page.map_or(1, std::num::NonZeroU64::get);
     let page = usize::try_from(number)
@@ -195,10 +195,10 @@ fn pane_picture(lab: &Lab, pane: Pane) -> String {
     crate::tui::svg::pane(lab, pane, size)
 }
 
-/// What is in the lesson `file`, in words, or what is wrong with it; it is played to its end.
+/// Plays the lesson `file` to its end. Returns a description, or the problems found.
 ///
 /// # Errors
-/// When the shipped preset of a new lab cannot be opened, or a signal ends the play.
+/// Returns an error if the preset of a new lab cannot be opened, or if a signal arrives.
 pub(super) fn checked(file: &Path) -> anyhow::Result<Result<String, Problems>> {
     let lesson = match opening::read_file(file) {
         Ok(lesson) => lesson,

@@ -1,5 +1,5 @@
-//! `gyrolab man`: the manual as plain text, all of it, the part of a command or a topic; and the pages for man(1). What the
-//! program has in a table is made of that table: in a topic its name in braces stands for it.
+//! `gyrolab man`: prints the manual as plain text (all of it, a command or a topic), or writes pages for man(1). A
+//! table of the program is inserted where a topic has its name in braces.
 
 use super::{command, info, print, tell};
 use crate::engine::export::Destination;
@@ -21,14 +21,14 @@ use std::process::ExitCode;
 
 #[derive(Debug, Args)]
 pub(super) struct ManArgs {
-    /// A topic or a command; an unknown name gets the nearest one, or the list [without it: the whole manual]
+    /// A topic or a command [default: the whole manual]
     topic: Option<String>,
 
-    /// Write every page, gyrolab.1 and one for each command, into the folder of -o: for packages
+    /// Write all man pages into the folder of -o: gyrolab.1 and one for each command, for packages
     #[arg(long, requires = "output", conflicts_with = "topic")]
     all: bool,
 
-    /// The folder for --all; it is made where there is none
+    /// The folder for --all; it is created if necessary
     #[arg(short, long, value_name = "FOLDER", requires = "all")]
     output: Option<PathBuf>,
 
@@ -37,9 +37,9 @@ pub(super) struct ManArgs {
     force: bool,
 }
 
-/// Columns of a line.
+/// Width of a line, in columns.
 const MANUAL_WIDTH: usize = 80;
-/// The day on which the manual was last gone through.
+/// Date of the last review of the manual.
 const DATE: &str = "2026-11-22";
 
 pub(super) fn man(args: &ManArgs) -> anyhow::Result<ExitCode> {
@@ -63,12 +63,12 @@ pub(super) fn man(args: &ManArgs) -> anyhow::Result<ExitCode> {
     let Some(command) = command else {
         let names = names_and_commands(&gyrolab);
         let near = nearest(name, names.iter().map(String::as_str));
-        bail!("no topic named {}, and no command: {near}", printable(name))
+        bail!("no topic or command named {}: {near}", printable(name))
     };
     print(&(help(command) + &in_plain(&of_command(command)?)))
 }
 
-/// The whole manual: help and sections of the program, then the help of each command.
+/// Returns the whole manual: help and sections of the program, then the help of each command.
 fn whole(gyrolab: &Command) -> anyhow::Result<String> {
     let mut text = help(gyrolab) + &in_plain(&of_program()?);
     for command in commands(gyrolab) {
@@ -78,7 +78,7 @@ fn whole(gyrolab: &Command) -> anyhow::Result<String> {
     Ok(text)
 }
 
-/// The short help of a command and its examples.
+/// Returns the short help of a command and its examples.
 fn help(command: &Command) -> String {
     let mut short = command.clone();
     if let Some(examples) = command.get_after_long_help() {
@@ -94,10 +94,10 @@ fn in_plain(sections: &[ManualSection]) -> String {
         .collect()
 }
 
-/// Writes the page of the program and that of each command into `folder`.
+/// Writes the page of the program and of each command into `folder`.
 fn write_pages(gyrolab: &Command, folder: &Path, replace: bool) -> anyhow::Result<ExitCode> {
     std::fs::create_dir_all(folder)
-        .with_context(|| format!("cannot make the folder {}", PrintablePath(folder)))?;
+        .with_context(|| format!("cannot create the folder {}", PrintablePath(folder)))?;
     let mut pages = vec![page(gyrolab, "gyrolab", &of_program()?)?];
     for command in commands(gyrolab) {
         let name = format!("gyrolab-{}", command.get_name());
@@ -109,13 +109,13 @@ fn write_pages(gyrolab: &Command, folder: &Path, replace: bool) -> anyhow::Resul
     }
     let count = pages.len();
     tell(format_args!(
-        "gyrolab: {count} pages in {}",
+        "gyrolab: wrote {count} pages into {}",
         PrintablePath(folder)
     ));
     Ok(ExitCode::SUCCESS)
 }
 
-/// The file of the page `name` and its text in roff, the language of man(1).
+/// Returns the file name of the page `name`, and its text in roff, the language of man(1).
 fn page(
     command: &Command,
     name: &str,
@@ -138,18 +138,18 @@ fn page(
     for (title, text) in examples.iter().chain(sections) {
         let mut roff = Roff::new();
         roff.control("SH", [*title]);
-        // A line may be as wide as the terminal.
+        // Lines may be as wide as the terminal.
         roff.control("nf", []).control("in", ["0"]);
         roff.text([roman(text.trim_end())]);
         roff.control("in", []).control("fi", []);
         page.extend(roff.to_roff().into_bytes());
     }
     let text = String::from_utf8(page).context("the manual is not text")?;
-    // clap_mangen's space above possible values is two line breaks with an empty line between them.
+    // clap_mangen puts two line breaks with an empty line between them above possible values.
     Ok((format!("{name}.1"), text.replace(".br\n\n.br\n", ".sp\n")))
 }
 
-/// Name, and text.
+/// Name and text of each topic.
 const TOPICS: &[(&str, &str)] = &[
     ("class", include_str!("topics/class.txt")),
     ("csv", include_str!("topics/csv.txt")),
@@ -168,7 +168,7 @@ fn topic_names() -> impl Iterator<Item = &'static str> + Clone {
     TOPICS.iter().map(|(name, _)| *name)
 }
 
-/// The topics, and the commands of `gyrolab` that are none.
+/// Returns the topics, and the commands of `gyrolab` without a topic.
 pub(super) fn names_and_commands(gyrolab: &Command) -> Vec<String> {
     let names = commands(gyrolab)
         .map(|command| command.get_name().to_owned())
@@ -176,13 +176,13 @@ pub(super) fn names_and_commands(gyrolab: &Command) -> Vec<String> {
     topic_names().map(str::to_owned).chain(names).collect()
 }
 
-/// The commands of `gyrolab` that have a page.
+/// Returns the commands of `gyrolab` that have a page.
 fn commands(gyrolab: &Command) -> impl Iterator<Item = &Command> {
     let commands = gyrolab.get_subcommands();
     commands.filter(|command| !command.is_hide_set() && command.get_name() != "help")
 }
 
-/// The text of the topic `name`, if there is one.
+/// Returns the text of the topic `name`, if there is one.
 fn topic(name: &str) -> Result<Option<String>, fmt::Error> {
     let Some((_, text)) = TOPICS.iter().find(|(of, _)| *of == name) else {
         return Ok(None);
@@ -196,7 +196,7 @@ fn topic(name: &str) -> Result<Option<String>, fmt::Error> {
     Ok(Some(text))
 }
 
-/// The lines of a table. A line that is too long goes on below the beginning of its last column.
+/// Wraps the lines of a table. A long line continues below the start of its last column.
 fn in_width(table: &str) -> String {
     let lines = table.lines().map(|line| {
         if columns(line) <= MANUAL_WIDTH {
@@ -212,7 +212,7 @@ fn in_width(table: &str) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// The name of a table in a topic, and what is written in its place.
+/// The placeholder of a table in a topic, and the function that writes the table.
 type ManualTable = (&'static str, fn() -> Result<String, fmt::Error>);
 
 const TABLES: [ManualTable; 7] = [
@@ -231,7 +231,7 @@ const TABLES: [ManualTable; 7] = [
     ("{SCHEMES}", info::scheme_list),
 ];
 
-/// Two columns of text.
+/// Formats rows as two columns of text.
 fn two_columns<T>(rows: &[T], row: fn(&T) -> (&'static str, &'static str)) -> String {
     rows.iter()
         .map(row)
@@ -244,7 +244,7 @@ type ManualSection = (&'static str, String);
 
 fn of_program() -> Result<Vec<ManualSection>, fmt::Error> {
     let names: Vec<_> = topic_names().collect();
-    let topics = paragraph(&format!("gyrolab man TOPIC, of {}.", names.join(", ")));
+    let topics = paragraph(&format!("gyrolab man TOPIC; topics: {}.", names.join(", ")));
     Ok(vec![
         ("KEYS IN THE LAB", keys()),
         ("FILES OF COMMANDS", files_of_commands()),
@@ -261,13 +261,13 @@ fn of_command(command: &Command) -> Result<Vec<ManualSection>, fmt::Error> {
     Ok(notes.into_iter().chain([fixed("EXIT STATUS")]).collect())
 }
 
-/// The section `title` of those that no table of the program makes.
+/// Returns the section `title` with fixed text, which no table of the program provides.
 fn fixed(title: &'static str) -> ManualSection {
     let text = part(include_str!("manual/sections.txt"), title);
     (title, text.unwrap_or_default().to_owned())
 }
 
-/// Each term and what it means beside it; a long term has its meaning below it.
+/// Formats each term with its meaning on the right; below it if the term is long.
 fn terms(rows: &[(String, &str)]) -> String {
     const MANUAL_INDENT: usize = 16;
     rows.iter()
@@ -293,7 +293,7 @@ fn paragraph(text: &str) -> String {
     wrapped(text, MANUAL_WIDTH).join("\n") + "\n\n"
 }
 
-/// The keys of each purpose, pane and place under its name.
+/// Lists the keys, grouped by purpose, pane and place.
 fn keys() -> String {
     let entries = keys_of_lab::entries();
     let keys: Vec<_> = entries
@@ -322,9 +322,9 @@ fn files_of_commands() -> String {
         "A file for --do is a list of [[do]] tables with one command each, carried out in order:",
     ) + "  [[do]]\n  set = { \"motion.time_step_s\" = 0.05 }\n\n  [[do]]\n  go_to = \"60 s\"\n\n"
         + &paragraph(
-            "The next begins when the one before is done. Refusals count the commands from 0: do.0 is the first. \
-             Conditions hold numbers, the names of the CSV's columns and of the scenario's keys, + - * / ( ), abs, \
-             comparisons, and, or.",
+            "Each command starts when the previous one is done. Error messages count the commands from 0: do.0 is the \
+             first. Conditions consist of numbers, names of CSV columns and scenario keys, + - * / ( ), abs, comparisons, \
+             and, or.",
         )
         + &terms(&rows.collect::<Vec<_>>())
 }
@@ -339,17 +339,18 @@ fn chosen() -> String {
         (format!("{} = {value}", row.path), row.about)
     });
     paragraph(
-        "The lab's settings, each a line of $XDG_CONFIG_HOME/gyrolab/config.toml (by default \
-         ~/.config/gyrolab/config.toml). What is chosen in the lab is remembered in settings.toml beside the sessions; \
-         config.toml wins, and is never written; options win over both. No setting changes a number, and show reads none.",
+        "Each setting is a line of $XDG_CONFIG_HOME/gyrolab/config.toml (by default ~/.config/gyrolab/config.toml). \
+         Choices in the lab are saved in settings.toml, next to the sessions. Command-line options override config.toml, \
+         which overrides settings.toml. The lab never writes config.toml. Settings do not change numbers, and show ignores \
+         them.",
     ) + &terms(&rows.collect::<Vec<_>>())
 }
 
-/// Examples of each command, below its help and in its page. They are lines for a shell: what an example does stands above
-/// it as a comment, and a long one is broken with a backslash, so that it can be pasted as it is.
+/// Examples of each command, for its help and its page. They can be pasted into a shell: a comment above an example
+/// describes it, and a long line is broken with a backslash.
 const EXAMPLES: &str = include_str!("examples.txt");
 
-/// The part of `text` below the line `== name`.
+/// Returns the section of `text` below the line `== name`.
 fn part(text: &'static str, name: &str) -> Option<&'static str> {
     let mut parts = text
         .strip_prefix("== ")?
@@ -358,12 +359,12 @@ fn part(text: &'static str, name: &str) -> Option<&'static str> {
     parts.find_map(|(of, part)| (of == name).then(|| part.trim_end()))
 }
 
-/// The examples of the command `name`, or of the program itself: lines for a shell.
+/// Returns the examples of the command `name`, or of the program itself, as lines for a shell.
 fn examples_of(name: &str) -> Option<&'static str> {
     part(EXAMPLES, name)
 }
 
-/// `command` with its examples below its long help, behind what it says there itself, and so for its commands.
+/// Adds the examples below the long help of `command` and its subcommands.
 pub(super) fn with_examples(command: Command) -> Command {
     let Some(examples) = examples_of(command.get_name()) else {
         return command.mut_subcommands(with_examples);

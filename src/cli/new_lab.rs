@@ -1,5 +1,5 @@
-//! A new lab, with the scenario, the colors and the dots that the command line asks for; one in which a lesson is played
-//! without a terminal, and where what comes of it is written.
+//! Creates labs: one with the scenario, colors and dots of the command line, and one without a terminal for playing a
+//! lesson. Also writes the output of lessons.
 
 use super::args::{DisplayArgs, LessonArgs, SetArgs, WorkbenchArgs, change};
 use super::progress::{self, Interrupted};
@@ -21,10 +21,10 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 
-/// What is opened where nothing is named.
+/// The scenario that is opened by default.
 pub(super) const DEFAULT: &str = "method-2";
 
-/// A lab with what `name` names, changed.
+/// Creates a lab with the scenario `name` and these changes.
 pub(super) fn open_lab(
     name: &str,
     changes: &SetArgs,
@@ -32,9 +32,9 @@ pub(super) fn open_lab(
     theme: Theme,
     running: bool,
 ) -> anyhow::Result<Lab> {
-    // Read once: what is read from a FIFO is not there again.
+    // Read only once, because a FIFO cannot be read again.
     let mut document = Document::open(name)?;
-    // What a change has mended is no scenario before it, and has no note to lose.
+    // A file that is valid only after the changes has no note that they could make obsolete.
     let file = document.scenario().ok();
     change(&mut document, changes)?;
     let scenario = Arc::new(document.scenario()?);
@@ -46,12 +46,12 @@ pub(super) fn open_lab(
     Ok(lab)
 }
 
-/// The environment variable `name`, if it is set to text.
+/// Returns the environment variable `name`, if it is set to valid Unicode.
 pub(super) fn variable(name: &str) -> Option<String> {
     std::env::var(name).ok()
 }
 
-/// The colors that `look` asks for, or that suit the terminal.
+/// Returns the theme that `look` requests, or one that suits the terminal.
 pub(super) fn theme_for(look: DisplayArgs) -> Theme {
     let suited = theme::theme(look.color.unwrap_or_default(), variable);
     Theme {
@@ -60,24 +60,24 @@ pub(super) fn theme_for(look: DisplayArgs) -> Theme {
     }
 }
 
-/// The dots that are asked for, or that suit locale and terminal.
+/// Returns the requested markers, or the ones that suit locale and terminal.
 pub(super) fn marker(markers: Option<Marker>) -> Marker {
     markers.unwrap_or_else(|| theme::marker(variable))
 }
 
-/// A lab with what `name` names, as the command line wants it.
+/// Creates a lab with the scenario `name` as the command line requests.
 pub(super) fn of_workbench(args: &WorkbenchArgs, name: &str) -> anyhow::Result<Lab> {
     let (markers, theme) = (args.look.markers, theme_for(args.look));
     let mut lab = open_lab(name, &args.changes, markers, theme, !args.paused)?;
     if let Some(step) = args.at {
-        // No signal is caught yet: one that ends the process here has nothing to put right.
+        // No signal handler is installed yet. A signal that ends the process here leaves nothing to clean up.
         lab.begin_at(step, |_, _| ControlFlow::Continue(()))
             .with_context(|| name.to_owned())?;
     }
     Ok(lab)
 }
 
-/// A lab without colors.
+/// Creates a lab without colors.
 pub(super) fn new_lab(look: DisplayArgs) -> anyhow::Result<Lab> {
     let changes = SetArgs::default();
     open_lab(DEFAULT, &changes, look.markers, Theme::PLAIN, false)
@@ -87,15 +87,15 @@ pub(super) fn refused(lesson: &Lesson, problem: Problem) -> anyhow::Error {
     Problems::one(lesson.origin.clone(), problem).into()
 }
 
-/// What the file that is asked for has to hold: HTML where its name says so, else Markdown or text.
+/// Returns the format of the requested file: HTML if its name says so, else Markdown or text.
 ///
-/// Ends the process as clap does if it is to be a PDF.
+/// Ends the process with a message, as clap does, if the file is a PDF.
 pub(super) fn paper_format(args: &LessonArgs) -> PaperFormat {
     let extension = args.output.as_deref().and_then(Path::extension);
     let lower = extension.map(|name| name.to_string_lossy().to_lowercase());
     match lower.as_deref() {
         Some("pdf") => {
-            let message = "-o FILE.pdf: write FILE.html and print it from a browser, which can also save a PDF";
+            let message = "-o FILE.pdf: PDF is not supported; write FILE.html and save it as PDF from a browser";
             refuse("lesson", ErrorKind::ValueValidation, message)
         }
         Some("html" | "htm") => PaperFormat::Html,
@@ -103,7 +103,8 @@ pub(super) fn paper_format(args: &LessonArgs) -> PaperFormat {
     }
 }
 
-/// Writes what `make` makes to the file that is asked for, or prints it. `make` asks now and then whether to go on.
+/// Writes the result of `make` to the requested file, or prints it. `make` calls its argument regularly to check if it
+/// should stop.
 pub(super) fn write(
     args: &LessonArgs,
     make: impl FnOnce(play::LessonProgressCallback<'_>) -> anyhow::Result<String>,

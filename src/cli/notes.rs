@@ -1,5 +1,5 @@
-//! `gyrolab lesson --notes` and `--answers`: what a session holds of a lesson, for the teacher beside the lab and for the
-//! student who hands it in.
+//! `gyrolab lesson --notes` and `--answers`: the teacher's notes for an open lesson, and the answers that a student
+//! hands in.
 
 use super::args::LessonArgs;
 use super::new_lab::{new_lab, paper_format, refused, write};
@@ -22,12 +22,12 @@ use std::process::ExitCode;
 use std::thread;
 use std::time::{Duration, SystemTime};
 
-/// Columns of the notes.
+/// Width of the notes, in columns.
 const NOTES_WIDTH: usize = 78;
-/// How often the session is looked at.
+/// Time between two checks of the session.
 const NOTES_POLL_INTERVAL: Duration = Duration::from_millis(500);
 
-/// Prints or writes what was predicted in the lesson `args.name` beside what came out.
+/// Prints or writes the predictions in the lesson `name` next to the results.
 pub(super) fn answers(
     args: &LessonArgs,
     name: &str,
@@ -45,7 +45,7 @@ pub(super) fn answers(
     let newest: Option<(SystemTime, LessonProgress)> = found.max_by_key(|(written, _)| *written);
     let Some((_, place)) = newest else {
         let name = printable(name);
-        bail!("no session holds a prediction for {name}: gyrolab lesson {name} opens it");
+        bail!("no session contains a prediction for {name}: open it with gyrolab lesson {name}");
     };
     let format = paper_format(args);
     write(args, |go_on| {
@@ -55,18 +55,18 @@ pub(super) fn answers(
     })
 }
 
-/// Prints the teacher's notes of the page that is open in the lab of the session called `name`, or of the newest session
-/// with an open lesson if that is empty, and goes on with the next page until Ctrl-C.
+/// Prints the teacher's notes for the open page in the lab of the session `name`, and follows it to the next pages
+/// until Ctrl-C. An empty `name` means the newest session with an open lesson.
 pub(super) fn notes(name: &str) -> anyhow::Result<ExitCode> {
     let folder = sessions::folder_of(None).map_err(anyhow::Error::msg)?;
     let interruption = progress::interruption()?;
     let Some(found) = find(&folder, name)? else {
         ensure!(
             !name.is_empty(),
-            "no lesson is open in any lab of this login: gyrolab lesson NAME opens one"
+            "no lesson is open in any lab of this login: open one with gyrolab lesson NAME"
         );
         bail!(
-            "--notes {}: there is no such session with an open lesson (gyrolab sessions lists what there is)",
+            "--notes {}: there is no such session with an open lesson (list sessions with gyrolab sessions)",
             printable(name)
         )
     };
@@ -77,7 +77,8 @@ pub(super) fn notes(name: &str) -> anyhow::Result<ExitCode> {
     bail!(Interrupted)
 }
 
-/// Returns the name of the session that is meant: of those with an open lesson, the one in use that was written last.
+/// Returns the name of the session to follow. An empty `name` selects the session in use with an open lesson that was
+/// written last.
 fn find(folder: &Path, name: &str) -> anyhow::Result<Option<String>> {
     let open = session::list(folder)?
         .into_iter()
@@ -92,7 +93,7 @@ fn lessons_of(session: &ListedSession) -> Option<KeptLessons> {
     KeptLessons::read(&lessons_in(content)).ok()
 }
 
-/// Returns the lesson that is open in `session`, and its page.
+/// Returns the open lesson in `session`, and its progress.
 fn open_in(session: &ListedSession) -> Option<(String, LessonProgress)> {
     let mut lessons = lessons_of(session)?;
     let open = lessons.open?;
@@ -100,13 +101,13 @@ fn open_in(session: &ListedSession) -> Option<(String, LessonProgress)> {
     Some((open, place))
 }
 
-/// Returns a line at the bottom of the terminal that changes; without a terminal there is none.
+/// Returns a line at the bottom of the terminal that can be updated; `None` without a terminal.
 fn live_line() -> Option<LiveLine<Stdout>> {
     let stdout = io::stdout();
     stdout.is_terminal().then(|| LiveLine::new(stdout))
 }
 
-/// Prints the notes of each page as it is opened, until a signal comes.
+/// Prints the notes of each page when it is opened, until a signal arrives.
 fn watch_session(
     folder: &Path,
     name: &str,
@@ -135,10 +136,10 @@ fn watch_session(
         }
         let text = match &open {
             Some(_) if !found.is_some_and(|session| session.is_in_use) => {
-                "the lab was left; Ctrl-C ends this".to_owned()
+                "the lab is closed; press Ctrl-C to stop".to_owned()
             }
             Some((lesson, place)) => times(lesson, place),
-            None => "no lesson is open there; Ctrl-C ends this".to_owned(),
+            None => "no lesson is open there; press Ctrl-C to stop".to_owned(),
         };
         if let Some(line) = line {
             line.show(&text);
@@ -148,7 +149,7 @@ fn watch_session(
     Ok(())
 }
 
-/// Prints `text` above the live line, in lines that end between words.
+/// Prints `text` above the live line, wrapped between words.
 fn tell(live: Option<&LiveLine<Stdout>>, text: &str) -> io::Result<()> {
     let lines: Vec<String> = text
         .lines()

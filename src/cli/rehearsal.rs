@@ -1,4 +1,4 @@
-//! `gyrolab class --rehearse`: a class with players, for a teacher who practices.
+//! `gyrolab class --rehearse`: a class with simulated players, for a teacher to practice.
 
 use super::args::ClassArgs;
 use super::class::{ensure_terminal, teach};
@@ -18,7 +18,7 @@ use std::process::ExitCode;
 use std::thread::sleep;
 use std::time::Duration;
 
-/// Opens the teacher's lab with players in the seats: in the folder that is named, or in one that is removed at the end.
+/// Opens the teacher's lab with players in the seats, in the given folder or in a temporary one.
 pub(super) fn rehearse(args: &ClassArgs, players: u64) -> anyhow::Result<ExitCode> {
     ensure_terminal()?;
     let own = match &args.folder {
@@ -35,7 +35,7 @@ pub(super) fn rehearse(args: &ClassArgs, players: u64) -> anyhow::Result<ExitCod
             let mut files = dir.read_dir().with_context(|| sessions::named(dir))?;
             ensure!(
                 files.next().is_none(),
-                "{}: it is not empty; a rehearsal needs an empty folder, or none",
+                "{}: is not empty; name an empty folder for the rehearsal, or omit --folder",
                 sessions::named(dir)
             );
             dir.canonicalize()?
@@ -45,7 +45,7 @@ pub(super) fn rehearse(args: &ClassArgs, players: u64) -> anyhow::Result<ExitCod
             .map(|own| own.path().to_owned())
             .unwrap_or_default(),
     };
-    let lesson = args.lesson.clone().unwrap_or_default(); // clap asks for it
+    let lesson = args.lesson.clone().unwrap_or_default(); // clap ensures that it is given
     let lesson = if opening::is_file_name(&lesson) {
         copy_lesson(Path::new(&lesson), &dir)?
     } else {
@@ -55,7 +55,7 @@ pub(super) fn rehearse(args: &ClassArgs, players: u64) -> anyhow::Result<ExitCod
     folder.make_teacher().map_err(anyhow::Error::msg)?;
     let seats = Players::start(&folder, players).map_err(anyhow::Error::msg)?;
     let removed = own.as_ref().map(|own| own.path().to_owned());
-    // A signal ends the process without dropping anything.
+    // A signal ends the process without running destructors.
     let _hook = removed.map(|path| {
         at_exit::hook(move |release| {
             if release == Release::Exit {
@@ -70,7 +70,7 @@ pub(super) fn rehearse(args: &ClassArgs, players: u64) -> anyhow::Result<ExitCod
             counted(players, "player")
         ),
         at_end: match &own {
-            Some(_) => "The rehearsal is over. Nothing of it is kept.".to_owned(),
+            Some(_) => "The rehearsal is over. Its files are deleted.".to_owned(),
             None => format!("The rehearsal is over. Its seats and votes are in {path}"),
         },
     };
@@ -82,7 +82,7 @@ pub(super) fn rehearse(args: &ClassArgs, players: u64) -> anyhow::Result<ExitCod
     code
 }
 
-/// Removes the folder of a rehearsal. A lab that has just written in it may keep it from that for a moment.
+/// Removes the folder of a rehearsal. Retries, because a lab may still be writing in it.
 fn remove(path: &Path) {
     for _ in 0..20 {
         if std::fs::remove_dir_all(path).is_ok() || !path.exists() {
@@ -92,7 +92,7 @@ fn remove(path: &Path) {
     }
 }
 
-/// Copies the lesson in the file `path` into `dir`, with the files in its folder that it opens. Returns the name of the copy.
+/// Copies the lesson `path` into `dir`, with the files next to it that it opens. Returns the path of the copy.
 fn copy_lesson(path: &Path, dir: &Path) -> anyhow::Result<String> {
     let lesson = opening::read_file(path)?;
     let from = path.parent().unwrap_or(Path::new(""));

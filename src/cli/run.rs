@@ -1,4 +1,4 @@
-//! `gyrolab run`: a run from its start to its end, without a terminal.
+//! `gyrolab run`: plays a run from start to end, without a terminal.
 
 use super::args::{LengthArgs, ScenarioArgs, changed, open};
 use super::layout_args::LayoutArgs;
@@ -35,11 +35,11 @@ pub(super) struct RunArgs {
     #[command(flatten)]
     pub(super) layout: LayoutArgs,
 
-    /// Say all that is known of the run: theory, lag, what a time step does
+    /// Print all information on the run, including theory, lag, and effects of the time step
     #[arg(long, conflicts_with = "json")]
     all: bool,
 
-    /// Give the summary as one JSON object
+    /// Print the summary as one JSON object
     #[arg(long)]
     pub(super) json: bool,
 
@@ -53,13 +53,13 @@ pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let document = open(&args.scenario.scenario)?;
     let mut of_header = layout_in_header(&document)?;
     if args.scenario.changes.is_some() || args.length.is_some() {
-        of_header.note = None; // it is about another run
+        of_header.note = None; // it describes another run
     }
     let layout = args.layout.layout(of_header);
     let scenario = Arc::new(changed(document, &args.scenario.changes, &args.length)?);
     if args.output.is_some() && layout.begins_after(&scenario) {
         let end = shortest(Clock::end_s(&scenario));
-        bail!("no row is left by --from: the run ends at {end} s");
+        bail!("--from leaves no row: the run ends at {end} s");
     }
     if layout.names().contains(&DISTANCE)
         && let Some(why) = cost::why_exact_unavailable(&scenario)
@@ -86,7 +86,7 @@ pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
         bail!(Interrupted);
     }
     if rows == Some(0) && played.ended == Ended::Done {
-        bail!("no row lies between --from and --to: they are closer than the rows");
+        bail!("there is no row between --from and --to: choose times further apart than the rows");
     }
     if let Some(file) = written {
         interruption.may_keep()?;
@@ -106,8 +106,8 @@ pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     Ok(ended_by(broke.map(|error| anyhow!(error).context(name))))
 }
 
-/// Returns the layout that stands in the header of the CSV of a run, so that it is written as it was. Any other document has
-/// none: above the run file in the CSV of a fit stands the fit.
+/// Returns the layout in the header of a run's CSV, so that the new CSV has the same layout. Other documents have none:
+/// a fit's CSV has the fit above its run file.
 fn layout_in_header(document: &Document) -> Result<LayoutFile, Problems> {
     let header = document.header_of_csv().unwrap_or_default();
     let above: toml::Table = above_run_file(header).parse().unwrap_or_default();
@@ -120,7 +120,7 @@ fn layout_in_header(document: &Document) -> Result<LayoutFile, Problems> {
     }
 }
 
-/// The progress message while the readouts at the end of a run are computed.
+/// Progress message while the readouts are computed at the end of a run.
 pub(super) const CHECKING: &str = "comparing the run with the exact motion";
 
 fn cannot_write(path: &Path) -> String {

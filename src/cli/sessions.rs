@@ -1,5 +1,5 @@
-//! `gyrolab sessions`: what `--resume NAME` can come back to; and the session of a lab: coming back to one, beginning one,
-//! and what is said of it on the shell's screen.
+//! `gyrolab sessions` and `--resume`: lists, opens and starts sessions of the lab, and prints messages on them to the
+//! shell.
 
 use super::args::{DisplayArgs, WorkbenchArgs};
 use super::new_lab::{DEFAULT, marker, of_workbench, theme_for};
@@ -17,7 +17,7 @@ use std::process::ExitCode;
 use std::time::{Duration, SystemTime};
 use toml::Table;
 
-/// How long the end waits for the disk before it says that the session is not kept.
+/// Time to wait for the disk at the end before the session is reported as not saved.
 const SESSION_SAVE_LIMIT: Duration = Duration::from_secs(3);
 
 pub(super) fn list(folder: Option<&Path>) -> anyhow::Result<ExitCode> {
@@ -53,7 +53,7 @@ pub(super) fn list(folder: Option<&Path>) -> anyhow::Result<ExitCode> {
     print(&text)
 }
 
-/// Returns the folder of the sessions: of the user, or of a confined lab.
+/// Returns the folder of the sessions: the user's folder, or the folder of a confined lab.
 pub(super) fn folder_of(confined: Option<&Confined>) -> Result<PathBuf, String> {
     match confined {
         Some(confined) => confined.sessions(),
@@ -85,7 +85,7 @@ fn row(session: &ListedSession, now: SystemTime) -> [String; 5] {
     [session.name.clone(), written, step, in_use, run].map(|text| printable(&text).into_owned())
 }
 
-/// Returns how long ago, in the largest unit of which it is at least two.
+/// Formats a duration as a time ago, in the largest unit of which it has at least two.
 fn ago(time: Duration) -> String {
     let seconds = time.as_secs();
     let units = [(86_400, "days"), (3600, "hours"), (60, "minutes")];
@@ -97,7 +97,7 @@ fn ago(time: Duration) -> String {
     }
 }
 
-/// Says on the shell's screen what can be come back to, as the disk has it; and what was not kept, and why.
+/// Prints to the shell's screen which session can be resumed, and what could not be saved.
 pub(super) fn tell_of_session(
     session: Result<Session, String>,
     folder: Option<&Path>,
@@ -111,14 +111,14 @@ pub(super) fn tell_of_session(
     let trouble = why.as_deref().map(printable);
     let Some(summary) = kept.and_then(|content| SessionSummary::read(&content).ok()) else {
         tell(format_args!(
-            "gyrolab: there is no session to come back to: {}",
-            trouble.unwrap_or_else(|| "nothing was kept".into())
+            "gyrolab: there is no session to resume: {}",
+            trouble.unwrap_or_else(|| "nothing was saved".into())
         ));
         return Ok(());
     };
     if let Some(trouble) = trouble {
         tell(format_args!(
-            "gyrolab: what was done last is lost: {trouble}"
+            "gyrolab: the last changes are lost: {trouble}"
         ));
     }
     let option = folder.map_or(String::new(), |folder| {
@@ -127,16 +127,16 @@ pub(super) fn tell_of_session(
     let SessionSummary { title, step, .. } = summary;
     writeln!(
         io::stdout(),
-        "gyrolab{option} --resume comes back to step {step} of {} (session {name})",
+        "gyrolab{option} --resume reopens step {step} of {} (session {name})",
         printable(&title)
     )?;
     Ok(())
 }
 
-/// A lab, the state of its lessons, and its session or why there is none.
+/// A lab, the state of its lessons, and its session or the reason why there is none.
 type SessionLab = (Lab, Table, Result<Session, String>);
 
-/// Returns the lab that a session has kept, as the command line wants it to look, and the state of its lessons.
+/// Restores the lab of a session, with the look that the command line requests, and the state of its lessons.
 fn resumed(
     content: &session::SessionContent,
     look: DisplayArgs,
@@ -149,7 +149,10 @@ fn resumed(
     Ok((lab, lessons_in(content)))
 }
 
-/// Returns the session called `name`, or an error that says why it cannot be had.
+/// Opens the session `name`.
+///
+/// # Errors
+/// Returns an error if the session is missing, in use or cannot be read.
 pub(super) fn come_back_to(
     name: &str,
     args: &WorkbenchArgs,
@@ -161,7 +164,7 @@ pub(super) fn come_back_to(
     let found = session::resume(&sessions_folder, Some(name), |content| {
         resumed(content, args.look, confined)
     })
-    .with_context(|| format!("--resume {name_shown} (gyrolab sessions lists what there is)"))?;
+    .with_context(|| format!("--resume {name_shown} (list sessions with gyrolab sessions)"))?;
     let passed_over = left_alone(&found.left_alone);
     let why = match (found.resumed, found.in_use_by.first()) {
         (Some((session, (lab, lessons))), _) => return Ok((lab, lessons, Ok(session))),
@@ -172,8 +175,8 @@ pub(super) fn come_back_to(
     bail!("--resume {name_shown}: {why}")
 }
 
-/// Returns the newest session that is not in use; where there is none, a new lab that says so. What is damaged, or cannot
-/// be kept, never keeps the lab from opening.
+/// Opens the newest session that is not in use, or a new lab with a message if there is none. A damaged session, or a
+/// folder that cannot be written, never prevents the lab from opening.
 pub(super) fn come_back(
     args: &WorkbenchArgs,
     confined: Option<&Confined>,
@@ -196,7 +199,7 @@ pub(super) fn come_back(
                 return Ok((lab, lessons, Ok(session)));
             }
             let none = if found.in_use_by.is_empty() {
-                "no session to come back to: "
+                "no session to resume: "
             } else {
                 ""
             };
@@ -209,15 +212,15 @@ pub(super) fn come_back(
     Ok((lab, Table::new(), begun(folder)))
 }
 
-/// Says that newer sessions are open in other labs, of the processes `owners`. A line that has died without a word keeps
-/// its lab alive for as long as the system believes in it.
+/// Describes newer sessions that are open in other labs, whose processes are `owners`. If a connection dies silently,
+/// its lab stays alive until the system notices.
 fn in_use(owners: &[u32]) -> String {
     if owners.is_empty() {
         return String::new();
     }
     let numbers: Vec<_> = owners.iter().map(ToString::to_string).collect();
     format!(
-        "newer sessions are open in other labs (where the line is dead, kill frees them: {}); ",
+        "newer sessions are open in other labs (if their connection is dead, end them with kill: {}); ",
         numbers.join(" ")
     )
 }
@@ -229,7 +232,7 @@ pub(super) fn begun(folder: Result<PathBuf, String>) -> Result<Session, String> 
 fn left_alone(sessions: &[LeftAlone]) -> String {
     let names = sessions.iter().map(|one| {
         format!(
-            "{} is left alone ({}); ",
+            "{} was skipped ({}); ",
             PrintablePath(&one.path),
             one.reason
         )

@@ -1,5 +1,4 @@
-//! The settings of the lab that no option names: those of the user's `config.toml`, and after them those that were chosen in
-//! the lab.
+//! The lab's settings without a command-line option: first the user's `config.toml`, then the choices made in the lab.
 
 use super::args::{DisplayArgs, WorkbenchArgs};
 use super::new_lab::variable;
@@ -19,7 +18,7 @@ pub(super) struct Chosen {
     remembered: SettingsFile,
 }
 
-/// Reads the settings: those remembered in `folder`, and the user's own unless the lab is confined to a folder.
+/// Reads the settings remembered in `folder`, and the user's own unless the lab is confined to a folder.
 pub(super) fn read(folder: Option<&Path>, is_confined: bool) -> Chosen {
     let config = settings::config().filter(|_| !is_confined);
     Chosen {
@@ -29,7 +28,7 @@ pub(super) fn read(folder: Option<&Path>, is_confined: bool) -> Chosen {
 }
 
 impl Chosen {
-    /// `args` with the settings for which it has no option.
+    /// Returns `args` completed with the settings, where no option is given.
     pub(super) fn complete(&self, args: &WorkbenchArgs) -> WorkbenchArgs {
         let mut settings = shown_here(self.remembered.settings.clone());
         settings.extend(self.config.settings.clone());
@@ -48,27 +47,27 @@ impl Chosen {
         }
     }
 
-    /// Says in `lab` what is wrong with the files, and of the user's also on the shell's screen, which shows all of it
-    /// when the lab is left.
+    /// Reports errors in the files in `lab`. Errors in the user's file also appear on the shell's screen, in full,
+    /// after the lab is closed.
     pub(super) fn tell(&self, lab: &mut Lab) {
         if let Some(problems) = &self.remembered.problems {
             let all = in_one_line(problems);
             lab.messages_mut()
-                .keep_saying_first(&format!("{all}: not used; a choice mends it; "));
+                .keep_saying_first(&format!("{all}: ignored until you choose it again; "));
         }
         if let Some(problems) = &self.config.problems {
             tell(format_args!(
-                "gyrolab: {}\ngyrolab: what is wrong there is not used; gyrolab man lists the settings",
+                "gyrolab: {}\ngyrolab: wrong settings are ignored; gyrolab man lists all settings",
                 printable_lines(&problems.to_string())
             ));
             let all = in_one_line(problems);
             lab.messages_mut()
-                .keep_saying_first(&format!("{all}: not used; mend it; "));
+                .keep_saying_first(&format!("{all}: ignored; correct the file; "));
         }
     }
 }
 
-/// All `problems` in one line, each with the file's name and no folder.
+/// Joins all `problems` in one line, with the file's name but not its folder.
 fn in_one_line(problems: &Problems) -> String {
     let name = Path::new(&problems.origin).file_name().unwrap_or_default();
     let named = Problems {
@@ -79,8 +78,8 @@ fn in_one_line(problems: &Problems) -> String {
     text.lines().collect::<Vec<_>>().join("; ")
 }
 
-/// The remembered `settings` that this terminal can show: dots that were chosen on another terminal may need more, and
-/// NO_COLOR takes away colors that were chosen elsewhere.
+/// Returns the remembered `settings` that this terminal can show. Dots chosen on another terminal may need more
+/// abilities, and NO_COLOR disables colors.
 fn shown_here(mut settings: Table) -> Table {
     let usual = theme::marker(variable);
     let is_shown = |choice: ColorChoice| match choice {
@@ -98,7 +97,7 @@ fn shown_here(mut settings: Table) -> Table {
     settings
 }
 
-/// The option that `value` names, which the table of settings has checked.
+/// Returns the option named by `value`, which the table of settings has checked.
 fn option<T: ValueEnum>(value: Option<&Value>) -> Option<T> {
     T::from_str(value?.as_str()?, false).ok()
 }

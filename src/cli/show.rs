@@ -1,4 +1,4 @@
-//! `gyrolab show`: the lab's picture as plain text or as SVG, at one step or after commands.
+//! `gyrolab show`: prints the lab's picture as plain text or SVG, at one step or after commands.
 
 use super::args::{MeasuredArgs, SetArgs};
 use super::argument_values::{size, steps};
@@ -19,7 +19,7 @@ use std::process::ExitCode;
 
 #[derive(Debug, Default, Args)]
 pub(super) struct ShowArgs {
-    /// What gyrolab run takes [with --do by default: method-2]
+    /// A scenario, as for gyrolab run [default with --do: method-2]
     #[arg(required_unless_present = "commands")]
     pub(super) scenario: Option<String>,
 
@@ -30,29 +30,29 @@ pub(super) struct ShowArgs {
     #[arg(long, value_name = "STEP", allow_negative_numbers = true, value_parser = steps)]
     pub(super) at: Option<u64>,
 
-    /// Show what the commands in this file, or of stdin for -, lead to
+    /// Show the result of the commands in this file, or of stdin for -
     ///
-    /// The file holds [[do]] tables, which gyrolab man lists. Nobody waits here: wait_s is over at once, and only step, go_to
-    /// and run_until let the run go on.
+    /// The file contains [[do]] tables, which gyrolab man lists. wait_s ends at once, and only step, go_to and
+    /// run_until advance the run.
     #[arg(long = "do", value_name = "FILE")]
     pub(super) commands: Option<PathBuf>,
 
     #[command(flatten)]
     pub(super) beside: MeasuredArgs,
 
-    /// Columns and lines of the picture
+    /// Columns and rows of the picture
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "80x24", value_parser = size)]
     pub(super) size: (u16, u16),
 
-    /// What dots are made of [default: by locale and terminal]
+    /// Characters used for dots [default: by locale and terminal]
     #[arg(long, value_enum, value_name = "KIND")]
     pub(super) markers: Option<Marker>,
 
-    /// Give the picture as SVG, in color, for a slide; the file carries the run, and gyrolab opens it
+    /// Print the picture as a color SVG, for example for a slide; the file contains the run, and gyrolab opens it
     #[arg(long)]
     pub(super) svg: bool,
 
-    /// What background the colors are for [default: dark]
+    /// Background that the colors are chosen for [default: dark]
     #[arg(long, value_enum, value_name = "SCREEN", requires = "svg")]
     pub(super) background: Option<Background>,
 
@@ -83,8 +83,8 @@ impl ShowArgs {
     }
 }
 
-/// Prints the lab's picture at the end of a run, or after commands, which do not leave the folder `confined`; `why` says
-/// why there is a picture and not the lab.
+/// Prints the lab's picture at the end of a run or after commands. Commands cannot leave the folder `confined`. `why`
+/// explains why a picture is printed instead of opening the lab.
 pub(super) fn print_picture(
     args: &ShowArgs,
     why: Option<&str>,
@@ -99,7 +99,7 @@ pub(super) fn print_picture(
         },
         background: args.background.unwrap_or(Background::Dark),
     };
-    let usual = args.svg.then_some(Marker::Braille); // whatever the terminal is
+    let usual = args.svg.then_some(Marker::Braille); // independent of the terminal
     let mut lab = new_lab::open_lab(name, &args.changes, args.markers.or(usual), theme, false)?;
     screen::fit(&mut lab, Rect::new(0, 0, args.size.0, args.size.1));
     if let Some(folder) = confined {
@@ -107,7 +107,7 @@ pub(super) fn print_picture(
     }
     let beside = &args.beside;
     lab.begin_with_measured(beside.measured.as_deref(), &beside.columns.options())?;
-    // What is not there is refused before a picture is promised; commands on stdin are waited for.
+    // Missing files cause an error before this message. Commands on stdin may take time.
     why.iter().for_each(tell);
     let commands = args.commands.as_deref().map(command::open).transpose()?;
     let end = match commands {
@@ -130,7 +130,7 @@ pub(super) fn print_picture(
             print(&String::from_utf8_lossy(&picture))?;
         }
     }
-    ended.with_context(|| name.to_owned())?; // the picture up to there is shown all the same
+    ended.with_context(|| name.to_owned())?; // the picture is printed even after an error
     done.map_err(anyhow::Error::msg)?;
     Ok(ExitCode::SUCCESS)
 }

@@ -1,4 +1,5 @@
-//! `gyrolab verify`: whether a CSV or a figure is what the run in it gives, or whether somebody's own program agrees with the scheme.
+//! `gyrolab verify`: recomputes CSVs, figures and write-ups and reports differences, or compares a reader's own program
+//! with the scheme.
 
 use super::argument_values::{one_or_more, setting};
 use super::progress::{self, Interrupted, Interruption};
@@ -28,16 +29,16 @@ use toml::Value;
 
 #[derive(Debug, Args)]
 pub(super) struct VerifyArgs {
-    /// CSVs, figures and folders of write-ups that gyrolab wrote; with --against what your own program wrote
+    /// CSVs, figures and write-up folders from gyrolab; with --against, files that your own program wrote
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
 
-    /// Hold rows that your own program of the report's scheme wrote against this scenario: do they agree, and if not, which
-    /// slip makes them
+    /// Compare rows from your own program of the report's scheme with this scenario, and find the mistake if they
+    /// differ
     #[arg(long, value_name = "SCENARIO", help_heading = OWN_CODE)]
     against: Option<String>,
 
-    /// What the file's columns are: its own name or number (from 1) of each, and gyrolab's
+    /// Name the file's columns: its own name of a column, or the column's number from 1, then gyrolab's name
     #[arg(long, value_name = "COLUMN=NAME,...", value_delimiter = ',', value_parser = renaming, requires = "against", help_heading = OWN_CODE)]
     map: Vec<Renaming>,
 
@@ -49,15 +50,15 @@ pub(super) struct VerifyArgs {
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting, requires = "against", help_heading = OWN_CODE)]
     set: Vec<String>,
 
-    /// Give the result as one JSON object a file
+    /// Print the result as one JSON object per file
     #[arg(long, requires = "against", help_heading = OWN_CODE)]
     json: bool,
 }
 
-/// The version that computes again.
+/// The version that recomputes.
 const OWN_VERSION: &str = env!("CARGO_PKG_VERSION");
-const MISSING: &str = "it is missing, or no regular file";
-/// The most bytes that are read of a file beyond what it should hold.
+const MISSING: &str = "it is missing or not a regular file";
+/// Maximum number of bytes read from a file beyond its expected length.
 const MOST_FILE_EXCESS: u64 = 1 << 20;
 
 const OWN_CODE: &str = "Your own code";
@@ -85,7 +86,7 @@ pub(super) fn verify(args: &VerifyArgs) -> anyhow::Result<ExitCode> {
     })
 }
 
-/// Whether it is good; why it cannot be judged is told.
+/// Returns true if the file is verified. Prints the reason if it cannot be verified.
 fn judged(file: &Path, result: anyhow::Result<bool>) -> anyhow::Result<bool> {
     result.or_else(|error| match error.downcast()? {
         Unverified::Stopped => bail!(Interrupted),
@@ -99,11 +100,13 @@ fn judged(file: &Path, result: anyhow::Result<bool>) -> anyhow::Result<bool> {
     })
 }
 
-/// Makes the write-up in `folder` again and compares every file of it. Returns whether all are the same.
+/// Recreates the write-up in `folder` and compares every file. Returns true if all are the same.
 fn folder(folder: &Path, interruption: &Interruption) -> anyhow::Result<bool> {
     let [run_file, csv] = [RUN_FILE, CSV].map(|name| folder.join(name));
     if !run_file.is_file() {
-        let rule = format!("is no write-up, it holds no {RUN_FILE}: name the files in it");
+        let rule = format!(
+            "is not a write-up, because it contains no {RUN_FILE}: name the files in it instead"
+        );
         bail!(Unverified::from(rule));
     }
     let document = Document::read(&run_file).map_err(Unverified::from)?;
@@ -124,9 +127,9 @@ fn folder(folder: &Path, interruption: &Interruption) -> anyhow::Result<bool> {
     for (name, made) in &files {
         let file = folder.join(name);
         let same = if data.as_ref().is_some_and(|data| Path::new(data) == file) {
-            "measured data, which nothing computes"
+            "the same: measured data, which is not recomputed"
         } else {
-            "the same, made again"
+            "the same, recreated"
         };
         let difference = differs(&file, made, version, interruption)?;
         is_good &= say(&file, same, difference.as_ref(), &[])?;
@@ -135,7 +138,7 @@ fn folder(folder: &Path, interruption: &Interruption) -> anyhow::Result<bool> {
     Ok(is_good)
 }
 
-/// Names the files in `folder` that are none of the write-up's `own`.
+/// Prints the names of files in `folder` that do not belong to the write-up's `own` files.
 fn say_of_others(folder: &Path, own: impl Iterator<Item = OsString>) -> anyhow::Result<()> {
     let of_writeup: Vec<_> = own.chain([CSV.into()]).collect();
     let others = OutputFolder::others(folder, &of_writeup)?;
@@ -143,14 +146,14 @@ fn say_of_others(folder: &Path, own: impl Iterator<Item = OsString>) -> anyhow::
         let count = counted(others.len() as u64, "file");
         let (folder, others) = (PrintablePath(folder), brief(&others.join(", "), 200));
         print(&format!(
-            "{folder}: {count} not of the write-up: {others}\n"
+            "{folder}: {count} not part of the write-up: {others}\n"
         ))?;
     }
     Ok(())
 }
 
-/// What differs between the file of a write-up and what was `made` again. Of another version the pixels of a figure count, and
-/// texts name that version.
+/// Describes the difference between the file of a write-up and its recreated content `made`. For a write-up by another
+/// version, only the pixels of a figure count, and texts may name that version.
 fn differs(
     file: &Path,
     made: &[u8],
@@ -176,9 +179,8 @@ fn differs(
             Err(Unverified::Stopped) => bail!(Interrupted),
             Err(Unverified::Refused(problems)) => Some(problems.in_one_line()),
             Ok(Some((Some(difference), _))) => Some(difference),
-            Ok(_) => {
-                (version == OWN_VERSION).then(|| "it is a figure of another run or part".to_owned())
-            }
+            Ok(_) => (version == OWN_VERSION)
+                .then(|| "it is a figure of another run or time range".to_owned()),
         });
     }
     let [there, made] = [&there, made].map(String::from_utf8_lossy);
@@ -188,7 +190,7 @@ fn differs(
     ))
 }
 
-/// The measured data in the folder of a write-up.
+/// Returns the path of the measured data in the folder of a write-up.
 fn measured_in(folder: &Path) -> Option<String> {
     let file = folder.join(READOUTS_FILE);
     let text = file.is_file().then(|| csv::text(&file))?.ok()?;
@@ -202,10 +204,10 @@ fn measured_in(folder: &Path) -> Option<String> {
     )
 }
 
-/// Computes or draws `file` again and prints what has come out. Returns whether it is the same.
+/// Recomputes or redraws `file` and prints the result. Returns true if it is the same.
 fn made_again(file: &Path, interruption: &Interruption) -> anyhow::Result<bool> {
     if let Some((difference, notes)) = redraw(file, interruption.meter())? {
-        let same = "the same: drawn again from what it carries";
+        let same = "the same: redrawn from the data in the file";
         return say(file, same, difference.as_ref(), &notes);
     }
     let result = verified(
@@ -224,7 +226,7 @@ fn scenario(name: &str, set: &[String]) -> Result<Arc<Scenario>, Problems> {
     Ok(Arc::new(document.scenario()?))
 }
 
-/// Holds `file` against the scenario and prints the verdict. Returns whether they agree.
+/// Compares `file` with the scenario and prints the verdict. Returns true if they agree.
 fn own(
     file: &Path,
     args: &VerifyArgs,
@@ -250,7 +252,9 @@ fn own(
         print(&format!("{file}: {lines}\n"))?;
         if verdict.is_unexplained && args.set.is_empty() {
             let next = format!("gyrolab {name} --measured {file}");
-            print(&format!("Next: {next}, then M, takes that step apart.\n"))?;
+            print(&format!(
+                "Next: run {next} and press M to examine that step.\n"
+            ))?;
         }
     }
     Ok(verdict.agrees)
@@ -272,7 +276,7 @@ fn compare_rows(
     })
 }
 
-/// As [`say`], of a file whose rows were computed again.
+/// Prints the result for a file whose rows were recomputed; see [`say`].
 fn say_of_rows(
     file: &Path,
     rows: u64,
@@ -280,14 +284,14 @@ fn say_of_rows(
     notes: &[String],
 ) -> anyhow::Result<bool> {
     let same = match rows {
-        1 => "the same: its row, computed again".to_owned(),
-        rows => format!("the same: all {rows} rows, computed again"),
+        1 => "the same: its row, recomputed".to_owned(),
+        rows => format!("the same: all {rows} rows, recomputed"),
     };
     say(file, &same, difference, notes)
 }
 
-/// Prints what has come out for `file`: a line that says whether it is the `same`, and a line for each note. Returns whether
-/// it is.
+/// Prints the result for `file`: the text `same` or the difference, then one line per note. Returns true if there is no
+/// difference.
 fn say(
     file: &Path,
     same: &str,

@@ -1,4 +1,4 @@
-//! `gyrolab` and `gyrolab show`: the lab, live or as one picture.
+//! `gyrolab` and `gyrolab show`: opens the lab, or prints it as a picture.
 
 use super::args::{LessonArgs, MeasuredArgs, WorkbenchArgs};
 use super::new_lab::{DEFAULT, of_workbench, variable};
@@ -24,7 +24,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use toml::Table;
 
-/// Opens the lab on the terminal, at a page of a lesson.
+/// Opens the lab on the terminal at a page of a lesson.
 pub(super) fn open_lesson(
     lesson: &Lesson,
     page: &LessonPage,
@@ -55,19 +55,16 @@ pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
             .with_context(|| printable(name).into_owned())?;
     }
     if !(io::stdin().is_terminal() && io::stdout().is_terminal()) {
-        anyhow::ensure!(
-            args.resume.is_none(),
-            "--resume needs a terminal to come back to"
-        );
+        anyhow::ensure!(args.resume.is_none(), "--resume needs a terminal");
         if let Some(file) = &args.commands
             && file != Path::new("-")
         {
-            // What is not there is said before what is done with it.
+            // A missing file is reported before the message below.
             fs::metadata(file)
                 .with_context(|| format!("{}: cannot be read", PrintablePath(file)))?;
         }
         let why = format!(
-            "gyrolab: there is no terminal to open the lab on, so its picture {} is printed",
+            "gyrolab: no terminal is available, so the lab's picture {} is printed",
             moment(args)
         );
         let picture = ShowArgs {
@@ -85,7 +82,8 @@ pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
     open_at(args, name, confined, None, None)
 }
 
-/// Opens the lab on the terminal with the scenario `name`, at the page of this number of a lesson, in a role of a class.
+/// Opens the lab on the terminal with the scenario `name`. `lesson` is a lesson with a page number; `class_role` is the
+/// lab's role in a class.
 pub(super) fn open_at(
     args: &WorkbenchArgs,
     name: &str,
@@ -95,7 +93,7 @@ pub(super) fn open_at(
 ) -> anyhow::Result<ExitCode> {
     let is_alone = class_role.is_none();
     let mut role = class_role.unwrap_or(Box::new(NoClass));
-    // A write past `ulimit -f` fails then, like one to a full disk, and does not end the process.
+    // A write past `ulimit -f` then fails like a write to a full disk, instead of ending the process.
     signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default())?;
     let commands = args.commands.as_deref().map(command::open).transpose()?;
     let folder = sessions::folder_of(confined.as_ref());
@@ -130,7 +128,7 @@ pub(super) fn open_at(
     super::print(&(role.leave().map_err(anyhow::Error::msg)? + "\n"))
 }
 
-/// Gives `lab` its folder, its measured data, and what the terminal can do.
+/// Sets the folder, the measured data and the terminal's abilities of `lab`.
 pub(super) fn furnish(
     lab: &mut Lab,
     args: &WorkbenchArgs,
@@ -146,7 +144,7 @@ pub(super) fn furnish(
     lab.view_mut().mouse = !args.look.no_mouse;
     lab.view_mut().fps = args.fps.unwrap_or(FPS);
     lab.settings.usual_palette = Some(theme::theme(ColorChoice::Auto, variable).palette);
-    // The Linux console would print the question.
+    // The Linux console would print the query for the background color.
     let is_console = variable("TERM").is_none_or(|term| ["linux", "dumb"].contains(&term.as_str()));
     lab.settings.asks_background = args.look.background.is_none()
         && variable("COLORFGBG").is_none()
@@ -155,7 +153,7 @@ pub(super) fn furnish(
     Ok(())
 }
 
-/// The lessons as a session has `kept` them, at the page of one that is asked for.
+/// Restores the lessons that a session has `kept`, and opens the requested page, if any.
 fn open_lessons(
     lab: &mut Lab,
     kept: Table,
@@ -163,7 +161,7 @@ fn open_lessons(
 ) -> anyhow::Result<Lessons> {
     let (mut lessons, opened) = Lessons::resumed(kept, lab);
     if let Err(reason) = opened {
-        lab.tell(format!("the lesson cannot be taken again: {reason}"));
+        lab.tell(format!("the lesson cannot be reopened: {reason}"));
     }
     if let Some((lesson, page)) = lesson {
         let open = lessons.open_lesson();
@@ -185,7 +183,7 @@ fn moment(args: &WorkbenchArgs) -> String {
     }
 }
 
-/// Says on the shell's screen what was exported: the lab's is gone with its last notice.
+/// Prints the exported files on the shell's screen, because the lab's last message disappears with the lab.
 fn tell_of_exports(lab: &Lab) -> io::Result<()> {
     let mut stdout = io::stdout().lock();
     for written in &lab.files().written {
@@ -198,7 +196,7 @@ fn tell_of_exports(lab: &Lab) -> io::Result<()> {
         match scp.filter(|_| !lab.files().confined().is_some_and(Confined::is_seat)) {
             Some(line) => writeln!(
                 stdout,
-                "{path}{rows}; to fetch it, on your own computer:\n  {line}"
+                "{path}{rows}; to download it, run on your own computer:\n  {line}"
             ),
             None => writeln!(stdout, "{path}{rows}"),
         }?;

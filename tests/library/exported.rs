@@ -344,7 +344,7 @@ fn lines_that_are_not_the_runs_are_found() {
     let mut longer = lines.clone();
     longer.push("121,1,2");
     let told = |bytes: &[u8], reason: &str| has(difference(bytes).to_string(), reason);
-    told(&joined(&longer), "\"121,1,2\", where the computed rows");
+    told(&joined(&longer), "\"121,1,2\", but the computed rows");
     told(&joined(&lines[..at]), "it is cut off");
     let uneven = text.replace(lines[at], &format!("{},7", lines[at]));
     told(uneven.as_bytes(), " is \"29,");
@@ -389,7 +389,7 @@ fn what_cannot_be_computed_again_is_refused_with_the_reason() {
         ("", "is empty"),
         ("hello\n", "is not a CSV from gyrolab"),
         ("a,b\n1,2\n", "is not a CSV from gyrolab"),
-        ("# title = 'x'\n", "ends in its header"),
+        ("# title = 'x'\n", "ends within its header"),
         (body, "without a run file in its header"),
         (
             &text.replace("# [motion]", "# [moton]"),
@@ -465,5 +465,5 @@ fn the_errors_of_a_comparison_are_computed_again() {
     let lost: String = good.trim_end().rsplit_once('\n').unwrap().0.to_owned() + "\n";
     difference(lost.as_bytes());
     let unknown = good.replace("\nrk4,", "\nrk5,");
-    assert!(refused(unknown.as_bytes()).contains("names no scheme"));
+    assert!(refused(unknown.as_bytes()).contains("does not name a scheme"));
 }

@@ -623,8 +623,7 @@ fn a_very_poor_fit_says_that_it_may_be_a_local_minimum() {
         let model = top(&[], &["start.tilt_deg"], &text);
         fitted(&model).sentence(&model)
     };
-    let words =
-        "there may be a better fit elsewhere: begin at other values of the free keys by --set";
+    let words = "There may be a better fit elsewhere: start the search at other values of the free keys with --set";
     let (poor, rare) = (sentence(0.1), sentence(0.25));
     has_all(&poor, ["does not fit", words]);
     has(&rare, "does not fit");

@@ -32,7 +32,7 @@ fn begin(ground: &Ground) -> Terminal {
 fn sit(ground: &Ground, name: &str) -> (Terminal, String) {
     let mut lab = ground.open("--folder . --seat");
     lab.wait_for("A name for your seat");
-    lab.ask(&format!("{name}\r"), "Enter goes on.");
+    lab.ask(&format!("{name}\r"), "Press Enter to continue.");
     let words = lab.words();
     let (_, word) = words.split_once("Your seat is ").unwrap();
     let word = word.split(':').next().unwrap().to_owned();
@@ -262,7 +262,7 @@ fn a_seat_and_the_projector_wait_for_the_class_and_follow_it() {
     let ground = Ground::new();
     let mut anna = ground.open("--folder . --seat");
     anna.wait_for("A name for your seat");
-    anna.ask("anna\r", "Enter goes on.");
+    anna.ask("anna\r", "Press Enter to continue.");
     anna.ask("\r", "The class starts here when your teacher starts it.");
     let mut projector = ground.open("class --projector --folder .");
     projector.wait_for("The class has not begun.");
@@ -301,7 +301,7 @@ fn a_new_group_keeps_the_votes_of_the_previous_one() {
     vote(&mut anna);
     let refused = ground.run("class --new --folder .");
     assert_eq!(code(&refused), 1);
-    has_all(stderr(&refused), &["a class is on in"]);
+    has_all(stderr(&refused), &["a class is running in"]);
     teacher.end_class();
     anna.wait_for("the class is over");
     let kept = ground.run("class --new --folder .");
@@ -333,7 +333,7 @@ fn a_rehearsal_leaves_nothing_behind() {
         assert_eq!(code(&ground.run(wrong)), 2, "{wrong}");
     }
     let mut refused = ground.open(&format!("class {LESSON} --rehearse 2 --folder full"));
-    refused.wait_for("a rehearsal needs an empty folder");
+    refused.wait_for("name an empty folder for the rehearsal");
     refused.wait_for_end();
     for end in ["q", "TERM"] {
         let mut teacher = ground.open(&format!("class {LESSON} --rehearse 2"));
@@ -348,7 +348,7 @@ fn a_rehearsal_leaves_nothing_behind() {
         teacher.wait_until("a vote", |lab| !lab.words().contains("0 of 2 answered"));
         let mut zoe = ground.open(&format!("--folder {folder} --seat"));
         zoe.wait_for("A name for your seat");
-        zoe.ask("zoe\r", "Enter goes on.");
+        zoe.ask("zoe\r", "Press Enter to continue.");
         zoe.ask("\r", "following · 2 of 10");
         if end == "q" {
             teacher.quit();

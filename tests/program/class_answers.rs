@@ -130,7 +130,7 @@ fn answers_cannot_be_downloaded_during_class() {
     teacher.wait_for("1 of 10");
     let output = ssh(&ground, "answers anna-471108");
     assert!(stdout(&output).is_empty());
-    has_all(stderr(&output), &["a class is on"]);
+    has_all(stderr(&output), &["a class is running"]);
     teacher.quit();
     done(ssh(&ground, "answers anna-471108"));
 }

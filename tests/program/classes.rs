@@ -51,7 +51,7 @@ fn the_answers_option_needs_a_session() {
     failed(
         &output,
         &[
-            "no session holds a prediction for is-the-wobble-real",
+            "no session contains a prediction for is-the-wobble-real",
             "gyrolab lesson",
         ],
     );

@@ -686,7 +686,7 @@ fn check_reports_on_every_file() {
     );
     // The good file after the bad ones is checked too.
     has(stdout(&output), "good.toml: good");
-    let words = "check takes files, and cusps is a preset";
+    let words = "check needs files, but cusps is a preset";
     lab.refused("check cusps", 1, &[words, "gyrolab run cusps"]);
 }
 

@@ -208,7 +208,7 @@ fn invalid_comparisons_are_rejected() {
         (
             "cusps --time-steps 1e-300",
             1,
-            &["--time-steps 1e-300 would be", "give longer time steps"],
+            &["--time-steps 1e-300 needs", "use longer time steps"],
         ),
     ] {
         lab.refused(&format!("compare {args}"), code, words);

@@ -66,7 +66,7 @@ fn the_csv_of_a_fit_can_be_drawn_run_and_verified() {
     ground.stderr("figure fit.csv -o fit.svg");
     ground.stdout("run fit.csv --steps 1");
     let csv = ground.read("fit.csv");
-    let same = "fit.csv: the same: all 10 rows, computed again\n";
+    let same = "fit.csv: the same: all 10 rows, recomputed\n";
     assert_eq!(ground.stdout("verify fit.csv"), same);
     for (old, new, reason) in [
         (
@@ -88,7 +88,11 @@ fn the_csv_of_a_fit_can_be_drawn_run_and_verified() {
             "fit lost.csv ",
             "cannot be recomputed: lost.csv: ",
         ),
-        ("gyrolab fit ", "gyrolab run ", "no command line of a fit"),
+        (
+            "gyrolab fit ",
+            "gyrolab run ",
+            "not the command line of a fit",
+        ),
     ] {
         ground.write("other.csv", &csv.replacen(old, new, 1));
         ground.refused("verify other.csv", 1, &[reason]);
@@ -119,7 +123,7 @@ fn fit_errors_name_the_remedy() {
         (
             "fit lab.csv --in cusps --free start.tilt_deg --rows 2",
             1,
-            "--rows 2: there is no row 2: the data have 1",
+            "--rows 2: there is no row 2: the data have only 1",
         ),
         (
             &format!("{NUTATION} -o /dev/full"),
@@ -231,5 +235,5 @@ fn a_recording_without_a_flight_is_rejected_with_a_remedy() {
     ground.refused(fit, 1, &["has no free flight", "--from and --to"]);
     done(ground.run(&format!("{fit} --from 0")));
     let other = "fit heidelberg-nutation --in heidelberg --free start.spin_rpm --flight 1";
-    ground.refused(other, 1, &["--flight takes a recording"]);
+    ground.refused(other, 1, &["--flight needs a recording"]);
 }

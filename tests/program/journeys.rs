@@ -556,7 +556,7 @@ fn wait_until_kept(lab: &Terminal, ground: &Ground) {
 fn resume_without_a_session_reports_it_and_opens_a_new_lab() {
     let ground = Ground::new();
     let mut lab = ground.open("--resume --paused");
-    lab.wait_for("no session to come back to: this is a new one");
+    lab.wait_for("no session to resume: this is a new one");
     push(&mut lab);
     lab.quit();
     assert!(resumed(&ground).words().contains("Method 2"));
@@ -575,7 +575,7 @@ fn a_damaged_session_is_named_and_left_alone() {
     let text = fs::read_to_string(&path).unwrap();
     fs::write(&path, &text[..text.len() / 2]).unwrap();
     let mut after = ground.open("--resume");
-    after.wait_for("is left alone (it has been cut off or changed)");
+    after.wait_for("was skipped (it has been cut off or changed)");
     after.wait_for("Method 2");
     after.press(" ");
     after.quit();

@@ -140,7 +140,7 @@ fn a_handout_follows_the_rules_for_output_files() {
     let made = done(ground.run("lesson my.md --handout -o paper.html"));
     assert_eq!(stderr(&made), "gyrolab: wrote paper.html\n");
     has(&ground.read("paper.html"), "<html lang=\"en\">");
-    let instead = "write FILE.html and print it from a browser";
+    let instead = "write FILE.html and save it as PDF from a browser";
     ground.refused("lesson my.md --handout -o paper.pdf", 2, &[instead]);
     ground.refused("lesson my.md --teacher -o paper.pdf", 2, &[instead]);
     ground.write("paper.md", "mine");

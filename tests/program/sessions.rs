@@ -24,7 +24,7 @@ fn resume_restores_backdated_edits() {
         lab.wait_for_step(step);
     }
     lab.quit();
-    lab.wait_for("comes back to step 81 of Method 2");
+    lab.wait_for("reopens step 81 of Method 2");
     let mut resumed = ground.open("--resume");
     resumed.wait_for(AS_LEFT);
     resumed.wait_for_step(81);
@@ -47,7 +47,7 @@ fn a_full_disk_is_reported_until_the_session_is_saved() {
     lab.ask(ESC, "session not saved");
     lab.forget();
     lab.press("q");
-    lab.wait_for("there is no session to come back to");
+    lab.wait_for("there is no session to resume");
     assert!(!lab.words().contains("comes back to"), "{}", lab.words());
 }
 
@@ -67,8 +67,8 @@ fn on_a_full_disk_the_last_message_names_the_saved_step() {
     shell.wait_for_step(31);
     shell.wait_for("the session cannot be saved");
     shell.press("q");
-    shell.wait_for("what was done last is lost: the session cannot be saved");
-    shell.wait_for("--resume comes back to step 30 of Method 2");
+    shell.wait_for("the last changes are lost: the session cannot be saved");
+    shell.wait_for("--resume reopens step 30 of Method 2");
 }
 
 #[test]
@@ -82,7 +82,7 @@ fn sessions_of_other_versions_are_named_and_left_alone() {
     let mut lab = ground.open("--resume");
     for name in ["1.session", "2.session"] {
         lab.wait_for(&format!(
-            "{name} is left alone (another version of gyrolab wrote it)"
+            "{name} was skipped (another version of gyrolab wrote it)"
         ));
     }
     lab.quit();

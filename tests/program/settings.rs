@@ -104,7 +104,7 @@ fn broken_settings_are_reported_and_the_lab_still_opens() {
     );
     let mut lab = open(&ground, &[]);
     lab.wait_for("config.toml:2: fbs: unknown key: did you mean fps?; config.toml:4: mouse");
-    lab.wait_for("not used; mend it");
+    lab.wait_for("ignored; correct the file");
     assert!(!has_colors(&lab));
     assert!(is_ascii(&lab));
     lab.quit();

@@ -19,7 +19,7 @@ fn travels(ground: &Ground, what: &str, figure: &str, flips: u32, dice: &mut Dic
     );
     has(
         stdout(&done(ground.run(&format!("verify {figure}")))),
-        "the same: drawn again",
+        "the same: redrawn",
     );
     for _ in 0..flips {
         let mut changed = bytes.clone();
@@ -262,7 +262,10 @@ fn verify_checks_a_write_up_as_a_whole() {
     // A file added by the student is named, but it is not a difference.
     ground.write("w/notes.txt", "mine");
     let again = done(ground.run("verify w"));
-    has(stdout(&again), "w: 1 file not of the write-up: notes.txt");
+    has(
+        stdout(&again),
+        "w: 1 file not part of the write-up: notes.txt",
+    );
     let page = ground.read("w/README.md");
     ground.write(
         "w/README.md",
@@ -278,7 +281,7 @@ fn verify_checks_a_write_up_as_a_whole() {
         stdout(&verified),
         [
             "w/README.md: differs: lines 13 to ",
-            "of which line 13 is \"| body | 4.2197 g;",
+            "differ; line 13 is \"| body | 4.2197 g;",
             "w/above.svg: differs: it is missing",
             "w/traces.svg: differs: it is a figure of another run",
             "w/traces.pdf: the same",
@@ -286,8 +289,8 @@ fn verify_checks_a_write_up_as_a_whole() {
     );
     failed(
         &ground.run("verify w/README.md"),
-        &["a write-up is verified by its folder"],
+        &["to verify a write-up, name its folder"],
     );
     fs::remove_file(ground.file("w/run.toml")).unwrap();
-    failed(&ground.run("verify w"), &["is no write-up"]);
+    failed(&ground.run("verify w"), &["is not a write-up"]);
 }

@@ -34,7 +34,7 @@ fn exports_of_every_kind_are_verified() {
     has_all(
         &told,
         [
-            "whole.csv: the same: all 41 rows, computed again\n    Do not believe this run: ",
+            "whole.csv: the same: all 41 rows, recomputed\n    Do not believe this run: ",
             "part.csv: the same: all 4 rows",
             "spin.csv: the same: all 41 rows",
             "excel.csv: the same: all 41 rows",
@@ -138,12 +138,12 @@ fn invalid_rows_and_columns_are_rejected() {
         (
             "--from 500 -o x.csv",
             1,
-            "no row is left by --from: the run ends at 230 s",
+            "--from leaves no row: the run ends at 230 s",
         ),
         (
             "--from 5.01 --to 5.02 -o x.csv",
             1,
-            "no row lies between --from and --to",
+            "there is no row between --from and --to",
         ),
     ] {
         ground.refused(&format!("run method-2 {options}"), exit, &[words]);
@@ -226,9 +226,9 @@ fn line_ends_of_sweeps_and_runs_are_reported_alike() {
             (good.trim_end(), &format!(", {cut}")),
             (&good[..good.len() - 4], cut),
             (without, "it is cut off"),
-            (&format!("{good}\n"), "have come to their end"),
-            (&format!("{good} \n"), "have come to their end"),
-            (&format!("{good}x"), "have come to their end"),
+            (&format!("{good}\n"), "but the computed rows have ended"),
+            (&format!("{good} \n"), "but the computed rows have ended"),
+            (&format!("{good}x"), "but the computed rows have ended"),
         ] {
             has(differs(&ground, text), words);
         }

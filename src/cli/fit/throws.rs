@@ -46,13 +46,13 @@ impl fmt::Display for Throw {
         let rate = significant(self.flight.rate, 3);
         write!(
             f,
-            "flight {} of {}: {from_s} s to {to_s} s, {} rows, {rate} rad/s on the mean",
+            "flight {} of {}: {from_s} s to {to_s} s, {} rows, mean rate {rate} rad/s",
             self.number, self.of, self.flight.rows
         )
     }
 }
 
-/// The report of a fit, and which flight of the recording it is of.
+/// The report of a fit, with the fitted flight of the recording.
 pub(super) struct Thrown<'a> {
     pub report: FitReport<'a>,
     pub throw: Option<&'a Throw>,
