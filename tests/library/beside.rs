@@ -1,4 +1,4 @@
-//! Runs side by side: what an edit plays the run to, what stays as the run before, and the pinned run.
+//! Comparison of runs: the rerun after an edit, the previous run, the pinned run, and advice.
 
 use crate::support::desk::Desk;
 use crate::support::stage::{LARGE, SMALL, Stage};
@@ -16,13 +16,13 @@ fn is_believed(desk: &Desk) -> Option<bool> {
     desk.lab.player().reading.readouts.health.is_believed()
 }
 
-/// The end of the run before, s.
+/// The end of the previous run, s.
 fn ghost_s(lab: &Lab) -> Option<f64> {
     lab.comparison().ghost().map(Ghost::end_s)
 }
 
 #[test]
-fn an_edit_of_body_or_start_is_played_to_the_same_time() {
+fn editing_body_or_start_reruns_to_the_same_time() {
     let mut desk = Desk::open("method-2");
     desk.commands("go_to = '40 s'\nset = { 'start.tilt_deg' = 40 }");
     assert_eq!((desk.step(), time_s(&desk)), (400, 40.0));
@@ -36,7 +36,7 @@ fn an_edit_of_body_or_start_is_played_to_the_same_time() {
 }
 
 #[test]
-fn an_edit_at_step_0_is_played_as_far_as_the_run_was() {
+fn an_edit_at_step_0_reruns_to_the_end_of_the_old_run() {
     for (set, step) in [
         ("'motion.gravity_m_per_s2' = 5", 400),
         ("'motion.time_step_s' = 0.05", 800),
@@ -50,14 +50,14 @@ fn an_edit_at_step_0_is_played_as_far_as_the_run_was() {
         assert_eq!(desk.step(), step, "{set}");
         assert!((time_s(&desk) - 40.0).abs() < 0.015, "{set}");
         assert_eq!(ghost_s(&desk.lab), Some(40.0), "{set}");
-        // The journal is as it was: the entry stands at step 0, and undo goes there.
+        // The journal entry still belongs to step 0, and undo returns there.
         desk.commands("undo = 1");
         assert_eq!(desk.step(), 0, "{set}");
     }
 }
 
 #[test]
-fn an_edit_of_a_push_at_step_0_is_played_too_and_a_push_given_is_not() {
+fn editing_a_push_at_step_0_reruns_but_adding_one_does_not() {
     let mut desk = Desk::open("wobble-push");
     desk.commands("go_to = '20 s'\ngo_to = 'start'\nset = { 'push.0.force_N.2' = -50 }");
     assert_eq!(time_s(&desk), 20.0);
@@ -66,7 +66,7 @@ fn an_edit_of_a_push_at_step_0_is_played_too_and_a_push_given_is_not() {
 }
 
 #[test]
-fn an_edit_of_motion_later_on_acts_from_there() {
+fn a_later_edit_of_motion_takes_effect_from_its_step() {
     let mut desk = Desk::open("method-2");
     desk.commands("go_to = '40 s'\nset = { 'motion.gravity_m_per_s2' = 5 }");
     assert_eq!((desk.step(), ghost_s(&desk.lab)), (400, None));
@@ -74,7 +74,7 @@ fn an_edit_of_motion_later_on_acts_from_there() {
 }
 
 #[test]
-fn nudges_that_follow_each_other_keep_the_first_ones_time_and_ghost() {
+fn consecutive_nudges_keep_the_time_and_the_previous_run() {
     let mut desk = Desk::open("method-2");
     desk.commands("go_to = '40 s'\ngo_to = 'start'");
     for times in [1, 1, -3, 10] {
@@ -99,7 +99,7 @@ fn nudges_that_follow_each_other_keep_the_first_ones_time_and_ghost() {
 }
 
 #[test]
-fn nudges_of_a_running_lab_come_back_to_the_first_ones_time_and_go_on() {
+fn nudges_during_playback_rerun_to_their_time_and_continue() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.wait(2.0);
     let stood = stage.step();
@@ -113,7 +113,7 @@ fn nudges_of_a_running_lab_come_back_to_the_first_ones_time_and_go_on() {
 }
 
 #[test]
-fn a_hundred_thousand_steps_are_played_before_the_next_frame() {
+fn reruns_of_100_000_steps_finish_within_a_frame() {
     let mut desk = Desk::open("method-2");
     desk.commands("go_to = 100000");
     let mut nudge = "nudge = { key = 'start.tilt_deg', times = 1 }\n".to_owned();
@@ -127,7 +127,7 @@ fn a_hundred_thousand_steps_are_played_before_the_next_frame() {
 }
 
 #[test]
-fn a_longer_way_is_gone_in_parts_while_keys_are_answered() {
+fn a_longer_rerun_is_interruptible_by_keys() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.commands("speed = 'top'\ngo_to = 600000").wait(1.0);
     while stage.lab.player().steps_to_go().is_some() {
@@ -139,10 +139,10 @@ fn a_longer_way_is_gone_in_parts_while_keys_are_answered() {
     let under_way = stage.step();
     assert!((100_000..stood).contains(&under_way), "{under_way}");
     stage.shows("playing the new run to the same time");
-    // A session that is kept now is on its way there.
+    // A session saved now continues toward that step.
     let kept = stage.lab.content(&Default::default()).place;
     assert!(kept.contains(&format!("step = {stood}\n")), "{kept}");
-    // One more nudge under way goes to the same time.
+    // Another nudge during the rerun keeps the target time.
     stage.commands("nudge = { key = 'start.tilt_deg', times = 1 }");
     assert_eq!(ghost_s(&stage.lab), Some(stood as f64 * 0.1));
     while stage.lab.player().steps_to_go().is_some() {
@@ -150,13 +150,13 @@ fn a_longer_way_is_gone_in_parts_while_keys_are_answered() {
     }
     assert!(stage.lab.player().is_running());
     assert!((stood..stood + 200_000).contains(&stage.step()));
-    // Esc stops on the way.
+    // Esc stops the rerun.
     stage.commands("pause = true\nset = { 'start.tilt_deg' = 20 }");
     stage.press("\u{1b}").shows("stopped with");
     let stopped = stage.step();
     stage.wait(1.0);
     assert_eq!(stage.step(), stopped);
-    // The run that was left on its way is one undo away.
+    // One undo restores the interrupted run.
     stage.commands("undo = 1");
     let bound_for = stage.step() + stage.lab.player().steps_to_go().unwrap_or(0);
     assert!(bound_for >= stood);
@@ -167,7 +167,7 @@ fn the_pinned_run_stays_until_it_is_unpinned() {
     let mut stage = Stage::open("method-2", &[], LARGE);
     stage.commands("pause = true\ngo_to = '10 s'");
     stage.press("i").shows("this run is pinned");
-    // It is recorded while it is played on.
+    // The pinned run is still recorded while it plays.
     stage.commands("go_to = '40 s'");
     assert!(stage.lab.comparison().pinned().is_none() && stage.lab.comparison().is_pinned());
     let pinned_s = |of: &Stage| of.lab.comparison().pinned().map(Ghost::end_s);
@@ -187,7 +187,7 @@ fn the_pinned_run_stays_until_it_is_unpinned() {
 }
 
 #[test]
-fn a_pinned_run_that_is_edited_is_kept_as_it_was() {
+fn editing_the_pinned_run_keeps_the_pinned_version() {
     let mut desk = Desk::open("method-2");
     desk.commands("go_to = '40 s'\npin = true\ngo_to = '20 s'");
     desk.commands("set = { 'motion.gravity_m_per_s2' = 0 }\ngo_to = '30 s'");
@@ -198,14 +198,14 @@ fn a_pinned_run_that_is_edited_is_kept_as_it_was() {
     assert!(!desk.lab.comparison().is_pinned());
 }
 
-/// The row of the verdict.
+/// Returns the row of the verdict.
 fn verdict(stage: &Stage) -> String {
     let row = screen::layout(&stage.lab, true, stage.size).verdict.y;
     let picture = stage.picture();
     picture.lines().nth(row.into()).unwrap().to_owned()
 }
 
-/// Waits until the search for advice, which goes on in the background, has found some.
+/// Waits until the background search has found advice.
 fn wait_for_advice(stage: &mut Stage) {
     for _ in 0..6000 {
         if stage.wait(0.0).lab.adviser().advice().is_some() {
@@ -217,7 +217,7 @@ fn wait_for_advice(stage: &mut Stage) {
 }
 
 #[test]
-fn advice_is_taken_by_one_key() {
+fn one_key_applies_the_advice() {
     let mut stage = Stage::open("method-2", &[], LARGE);
     stage.lab.take_advice();
     stage.commands("pause = true\npush = { point = 'top', force_N = [0, 0, -100], for_s = 2 }");
@@ -240,7 +240,7 @@ fn advice_is_taken_by_one_key() {
 }
 
 #[test]
-fn undo_takes_the_advice_back_before_an_earlier_edit() {
+fn undo_reverts_the_advice_before_an_earlier_edit() {
     let mut desk = Desk::open("method-2");
     desk.commands("go_to = 100\nset = { 'motion.gravity_m_per_s2' = 9 }\ngo_to = '40 s'");
     desk.commands("take_advice = true");
@@ -256,7 +256,7 @@ fn undo_takes_the_advice_back_before_an_earlier_edit() {
 }
 
 #[test]
-fn advice_that_takes_the_place_of_an_edit_says_so() {
+fn advice_that_replaces_edits_says_so() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.commands("pause = true\ngo_to = 200\nset = { 'motion.scheme' = 'rk4' }\ngo_to = '40 s'");
     stage.press("a").wait(0.1);
@@ -265,19 +265,19 @@ fn advice_that_takes_the_place_of_an_edit_says_so() {
 }
 
 #[test]
-fn advice_that_has_come_is_taken_at_once() {
+fn available_advice_is_applied_at_once() {
     let mut stage = Stage::open("method-2", &[], LARGE);
     stage.lab.take_advice();
     stage.commands("pause = true\ngo_to = '40 s'");
     while stage.lab.adviser().advice().is_none() {
         std::thread::sleep(std::time::Duration::from_millis(10));
     }
-    // The key comes before the lab has looked whether there is news.
+    // The key arrives before the lab has polled for the result.
     stage.press("a").shows("from the start");
 }
 
 #[test]
-fn advice_is_taken_by_a_command_and_holds() {
+fn a_command_applies_advice_that_makes_the_run_reliable() {
     let mut desk = Desk::open("wobble-push");
     desk.commands("go_to = '10 s'\ntake_advice = true");
     assert_eq!(time_s(&desk), 10.0);
@@ -289,7 +289,7 @@ fn advice_is_taken_by_a_command_and_holds() {
 }
 
 #[test]
-fn accumulating_pushes_offer_no_other_time_step() {
+fn accumulating_pushes_get_no_advice_on_the_time_step() {
     let mut stage = Stage::open("wobble-push-accumulating", &[], LARGE);
     stage.lab.take_advice();
     stage.wait(1.0).commands("pause = true\ngo_to = 40");
@@ -302,7 +302,7 @@ fn accumulating_pushes_offer_no_other_time_step() {
 }
 
 #[test]
-fn the_line_about_the_numbers_is_right_as_soon_as_an_edit_is_made() {
+fn the_verdict_is_updated_immediately_after_an_edit() {
     let mut stage = Stage::open("method-2", &[], LARGE);
     stage.lab.take_advice();
     stage.commands("pause = true\ngo_to = '40 s'");
@@ -331,10 +331,10 @@ fn the_line_about_the_numbers_is_right_as_soon_as_an_edit_is_made() {
 }
 
 #[test]
-fn advice_on_an_edited_time_step_is_for_the_whole_run() {
+fn advice_on_an_edited_time_step_covers_the_whole_run() {
     let mut desk = Desk::open("method-1");
     desk.commands("set = { 'body.rim.height_m' = 1.0 }\ngo_to = '0.2 s'");
-    // From step 0 on: the scenario's number of steps then makes a hundredth of its seconds.
+    // From step 0 on, the scenario's number of steps covers only a hundredth of its duration.
     desk.commands("go_to = 0\nset = { 'motion.time_step_s' = 1e-5 }\ngo_to = '0.2 s'");
     assert_eq!(is_believed(&desk), Some(false));
     desk.commands("take_advice = true");
@@ -343,21 +343,21 @@ fn advice_on_an_edited_time_step_is_for_the_whole_run() {
 }
 
 #[test]
-fn an_exact_motion_that_would_take_too_long_is_left_out_and_said() {
+fn an_exact_motion_too_slow_to_compute_is_omitted_with_a_reason() {
     let set = ["motion.time_step_s=1e6", "view.exact=true"];
     let mut stage = Stage::open("wing-nut", &set, LARGE);
     stage.commands("pause = true").shows("NO EXACT MOTION");
     assert!(stage.lab.player().run().overlay().is_none());
     let words = "its exact motion must be integrated, which would take too long for 4000000000 s: it is not shown";
     stage.press("tt").shows(words);
-    // It is drawn again where it can be.
+    // It is drawn again as soon as it can be computed.
     stage.commands("set = { 'motion.time_step_s' = 0.01 }\nstep = 3");
     assert!(stage.lab.player().run().overlay().is_some());
     stage.shows("off exact (m)");
 }
 
 #[test]
-fn the_exact_motion_ends_where_it_is_no_number() {
+fn the_exact_motion_ends_where_it_is_not_finite() {
     for set in [
         "friction.spin_viscous_Nms=1e10",
         "start.momentum_Js=[0,1e148,100]",

@@ -1,4 +1,4 @@
-//! The folder of a class: seats, wrong codes, votes by round, and what the two accounts write in it.
+//! The folder of a class: seats, wrong codes, votes by round, and the files of the two accounts.
 
 use gyrolab::class::board;
 use gyrolab::class::folder::{ClassState, VoteStage};
@@ -34,7 +34,7 @@ fn new_seat(folder: &ClassFolder, name: &str) -> Seat {
     seat
 }
 
-/// Keeps in `seat` these votes on the question `name` of `lesson`: round, number, and whether it is late.
+/// Saves in `seat` these votes on the question `name` of `lesson`: round, number, and whether it is late.
 fn keep(seat: &Seat, lesson: &Lesson, name: &str, votes: &[(u32, f64, bool)]) {
     let predict = lesson.predict(name).unwrap();
     let mut place = LessonProgress::default();
@@ -64,7 +64,7 @@ fn keep(seat: &Seat, lesson: &Lesson, name: &str, votes: &[(u32, f64, bool)]) {
 }
 
 #[test]
-fn a_seat_is_found_by_its_word_alone_and_its_modes_are_set() {
+fn a_seat_is_found_only_by_its_word_and_has_restricted_modes() {
     let (_dir, folder) = class();
     let seat = new_seat(&folder, " Anna\n");
     assert!(seat.word.starts_with("anna-") && seat.word.len() == 11);
@@ -83,7 +83,7 @@ fn a_seat_is_found_by_its_word_alone_and_its_modes_are_set() {
 }
 
 #[test]
-fn hostile_names_make_no_seat() {
+fn invalid_names_are_rejected_for_seats() {
     let (_dir, folder) = class();
     let long = "a".repeat(25);
     for name in [
@@ -114,7 +114,7 @@ fn hostile_names_make_no_seat() {
     assert_eq!(all_seats(&folder).unwrap().len(), 0);
 }
 
-/// A word of this name that is none of `seats`.
+/// Returns a word for `name` that belongs to none of `seats`.
 fn wrong_word(name: &str, seats: &[&Seat]) -> String {
     let words = (0..).map(|code| format!("{name}-{code:06}"));
     words
@@ -134,7 +134,7 @@ const NO_SEAT: &str = "no seat of that word";
 const TOO_MANY: &str = "too many wrong codes for anna";
 
 #[test]
-fn wrong_codes_make_the_seats_of_a_name_wait_longer_and_longer() {
+fn wrong_codes_delay_further_attempts_increasingly() {
     let (_dir, folder) = class();
     let (anna, berta) = (new_seat(&folder, "anna"), new_seat(&folder, "berta"));
     let wrong = wrong_word("anna", &[&anna]);
@@ -155,7 +155,7 @@ fn wrong_codes_make_the_seats_of_a_name_wait_longer_and_longer() {
 }
 
 #[test]
-fn a_right_code_resets_the_count_of_its_own_seat_alone() {
+fn a_right_code_resets_only_the_count_of_its_own_seat() {
     let (_dir, folder) = class();
     let (own, other) = (new_seat(&folder, "anna"), new_seat(&folder, "anna"));
     let wrong = wrong_word("anna", &[&own, &other]);
@@ -168,7 +168,7 @@ fn a_right_code_resets_the_count_of_its_own_seat_alone() {
     let words: Vec<_> = waiting.iter().map(|seat| seat.word.as_str()).collect();
     assert_eq!(words, [&other.word]);
     assert_eq!(waiting[0].wrong.count, 5);
-    // What is answered while the other seat waits does not tell its code.
+    // The reply for a delayed seat does not reveal whether the code is right.
     let to_right = refused(&folder, &other.word, 2, TOO_MANY);
     assert_eq!(to_right, refused(&folder, &wrong, 2, TOO_MANY));
 }
@@ -206,7 +206,7 @@ fn wrong_codes(folder: &ClassFolder, seat: &Seat) -> PathBuf {
 }
 
 #[test]
-fn nothing_in_place_of_a_count_holds_anybody_up() {
+fn a_damaged_count_of_wrong_codes_does_not_block() {
     let (_dir, folder) = class();
     let seat = new_seat(&folder, "anna");
     let count = wrong_codes(&folder, &seat);
@@ -232,17 +232,17 @@ fn nothing_in_place_of_a_count_holds_anybody_up() {
 }
 
 #[test]
-fn a_seat_of_an_older_version_keeps_its_four_digits() {
+fn seats_of_older_versions_keep_their_four_digit_codes() {
     let (_dir, folder) = class();
     fs::create_dir(folder.seats().join("anna-4711")).unwrap();
     let (seat, is_new) = login::claim(&folder, "anna-4711", 0).unwrap();
     assert!((seat.word.as_str(), is_new) == ("anna-4711", false));
-    // A code that lacks a digit is no name for a new seat.
+    // A code with a missing digit is not accepted as the name of a new seat.
     refused(&folder, "anna-47110", 0, NO_SEAT);
 }
 
 #[test]
-fn a_seat_whose_file_is_damaged_is_named() {
+fn damaged_seats_are_reported_by_name() {
     let (_dir, folder) = class();
     let (anna, berta) = (new_seat(&folder, "anna"), new_seat(&folder, "berta"));
     berta.save(&SeatRecord::default()).unwrap();
@@ -261,7 +261,7 @@ fn a_seat_whose_file_is_damaged_is_named() {
 }
 
 #[test]
-fn answers_that_the_disk_has_not_are_told_at_the_end() {
+fn unsaved_answers_are_reported_on_leaving() {
     let (_dir, folder) = class();
     let seat = new_seat(&folder, "anna");
     let holds = seat.hold().unwrap();
@@ -273,7 +273,7 @@ fn answers_that_the_disk_has_not_are_told_at_the_end() {
 }
 
 #[test]
-fn a_class_has_two_hundred_seats() {
+fn a_class_has_at_most_two_hundred_seats() {
     let (_dir, folder) = class();
     for index in 0..login::MOST_SEATS {
         fs::create_dir(folder.seats().join(format!("s{index}-000000"))).unwrap();
@@ -283,7 +283,7 @@ fn a_class_has_two_hundred_seats() {
 }
 
 #[test]
-fn votes_are_counted_by_round_and_late_ones_apart() {
+fn votes_are_counted_by_round_and_late_votes_separately() {
     let (_dir, folder) = class();
     let lesson = opening::open(LESSON).unwrap();
     let predict = lesson.predict("finer").unwrap();
@@ -313,7 +313,7 @@ fn votes_are_counted_by_round_and_late_ones_apart() {
 }
 
 #[test]
-fn what_is_right_leads_to_advice() {
+fn the_share_of_right_answers_determines_the_advice() {
     let text = "# T\n\n## P\n\n```predict\nname = \"a\"\nask = \"How far?\"\n";
     let choice = "choices = [\"one\", \"two\"]\nright = 2\n```\n";
     let number = "unit = \"deg\"\nright = 2.0\nwithin = 0.5\n```\n";
@@ -347,7 +347,7 @@ fn what_is_right_leads_to_advice() {
 }
 
 #[test]
-fn another_versions_files_are_named_and_left() {
+fn files_of_another_version_are_named_and_left_alone() {
     let (_dir, folder) = class();
     fs::write(
         folder.teacher().join("state"),
@@ -366,7 +366,7 @@ fn another_versions_files_are_named_and_left() {
 }
 
 #[test]
-fn what_cannot_be_written_leaves_the_old_file() {
+fn a_failed_write_keeps_the_old_file() {
     let (_dir, folder) = class();
     let seat = new_seat(&folder, "anna");
     let record = SeatRecord {
@@ -383,7 +383,7 @@ fn what_cannot_be_written_leaves_the_old_file() {
     assert!(seat.save(&long).unwrap_err().contains("1 MB"));
     assert!(seat.record().unwrap().is_aside);
     if rustix_is_root() {
-        return; // whom no mode keeps from writing
+        return; // root can write despite the mode
     }
     let inside = seat.file("");
     fs::set_permissions(&inside, Permissions::from_mode(0o500)).unwrap();
@@ -398,7 +398,7 @@ fn rustix_is_root() -> bool {
 }
 
 #[test]
-fn a_question_closes_and_the_state_comes_back() {
+fn the_state_of_closed_questions_is_read_back() {
     let (_dir, folder) = class();
     let mut state = ClassState {
         gyrolab: env!("CARGO_PKG_VERSION").to_owned(),

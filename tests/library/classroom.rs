@@ -1,4 +1,4 @@
-//! A class in one process: the labs of the teacher and the students, and the projector, on screens without a terminal.
+//! A class in one process: the labs of teacher and students and the projector, on screens without a terminal.
 
 use crate::support::stage::{LARGE, SMALL, Stage};
 use crate::support::words::{has, has_no};
@@ -57,7 +57,7 @@ It was run.
 Nothing more.
 "#;
 
-/// The folder of a class with the lesson above in it.
+/// The folder of a class with the lesson above.
 struct Class {
     dir: TempDir,
     folder: ClassFolder,
@@ -76,7 +76,7 @@ impl Class {
         self.folder.root.join("test.md").display().to_string()
     }
 
-    /// The teacher's lab, on this page.
+    /// Opens the teacher's lab on `page`.
     fn teach(&self, page: usize) -> ClassLab {
         let before = self.folder.state().unwrap().unwrap_or_default();
         let mut lab = ClassLab::new(Teacher::new(self.folder.clone(), before), SMALL);
@@ -101,7 +101,7 @@ impl Class {
         ClassLab::new(Projector::new(self.folder.clone()), SMALL)
     }
 
-    /// The votes, without the lesson and what follows `late`.
+    /// Returns the votes without the lesson and the columns after `late`.
     fn votes(&self) -> Vec<String> {
         let seats = seat_statuses(&self.folder).unwrap();
         let csv = votes::csv(&self.folder, &seats).unwrap();
@@ -129,7 +129,7 @@ impl ClassLab {
         }
     }
 
-    /// Lets a third of a second pass.
+    /// Advances the clock by a third of a second.
     fn pass(&mut self) -> &mut Self {
         let Stage {
             lab,
@@ -151,7 +151,7 @@ impl ClassLab {
         self
     }
 
-    /// Presses `keys`, as the main loop does.
+    /// Handles `keys` like the main loop.
     fn press(&mut self, keys: &str) -> &mut Self {
         for c in keys.chars() {
             let key = match c {
@@ -195,10 +195,10 @@ fn spaced(picture: &str) -> String {
     picture.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// Lets time pass in all `labs`, the teacher's first, until all have seen what was done.
+/// Advances all `labs`, the teacher's first, until each has seen the changes of the others.
 fn settle(labs: &mut [&mut ClassLab]) {
     for _ in 0..4 {
-        sleep(Duration::from_millis(6)); // longer than the clock of the files needs to tell two times apart
+        sleep(Duration::from_millis(6)); // longer than the resolution of file times
         for lab in &mut *labs {
             lab.pass();
         }
@@ -213,7 +213,7 @@ fn settle_with(teacher: &mut ClassLab, seats: &mut [ClassLab], projector: &mut C
 }
 
 #[test]
-fn next_asks_once_while_votes_are_missing() {
+fn next_asks_for_confirmation_while_votes_are_missing() {
     let class = Class::new();
     let (mut teacher, mut anna, mut ben) = (class.teach(2), class.sit("anna"), class.sit("ben"));
     settle(&mut [&mut teacher, &mut anna, &mut ben]);
@@ -221,12 +221,12 @@ fn next_asks_once_while_votes_are_missing() {
     settle(&mut [&mut teacher, &mut anna, &mut ben]);
     teacher.press("n");
     teacher.shows("1 of 2 have answered; press n again to go on");
-    teacher.press("w").press("n"); // another key: it asks again
+    teacher.press("w").press("n"); // after another key, it asks again
     teacher
         .shows("1 of 2 have answered; press n again")
         .shows("The question");
     teacher.press("n").shows("The run");
-    // Where everyone has answered, it does not ask.
+    // It does not ask if everyone has answered.
     teacher.press("N");
     settle(&mut [&mut teacher, &mut anna, &mut ben]);
     ben.press("2\n");
@@ -235,7 +235,7 @@ fn next_asks_once_while_votes_are_missing() {
 }
 
 #[test]
-fn next_asks_once_while_a_run_plays_for_the_class() {
+fn next_asks_for_confirmation_while_a_run_plays() {
     let class = Class::new();
     let mut teacher = class.teach(3);
     teacher.pass();
@@ -245,7 +245,7 @@ fn next_asks_once_while_a_run_plays_for_the_class() {
     teacher.press("n").shows("It was run.");
     teacher.press("n").shows("Nothing more.");
     teacher.press(" ").press("N").shows("The run");
-    // Whose class goes on alone is not asked.
+    // A teacher whose class works on its own is not asked.
     teacher.press("k3").press("n").shows("It was run.");
 }
 
@@ -255,7 +255,7 @@ fn a_marked_answer_counts_when_the_teacher_turns_the_page() {
     let (mut teacher, mut anna, mut ben) = (class.teach(2), class.sit("anna"), class.sit("ben"));
     settle(&mut [&mut teacher, &mut anna, &mut ben]);
     anna.press("3");
-    // Who turns the page without the class leaves the answer open.
+    // A student who turns the page without the class leaves the answer open.
     ben.press("1nn").shows("left, k: rejoin · 3");
     settle(&mut [&mut teacher, &mut anna, &mut ben]);
     assert!(class.votes().is_empty());
@@ -282,19 +282,19 @@ fn a_marked_answer_counts_when_its_round_is_closed_or_asked_again() {
     settle(&mut [&mut teacher, &mut anna]);
     assert_eq!(class.votes(), ["q 1 anna 3 false", "q 2 anna 1 false"]);
     anna.shows("Round 3: your teacher asks again.");
-    // The mark of the round before is no answer to this one.
+    // The mark of the previous round does not count in this one.
     teacher.press("nn");
     settle(&mut [&mut teacher, &mut anna]);
     assert_eq!(class.votes().len(), 2);
 }
 
 #[test]
-fn a_mark_outlives_the_teachers_lab() {
+fn a_marked_answer_survives_the_end_of_the_teachers_lab() {
     let class = Class::new();
     let (mut teacher, mut anna) = (class.teach(2), class.sit("anna"));
     settle(&mut [&mut teacher, &mut anna]);
     anna.press("3");
-    drop(teacher); // as a kill does: it says nothing
+    drop(teacher); // like a kill, without a farewell
     sleep(Duration::from_millis(4100));
     anna.pass().pass().shows("the teacher's lab is gone");
     assert!(class.votes().is_empty());
@@ -306,7 +306,7 @@ fn a_mark_outlives_the_teachers_lab() {
 }
 
 #[test]
-fn a_seat_without_a_class_waits_and_shows_nothing_of_a_run() {
+fn a_seat_without_a_class_waits_and_hides_the_run() {
     let class = Class::new();
     let (mut anna, mut ben) = (class.sit("anna"), class.sit("ben"));
     for size in [SMALL, LARGE] {
@@ -319,7 +319,7 @@ fn a_seat_without_a_class_waits_and_shows_nothing_of_a_run() {
             anna.shows_no(words);
         }
     }
-    // Homework: a lesson, or a free lab.
+    // Homework can be a lesson or a free lab.
     ben.pass()
         .press("\u{1b}")
         .shows("Method 2")
@@ -336,7 +336,7 @@ fn a_seat_without_a_class_waits_and_shows_nothing_of_a_run() {
     ben.press("k");
     settle(&mut [&mut teacher, &mut anna, &mut ben]);
     ben.shows("following · 2 of 4").shows("What happens next?");
-    // Once the class is over, the page stays.
+    // The page remains after the class has ended.
     teacher.role.leave().unwrap();
     settle(&mut [&mut anna, &mut ben]);
     anna.shows("the class is over: press n or N to turn pages")
@@ -344,7 +344,7 @@ fn a_seat_without_a_class_waits_and_shows_nothing_of_a_run() {
 }
 
 #[test]
-fn a_free_lab_keeps_saying_that_the_class_is_on() {
+fn a_free_lab_keeps_showing_that_the_class_is_on() {
     let class = Class::new();
     let mut anna = class.sit("anna");
     anna.pass().press("\u{1b}");
@@ -361,7 +361,7 @@ fn a_free_lab_keeps_saying_that_the_class_is_on() {
 }
 
 #[test]
-fn the_teacher_gathers_who_has_stepped_aside() {
+fn the_teacher_gathers_students_who_have_left() {
     let class = Class::new();
     let (mut teacher, mut anna, mut ben) = (class.teach(1), class.sit("anna"), class.sit("ben"));
     settle(&mut [&mut teacher, &mut anna, &mut ben]);
@@ -372,7 +372,7 @@ fn the_teacher_gathers_who_has_stepped_aside() {
     anna.shows("following · 1 of 4")
         .shows("your teacher has gathered the class");
     teacher.shows("2 here").shows_no("not following");
-    // Who was aside when the line dropped is gathered on coming back.
+    // A student who had left when the line dropped is gathered on reconnecting.
     ben.press("n");
     settle(&mut [&mut teacher, &mut anna, &mut ben]);
     let seat = seat_statuses(&class.folder).unwrap().remove(1).seat;
@@ -385,7 +385,7 @@ fn the_teacher_gathers_who_has_stepped_aside() {
 }
 
 #[test]
-fn who_may_go_on_alone_is_told_and_comes_back_with_the_class() {
+fn students_working_on_their_own_are_told_and_regathered() {
     let class = Class::new();
     let (mut teacher, mut anna, mut projector) =
         (class.teach(1), class.sit("anna"), class.project());
@@ -396,7 +396,7 @@ fn who_may_go_on_alone_is_told_and_comes_back_with_the_class() {
     anna.press("n").shows("alone · 2 of 4 · class on 1");
     teacher.press("nn");
     settle(&mut [&mut teacher, &mut anna, &mut projector]);
-    projector.shows("2 of 4"); // it stays with the teacher
+    projector.shows("2 of 4"); // the projector follows the teacher
     anna.press("N").shows("alone · 1 of 4 · class on 2");
     teacher.press("k3");
     settle(&mut [&mut teacher, &mut anna, &mut projector]);
@@ -404,7 +404,7 @@ fn who_may_go_on_alone_is_told_and_comes_back_with_the_class() {
 }
 
 #[test]
-fn the_projector_shows_nothing_that_is_the_teachers() {
+fn the_projector_hides_what_is_for_the_teacher() {
     let class = Class::new();
     let mut projector = class.project();
     projector
@@ -435,7 +435,7 @@ fn the_projector_shows_nothing_that_is_the_teachers() {
     settle_with(&mut teacher, &mut seats, &mut projector);
     projector.shows("2 ━━━━━━━━━━━━━━━━━━━━━━━━━━━━ 4");
     seats[0].shows("2 ━━━━━━━━━━━━━━━━━━━━━━━━━━━━ 4");
-    // The bars stay when the round is closed.
+    // The bars remain after the round is closed.
     teacher.press("k1");
     settle_with(&mut teacher, &mut seats, &mut projector);
     projector
@@ -445,7 +445,7 @@ fn the_projector_shows_nothing_that_is_the_teachers() {
         let other = projector.stage.picture().replace("the right way", "");
         has_no(other, words);
     }
-    // The run is shown as it plays, and the page after it.
+    // The run is shown while it plays, and then the page.
     teacher.press("n");
     for _ in 0..4 {
         settle_with(&mut teacher, &mut seats, &mut projector);
@@ -454,7 +454,7 @@ fn the_projector_shows_nothing_that_is_the_teachers() {
 }
 
 #[test]
-fn a_countdown_is_seen_by_all_and_can_be_stopped() {
+fn a_countdown_is_shown_to_everyone_and_can_be_stopped() {
     let class = Class::new();
     let (mut teacher, mut anna, mut projector) =
         (class.teach(2), class.sit("anna"), class.project());
@@ -473,7 +473,7 @@ fn a_countdown_is_seen_by_all_and_can_be_stopped() {
     for lab in [&mut teacher, &mut anna, &mut projector] {
         lab.shows_no("closes in").shows_no("s left");
     }
-    // Its end, without waiting for it: the state is what the teacher's lab reads when it is resumed.
+    // Ends the countdown without waiting: the resumed teacher's lab reads this state.
     let mut state = class.folder.state().unwrap().unwrap();
     let question = state.questions.get_mut(&class.lesson()).unwrap();
     question.get_mut("q").unwrap().closes_at_ms = Some(1);
@@ -486,7 +486,7 @@ fn a_countdown_is_seen_by_all_and_can_be_stopped() {
 }
 
 #[test]
-fn who_has_not_answered_stands_first_and_lists_scroll() {
+fn seats_without_an_answer_come_first_and_lists_scroll() {
     let class = Class::new();
     let mut teacher = class.teach(2);
     let mut seats: Vec<_> = (10..40)
@@ -505,7 +505,7 @@ fn who_has_not_answered_stands_first_and_lists_scroll() {
         "{lines:?}"
     );
     has(&lines[at("s38-")], "not answered");
-    // The selected line stays in view, and stays selected when the order changes.
+    // The selected row stays visible and selected when the order changes.
     teacher
         .press(&"↓".repeat(29))
         .shows("> s37-")
@@ -524,7 +524,7 @@ fn who_has_not_answered_stands_first_and_lists_scroll() {
 }
 
 #[test]
-fn a_new_group_begins_with_no_seats_and_keeps_those_before() {
+fn a_new_group_starts_without_seats_and_archives_the_old_ones() {
     let class = Class::new();
     let (mut teacher, mut anna) = (class.teach(2), class.sit("anna"));
     settle(&mut [&mut teacher, &mut anna]);
@@ -546,7 +546,7 @@ fn a_new_group_begins_with_no_seats_and_keeps_those_before() {
 }
 
 #[test]
-fn players_answer_step_aside_and_are_gathered() {
+fn simulated_students_answer_leave_and_are_gathered() {
     let class = Class::new();
     let mut teacher = class.teach(2);
     let players = Players::start(&class.folder, 4).unwrap();
@@ -578,7 +578,7 @@ fn players_answer_step_aside_and_are_gathered() {
 }
 
 #[test]
-fn the_notes_stay_the_teachers() {
+fn only_the_teacher_can_read_the_notes() {
     let class = Class::new();
     let (mut teacher, mut anna) = (class.teach(2), class.sit("anna"));
     settle(&mut [&mut teacher, &mut anna]);

@@ -1,4 +1,4 @@
-//! Commands as values: read and written as TOML, refused with line, key and the nearest right name, and carried out.
+//! Commands as values: TOML round trips, error messages with line, key and the nearest name, and execution.
 
 use crate::support::desk::{Desk, commands};
 use crate::support::stage::{LARGE, SMALL, Stage};
@@ -19,7 +19,7 @@ fn read(text: &str) -> Result<Vec<Command>, String> {
     Ok(read.list.into_iter().map(|placed| placed.command).collect())
 }
 
-/// A command of each row of the table.
+/// One command for each row of the table.
 const EXAMPLES: &str = "
     open = 'cusps'
     set = { 'motion.time_step_s' = 0.05 }
@@ -64,7 +64,7 @@ const EXAMPLES: &str = "
     bare = true
     residuals = true";
 
-/// Other values of them, with numbers and names that are hard to write.
+/// Commands with numbers and names that are hard to write as TOML.
 const OTHER_VALUES: &str = r#"
     open = './my run.toml'
     set = { 'motion.time_step_s' = 1e300, 'push.3.force_N.2' = -5e-324, 'start.momentum_Js' = [0.1, 0, 1], 'view.hide' = ['health'] }
@@ -97,7 +97,7 @@ const OTHER_VALUES: &str = r#"
     phase = 'why'"#;
 
 #[test]
-fn commands_are_read_as_they_were_written() {
+fn commands_survive_a_toml_round_trip() {
     for command in commands(EXAMPLES).into_iter().chain(commands(OTHER_VALUES)) {
         let tables = vec![Value::Table(command.to_table())];
         let file = Table::from_iter([("do".to_owned(), Value::Array(tables))]);
@@ -107,7 +107,7 @@ fn commands_are_read_as_they_were_written() {
 }
 
 #[test]
-fn every_row_of_the_table_is_written_under_its_name() {
+fn every_command_of_the_table_has_an_example() {
     let named: BTreeSet<_> = commands(EXAMPLES)
         .iter()
         .map(|command| command.to_table().keys().next().unwrap().clone())
@@ -118,7 +118,7 @@ fn every_row_of_the_table_is_written_under_its_name() {
         lacking.is_empty(),
         "EXAMPLES in tests/library/commands.rs lacks {lacking:?}"
     );
-    // And every command has a row.
+    // Every command has a row.
     let nothing = Table::from_iter([("nothing".to_owned(), Value::Boolean(true))]);
     let refused = nothing.try_into::<Command>().unwrap_err();
     let (_, known) = refused.message().split_once("expected one of ").unwrap();
@@ -133,7 +133,7 @@ fn every_row_of_the_table_is_written_under_its_name() {
 }
 
 #[test]
-fn what_is_wrong_is_told_with_its_line_and_the_nearest_right_name() {
+fn mistakes_are_reported_with_line_and_nearest_name() {
     for (text, told) in [
         (
             "[[do]]\nstep = 1\n[[do]]\ngoto = 3",
@@ -247,7 +247,7 @@ fn what_is_wrong_is_told_with_its_line_and_the_nearest_right_name() {
 }
 
 #[test]
-fn a_set_of_several_keys_is_one_act_or_none() {
+fn setting_several_keys_succeeds_or_fails_as_one_edit() {
     let mut desk = Desk::open("method-2");
     desk.commands("step = 100");
     let untouched = desk.scenario().file;
@@ -259,7 +259,7 @@ fn a_set_of_several_keys_is_one_act_or_none() {
     assert_eq!(desk.scenario().file.title, "mine");
     desk.commands("undo = 1");
     assert_eq!(desk.scenario().file, untouched);
-    // The second cannot be: nothing is done.
+    // The second key is invalid, so nothing is changed.
     let wrong = commands("set = { 'motion.time_step_s' = 0.05, 'trace' = 'nobody' }").remove(0);
     assert!(desk.carry_out(&wrong).is_err());
     let unknown = commands("set = { 'title' = 'mine', 'push.7.force_N.0' = 5 }").remove(0);
@@ -268,7 +268,7 @@ fn a_set_of_several_keys_is_one_act_or_none() {
 }
 
 #[test]
-fn body_and_start_begin_one_new_run() {
+fn setting_body_and_start_starts_one_new_run() {
     let mut desk = Desk::open("method-2");
     desk.commands("step = 100");
     desk.commands(
@@ -281,7 +281,7 @@ fn body_and_start_begin_one_new_run() {
     assert_eq!(desk.lab.player().motion().time_step_s, 0.05);
     desk.commands("undo = 2");
     assert_eq!(desk.step(), 100);
-    // What is refused at its beginning leaves the run that was there.
+    // A rejected edit leaves the run unchanged.
     let wrong = commands("set = { 'start.tilt_deg' = 30, 'push.7.force_N.0' = 5 }").remove(0);
     assert!(desk.carry_out(&wrong).is_err());
     assert_eq!(
@@ -291,7 +291,7 @@ fn body_and_start_begin_one_new_run() {
 }
 
 #[test]
-fn a_push_has_the_force_that_was_written() {
+fn a_push_command_applies_the_given_force() {
     let mut desk = Desk::open("method-2");
     let said = desk
         .commands("go_to = '10 s'\npush = { force_N = [1, -2, 0.3], for_s = 2 }")
@@ -320,7 +320,7 @@ fn a_push_has_the_force_that_was_written() {
 }
 
 #[test]
-fn places_conditions_and_refusals() {
+fn go_to_and_step_reject_steps_outside_the_run() {
     let mut desk = Desk::open("method-2");
     desk.commands("go_to = '12.5 s'");
     assert_eq!(desk.step(), 125);
@@ -352,7 +352,7 @@ fn places_conditions_and_refusals() {
     );
 }
 
-/// A lab that carries out the commands in `text` without a clock.
+/// Executes the commands in `text` in a lab without a clock.
 fn finished(preset: &str, text: &str) -> (Desk, Result<(), String>) {
     let mut desk = Desk::open(preset);
     let document = Document::parse("demo.toml", text).unwrap();
@@ -364,13 +364,13 @@ fn finished(preset: &str, text: &str) -> (Desk, Result<(), String>) {
 }
 
 #[test]
-fn a_run_is_played_until_a_condition_holds() {
+fn run_until_plays_until_the_condition_holds() {
     let (desk, end) = finished(
         "method-2",
         "[[do]]\nrun_until = \"t_s >= 60\"\n[[do]]\nstep = 3",
     );
     assert_eq!((end, desk.step()), (Ok(()), 603));
-    // Past the end of the scenario's run, and where it holds already not at all.
+    // It may lie beyond the scenario's end; if it already holds, no step is taken.
     let text = "[[do]]\nrun_until = \"step >= 2 * motion.steps and abs(z_m) > 0\"\n[[do]]\nrun_until = \"t_s > 0\"";
     let (past_the_end, at_last) = finished("method-2", text);
     assert_eq!((at_last, past_the_end.step()), (Ok(()), 4600));
@@ -378,7 +378,7 @@ fn a_run_is_played_until_a_condition_holds() {
 
 #[test]
 #[ignore = "takes ten million steps: seconds"]
-fn a_condition_that_never_holds_is_given_up() {
+fn run_until_gives_up_after_ten_million_steps() {
     let (desk, end) = finished(
         "cusps",
         "[[do]]\nrun_until = \"z_m > 1000\"\n[[do]]\nstep = 1",
@@ -391,7 +391,7 @@ fn a_condition_that_never_holds_is_given_up() {
         "{told}"
     );
     assert_eq!(desk.step(), 10_000_000);
-    // So many in all, not each.
+    // The limit is for all conditions together.
     let (both, given_up) = finished(
         "cusps",
         "[[do]]\ngo_to = 9000000\n[[do]]\ngo_to = \"start\"\n[[do]]\nrun_until = \"z_m > 1000\"",
@@ -403,7 +403,7 @@ fn a_condition_that_never_holds_is_given_up() {
 }
 
 #[test]
-fn commands_wait_for_those_before_them() {
+fn commands_wait_for_earlier_commands() {
     let mut desk = Desk::open("method-2");
     let text = "[[do]]\nspeed = 20\n[[do]]\nrun_until = \"t_s >= 20\"\n[[do]]\nwait_s = 5\n[[do]]\nstep = 7";
     let document = Document::parse("demo.toml", text).unwrap();
@@ -427,7 +427,7 @@ fn commands_wait_for_those_before_them() {
 }
 
 #[test]
-fn esc_stops_the_commands_and_a_refusal_says_where() {
+fn esc_stops_the_commands_and_errors_name_the_line() {
     let mut desk = Desk::open("method-2");
     let read = |text: &str| command::read(&Document::parse("demo.toml", text).unwrap()).unwrap();
     desk.lab
@@ -453,7 +453,7 @@ fn esc_stops_the_commands_and_a_refusal_says_where() {
 }
 
 #[test]
-fn files_are_written_and_not_overwritten_unasked() {
+fn commands_overwrite_files_only_with_force() {
     let folder = tempfile::tempdir().unwrap();
     let mut desk = Desk::open("method-2");
     desk.lab.files_mut().work_in(folder.path());
@@ -493,9 +493,9 @@ fn opened_with(set: &[&str]) -> Desk {
     Desk::with("wobble-push", document.scenario().unwrap())
 }
 
-/// Every way to say how a screen begins leads to the same screen.
+/// The view settings of a scenario and the commands lead to the same screen.
 #[test]
-fn what_view_holds_is_what_the_commands_do() {
+fn view_settings_equal_the_matching_commands() {
     for (key, value, size) in [
         ("show", "['traces', '3d']", (80, 24)),
         ("hide", "['health', 'predicted', 'look_at']", (120, 40)),
@@ -514,7 +514,7 @@ fn what_view_holds_is_what_the_commands_do() {
         ("bare", "true", (80, 24)),
         ("speed", "0.5", (80, 24)),
     ] {
-        // The window of time that a run begins with goes by its speed; a command leaves it as it is.
+        // The initial time window depends on the speed; a command does not change it.
         let mut begun = opened_with(&[&format!("view.{key}={value}")]);
         if key == "speed" {
             begun.commands("window_s = 230");
@@ -530,7 +530,7 @@ fn what_view_holds_is_what_the_commands_do() {
 }
 
 #[test]
-fn hidden_is_hidden() {
+fn hidden_items_appear_nowhere_on_the_screen() {
     let mut desk = opened_with(&[]);
     desk.commands("step = 300");
     let size = (200, 50);
@@ -553,7 +553,7 @@ fn hidden_is_hidden() {
     }
     desk.commands("hide = []");
     assert!(picture(&desk, size).contains(&first));
-    // The exact column is empty, in the list of values too.
+    // The exact column is empty, also in the list of values.
     let exact_z = format!("{:.4}", desk.lab.player().reading.exact.unwrap().position.z);
     assert!(picture(&desk, size).contains(&exact_z));
     desk.commands("hide = ['predicted']");
@@ -582,12 +582,12 @@ fn shown_panes_share_the_screen_at_every_width() {
 }
 
 #[test]
-fn a_pane_is_pointed_at_by_a_heavy_rule() {
+fn point_at_marks_a_pane_with_a_heavy_rule() {
     let mut desk = opened_with(&[]);
     let is_heavy = |shown_desk: &Desk| {
         let shown = picture(shown_desk, (80, 24));
         let rule: String = shown.lines().nth(1).unwrap().chars().skip(28).collect();
-        rule.contains('━') // a push is a heavy rule too, on the traces
+        rule.contains('━') // in the traces, a push is also a heavy rule
     };
     assert!(!is_heavy(&desk));
     desk.commands("point_at = 'above'");
@@ -597,7 +597,7 @@ fn a_pane_is_pointed_at_by_a_heavy_rule() {
 }
 
 #[test]
-fn a_pane_has_the_name_that_files_give_it() {
+fn every_pane_has_the_id_used_in_files() {
     for pane in Pane::ALL {
         assert_eq!(Pane::named(pane.id()), Some(pane));
         assert!(Value::from(pane.id()).try_into::<HideablePart>().is_ok());
@@ -611,7 +611,7 @@ fn a_pane_has_the_name_that_files_give_it() {
 }
 
 #[test]
-fn the_focus_leaves_a_pane_that_is_hidden() {
+fn the_focus_leaves_a_hidden_pane() {
     for size in [SMALL, LARGE] {
         let mut stage = Stage::open("loops", &[], size);
         stage.commands("hide = ['traces']");
@@ -626,7 +626,7 @@ fn the_focus_leaves_a_pane_that_is_hidden() {
 }
 
 #[test]
-fn the_focus_comes_back_from_the_filled_3d_view_to_a_pane_that_is_shown() {
+fn the_focus_returns_from_the_full_screen_3d_view_to_a_shown_pane() {
     let mut stage = Stage::open("loops", &[], SMALL);
     stage.commands("hide = ['traces']");
     stage.press("d");
@@ -636,8 +636,8 @@ fn the_focus_comes_back_from_the_filled_3d_view_to_a_pane_that_is_shown() {
 }
 
 #[test]
-fn a_picture_of_one_pane_shows_none_that_is_hidden() {
-    // As `gyrolab show` draws it, on a screen that the lab has not been told of.
+fn a_picture_of_one_pane_skips_hidden_panes() {
+    // Draws like `gyrolab show`, for a screen size that the lab does not know.
     let mut desk = opened_with(&[]);
     desk.commands("hide = ['traces']");
     let seen = picture(&desk, (40, 20));
@@ -648,7 +648,7 @@ fn a_picture_of_one_pane_shows_none_that_is_hidden() {
 }
 
 #[test]
-fn a_push_begins_at_the_time_that_it_names() {
+fn a_push_starts_at_its_given_time() {
     let mut desk = Desk::open("method-2");
     let pushed = "push = { force_N = 50, toward = 'down', from_s = 2, for_s = 0.5 }";
     desk.commands(pushed);
@@ -666,8 +666,8 @@ fn a_push_begins_at_the_time_that_it_names() {
 }
 
 #[test]
-fn swings_are_counted_from_one_turn_to_another() {
-    // It swings once in 0.8225 s.
+fn swings_are_counted_between_turning_points() {
+    // The tilt swings with a period of 0.8225 s.
     let mut desk = Desk::open("cusps");
     desk.commands("go_to = 3000\ncursor = 0\ncursor = 'next turn'\ncursor = 'mark'");
     desk.commands(&"cursor = 'next turn'\n".repeat(4));

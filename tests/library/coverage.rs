@@ -1,4 +1,4 @@
-//! Stated uncertainties hold the truth: measured precession and nutation of random runs, beside theory.
+//! Coverage of stated uncertainties: measured precession and nutation of random runs, compared with theory.
 
 mod foot_force;
 mod others;
@@ -36,13 +36,13 @@ fn between(dice: &mut Dice, least: f64, most: f64) -> f64 {
     least + dice.unit() * (most - least)
 }
 
-/// 1 and a random part more or less.
+/// A random number between `1 - most` and `1 + most`, but not closer to 1 than `least`.
 fn about_one(dice: &mut Dice, least: f64, most: f64) -> f64 {
     let part = log_between(dice, least, most);
     1.0 + if dice.unit() < 0.5 { -part } else { part }
 }
 
-/// How a random run begins.
+/// Kinds of starts of random runs.
 const STARTS: [&str; 8] = [
     "released",
     "loops and waves",
@@ -54,7 +54,7 @@ const STARTS: [&str; 8] = [
     "near steady precession, fast",
 ];
 
-/// A random run under `exact`, with its true precession (rad/s) and nutation period (s), and how many nutations it lasts.
+/// A random run under `exact`, with its true precession (rad/s), nutation period (s) and number of nutations.
 struct Case {
     scenario: Arc<Scenario>,
     truth: [f64; 2],
@@ -101,7 +101,7 @@ fn random(seed: u64) -> Option<Case> {
             spin = limit * between(dice, 0.01, 0.4);
         }
         "near the vertical" => {
-            // It passes through the vertical where L_z is L.axle.
+            // It passes through the vertical if L_z equals L.axle.
             let (sin, cos) = tilt.to_radians().sin_cos();
             aside[1] = (spin * about_one(dice, 1e-6, 1e-1) - spin * cos) / sin;
         }
@@ -133,7 +133,7 @@ fn random(seed: u64) -> Option<Case> {
 }
 
 #[test]
-fn stated_uncertainties_hold_the_truth_in_random_runs() {
+fn stated_uncertainties_cover_theory_in_random_runs() {
     let runs: Vec<_> = (1..=1000_u64)
         .into_par_iter()
         .filter_map(|seed| {
@@ -146,7 +146,7 @@ fn stated_uncertainties_hold_the_truth_in_random_runs() {
         let mut errors = Vec::new();
         for (seed, measured, case) in &runs {
             let Some(measured) = measured[which] else {
-                // Only where less than a whole nutation, or the vertical itself, was seen there is none.
+                // A value is missing only if the run covers less than a nutation or passes through the vertical.
                 assert!(case.nutations < 1.0 || *seed % 8 == 3, "{name} of {seed}");
                 continue;
             };
@@ -166,7 +166,7 @@ fn stated_uncertainties_hold_the_truth_in_random_runs() {
 }
 
 #[test]
-fn a_short_run_says_no_more_than_it_has_seen() {
+fn short_runs_state_only_what_they_determine() {
     let loops = [
         "motion.scheme=exact",
         "start.momentum_Js=[0,-16,60]",
@@ -193,7 +193,7 @@ fn a_short_run_says_no_more_than_it_has_seen() {
 }
 
 #[test]
-fn whole_turns_between_two_rows_are_counted() {
+fn whole_turns_between_rows_are_counted() {
     // An unstable sleeper lingers upright and turns there, by more than a turn in each of these time steps.
     let motion = "motion={scheme='exact', time_step_s=3.7, steps=40}";
     let coarse = preset("sleeping-unstable", &[motion]);

@@ -1,5 +1,5 @@
-//! Every key of the table, in every pane and on screens of four sizes: each pane keeps its rule, nothing is drawn between
-//! panes, and no message is cut off within a word.
+//! Every key of the table in every pane, on screens of four sizes: each pane keeps its rule, nothing is drawn between
+//! panes, and no message is cut within a word.
 
 use crate::support::stage::Stage;
 use gyrolab::lab::Mode;
@@ -10,7 +10,7 @@ use gyrolab::tui::screen;
 use ratatui::layout::Rect;
 use std::time::Duration;
 
-/// A message has gone after as long as this.
+/// Time after which a message has disappeared.
 const SAID: Duration = Duration::from_secs(30);
 
 /// The screen as columns of rows.
@@ -40,7 +40,7 @@ impl Picture {
         sign.copied().unwrap_or(' ')
     }
 
-    /// All words, with one blank between two of them.
+    /// All words, separated by single blanks.
     fn words(&self) -> String {
         let rows = self.rows.iter().map(|row| row.iter().collect::<String>());
         squeezed(&rows.collect::<Vec<_>>().join(" "))
@@ -51,7 +51,7 @@ fn squeezed(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// What is wrong with the picture of `stage`.
+/// Returns the first defect in the picture of `stage`, if any.
 fn trouble(stage: &Stage) -> Option<String> {
     let picture = Picture::of(stage);
     let is_ascii = stage.lab.view().marker == gyrolab::lab::view::theme::Marker::Ascii;
@@ -83,10 +83,10 @@ fn trouble(stage: &Stage) -> Option<String> {
     footer_trouble(stage, &picture).or_else(|| said_trouble(stage, &picture))
 }
 
-/// Where the last line has something else than keys of the table, each with its word.
+/// Returns a message if the last line contains anything but keys of the table and their labels.
 fn footer_trouble(stage: &Stage, picture: &Picture) -> Option<String> {
     if stage.lab.view().look.bare {
-        return None; // no line of keys
+        return None; // there is no footer
     }
     let last: String = picture
         .rows
@@ -107,7 +107,7 @@ fn footer_trouble(stage: &Stage, picture: &Picture) -> Option<String> {
             always => always,
         };
         let key = row.keys[0];
-        // Where there is little room a key stands without its word.
+        // If there is little room, a key is shown without its label.
         let [usual, other] = [row.footer, otherwise].map(|word| format!("{key} {word}"));
         [usual, other, key.to_string()]
     };
@@ -128,7 +128,7 @@ fn footer_trouble(stage: &Stage, picture: &Picture) -> Option<String> {
     None
 }
 
-/// Where the message is neither shown whole nor cut off between dots.
+/// Returns a message if the notice is neither shown whole nor shortened with dots.
 fn said_trouble(stage: &Stage, picture: &Picture) -> Option<String> {
     let notice = stage.lab.notice()?;
     let (notice, words) = (squeezed(&notice), picture.words());
@@ -150,7 +150,7 @@ fn check(stage: &Stage, done: &str) {
     }
 }
 
-/// A lab at that size with `pane` in focus.
+/// Opens a lab of the given size with `pane` in focus.
 fn stage(pane: Pane, (width, height): (u16, u16)) -> Stage {
     let mut stage = Stage::open("wobble-push", &[], Rect::new(0, 0, width, height));
     stage.wait(0.5).commands("pause = true");
@@ -161,7 +161,7 @@ fn stage(pane: Pane, (width, height): (u16, u16)) -> Stage {
     stage
 }
 
-/// Closes what lies on top, and gives `pane` the focus again.
+/// Closes all windows and focuses `pane`.
 fn focus(stage: &mut Stage, pane: Pane) {
     for _ in 0..4 {
         stage.key(Key::Esc);
@@ -182,7 +182,7 @@ fn focus(stage: &mut Stage, pane: Pane) {
     stage.wait(0.0);
 }
 
-/// All keys that mean something in `mode`, with those of `pane` where it has the focus.
+/// Returns all keys with a meaning in `mode`, including those of `pane` if it has the focus.
 fn keys(mode: Mode, pane: Pane) -> Vec<Key> {
     let own = match mode {
         Mode::Lab => panes::row(pane).keys,
@@ -203,22 +203,22 @@ fn keys(mode: Mode, pane: Pane) -> Vec<Key> {
 }
 
 #[test]
-fn a_teachers_screen_stays_whole_whatever_is_pressed() {
+fn no_key_breaks_the_picture_at_40x12() {
     press_everything((40, 12));
 }
 
 #[test]
-fn a_small_screen_stays_whole_whatever_is_pressed() {
+fn no_key_breaks_the_picture_at_80x24() {
     press_everything((80, 24));
 }
 
 #[test]
-fn a_wide_screen_stays_whole_whatever_is_pressed() {
+fn no_key_breaks_the_picture_at_120x40() {
     press_everything((120, 40));
 }
 
 #[test]
-fn a_large_screen_stays_whole_whatever_is_pressed() {
+fn no_key_breaks_the_picture_at_200x50() {
     press_everything((200, 50));
 }
 
@@ -250,7 +250,7 @@ fn press_everything(size: (u16, u16)) {
     }
 }
 
-/// Presses the keys of what has been opened on top of the panes.
+/// Presses all keys of an open window.
 fn press_all(stage: &mut Stage, mode: Mode, done: &str) {
     for key in keys(mode, Pane::Traces) {
         if stage.lab.popups().mode != mode {

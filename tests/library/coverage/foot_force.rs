@@ -1,4 +1,4 @@
-//! The mean force of the floor on the foot over whole nutations is the weight, to its stated uncertainty.
+//! The mean force of the floor on the foot over whole nutations equals the weight within its stated uncertainty.
 
 use super::{Case, preset, random};
 use crate::support::scenarios;
@@ -8,7 +8,7 @@ use gyrolab::engine::scenario::Scenario;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// The mean of a whole run, and what it should be, N.
+/// Returns the mean force over a whole run and its expected value, N.
 fn mean_of(scenario: &Arc<Scenario>) -> (Option<MeasuredNumber>, f64) {
     let mut simulation = Simulation::new(Arc::clone(scenario));
     let mut monitor = Monitor::new(simulation.now());
@@ -20,7 +20,7 @@ fn mean_of(scenario: &Arc<Scenario>) -> (Option<MeasuredNumber>, f64) {
 }
 
 #[test]
-fn the_mean_does_not_depend_on_where_the_run_stops() {
+fn the_mean_force_does_not_depend_on_the_end_of_the_run() {
     for steps in [300, 995, 1000, 1003, 1500, 1990, 2000, 2001] {
         let scenario = preset("method-1", &[&format!("motion.steps={steps}")]);
         let (mean, weight) = mean_of(&scenario);
@@ -34,8 +34,8 @@ fn the_mean_does_not_depend_on_where_the_run_stops() {
 }
 
 #[test]
-fn before_a_whole_nutation_there_is_no_mean() {
-    // A nutation takes 0.8225 s; the start is a highest point.
+fn the_mean_force_needs_a_whole_nutation() {
+    // A nutation takes 0.8225 s; the start is at the highest point.
     for (steps, is_known) in [(80, false), (85, true)] {
         let motion = format!("motion={{scheme='exact', time_step_s=0.01, steps={steps}}}");
         let (mean, _) = mean_of(&preset("cusps", &[&motion]));
@@ -47,7 +47,7 @@ fn before_a_whole_nutation_there_is_no_mean() {
 }
 
 #[test]
-fn a_push_is_carried_by_the_floor() {
+fn the_mean_force_includes_a_push() {
     let push = "push=[{point='top', force_N=[0, 0, -50], from_s=2, for_s=100}]";
     let (mean, weight) = mean_of(&preset("cusps", &["motion.steps=20000", push]));
     let mean = mean.unwrap();
@@ -60,7 +60,7 @@ fn a_push_is_carried_by_the_floor() {
 }
 
 #[test]
-fn a_lopsided_body_weighs_as_much() {
+fn the_mean_force_of_a_lopsided_body_is_its_weight() {
     let lopsided = include_str!("../../reference/lopsided/uneven.toml");
     let (mean, weight) = mean_of(&Arc::new(scenarios::parse(lopsided)));
     let mean = mean.unwrap();
@@ -72,7 +72,7 @@ fn a_lopsided_body_weighs_as_much() {
 }
 
 #[test]
-fn the_stated_uncertainty_holds_the_weight_in_random_runs() {
+fn the_stated_uncertainty_covers_the_weight_in_random_runs() {
     let runs: Vec<_> = (1..=1000_u64)
         .into_par_iter()
         .filter_map(|seed| {

@@ -1,10 +1,9 @@
-//! The same for what theory has no number of: the motion that a scheme makes of a symmetric body, strobed runs, and
-//! lopsided bodies.
+//! Coverage of stated uncertainties where theory gives no number: for the motion that a scheme produces, under-sampled
+//! runs and lopsided bodies.
 //!
-//! What is measured is the run as its steps show it. The truth is therefore the same motion seen for longer: the same
-//! scheme and time step where these make the motion, finer rows of the exact motion where they only show it. A scheme
-//! that changes the motion as it goes on has no such truth: a run is held against one only where both halves of the longer
-//! run agree.
+//! A measurement describes the run at its steps. The true value is therefore that of a longer run. It has the same scheme
+//! and time step if these determine the motion, and finer rows of the exact motion if they only sample it. A scheme whose
+//! motion changes over time has no true value: only pairs in which both halves of the longer run agree are compared.
 
 use super::{Case, between, log_between, preset, random};
 use crate::support::dice::Dice;
@@ -19,7 +18,7 @@ use std::sync::Arc;
 /// Precession (rad/s) and nutation (s).
 type Both = [Option<MeasuredNumber>; 2];
 
-/// What a short run says, and what a longer one does: the whole of it, and each half.
+/// Measurements of a short run, and of a longer one: the whole of it, and each half.
 struct Pair {
     seed: u64,
     short: Both,
@@ -33,7 +32,7 @@ fn both(instruments: &Instruments) -> Both {
     ]
 }
 
-/// The whole run, its first half and its second; `None` where it leaves the range of numbers.
+/// Measures the whole run, its first half and its second half. Returns `None` if the run breaks down.
 fn measured(scenario: &Arc<Scenario>) -> Option<[Both; 3]> {
     let mut simulation = Simulation::new(Arc::clone(scenario));
     let mut whole = Instruments::new(simulation.now());
@@ -58,7 +57,7 @@ fn dice(seed: u64) -> Dice {
     dice
 }
 
-/// `scenario` with other keys of `[motion]`.
+/// Returns `scenario` with another scheme, time step and number of steps.
 fn again(scenario: &Scenario, scheme: &str, time_step_s: f64, steps: u64) -> Arc<Scenario> {
     let mut file = scenario.file.clone();
     file.motion.scheme = Some(scheme.to_owned());
@@ -68,8 +67,8 @@ fn again(scenario: &Scenario, scheme: &str, time_step_s: f64, steps: u64) -> Arc
     Arc::new(document.scenario().unwrap())
 }
 
-/// A symmetric body stepped by `scheme`, so many steps to a turn of the body and to a nutation, and the same for 20 times
-/// as long.
+/// Measures a random symmetric body under `scheme`, and the same motion for 20 times as long. `rows` is the range of steps
+/// per nutation or turn of the body, whichever is shorter (below 2: per nutation).
 fn stepped(seed: u64, scheme: &str, rows: [f64; 2]) -> Option<Pair> {
     let Case {
         scenario, truth, ..
@@ -93,7 +92,7 @@ fn stepped(seed: u64, scheme: &str, rows: [f64; 2]) -> Option<Pair> {
     })
 }
 
-/// A lopsided body under `exact`; the same in rows of a 40th of a nutation, for 10 times as long.
+/// Measures a random lopsided body under `exact`, and the same in steps of 1/40 nutation for 10 times as long.
 fn lopsided(seed: u64) -> Option<Pair> {
     let mut dice = dice(seed);
     let dice = &mut dice;
@@ -129,7 +128,7 @@ fn lopsided(seed: u64) -> Option<Pair> {
     })
 }
 
-/// Holds the short runs against the long ones; at least `fewest` of them must have a truth.
+/// Compares the short runs with the long ones; at least `fewest` of them must have a true value.
 fn hold(what: &str, pairs: &[Pair], fewest: usize) {
     let is_exact = what == "strobed" || what.starts_with("lopsided");
     for (which, name) in ["precession", "nutation"].into_iter().enumerate() {
@@ -143,7 +142,7 @@ fn hold(what: &str, pairs: &[Pair], fewest: usize) {
                 .zip(second)
                 .map_or(f64::INFINITY, |(a, b)| (a.value - b.value).abs());
             let error = short.uncertainty.hypot(long.uncertainty);
-            // Halves that differ are of another motion each. The exact motion stays what it is: its halves differ by beats.
+            // Differing halves belong to different motions, except under `exact`, where they differ only by beats.
             if is_exact || apart <= 0.5 * short.uncertainty {
                 off.push(((short.value - long.value).abs() / error, pair.seed));
             }
@@ -169,7 +168,7 @@ fn hold(what: &str, pairs: &[Pair], fewest: usize) {
 
 #[test]
 #[ignore = "measures 360 runs: seconds"]
-fn stated_uncertainties_hold_what_a_scheme_makes_of_the_motion() {
+fn stated_uncertainties_cover_the_motion_of_each_scheme() {
     for (scheme, fewest) in [("rk4", 20), ("strang", 80), ("srkn11b", 80)] {
         let seeds = (1..=120_u64).into_par_iter();
         let pairs: Vec<_> = seeds
@@ -180,7 +179,7 @@ fn stated_uncertainties_hold_what_a_scheme_makes_of_the_motion() {
 }
 
 #[test]
-fn stated_uncertainties_hold_the_picture_of_strobed_runs() {
+fn stated_uncertainties_cover_under_sampled_runs() {
     let seeds = (1..=400_u64).into_par_iter();
     let pairs: Vec<_> = seeds
         .filter_map(|seed| stepped(seed, "exact", [0.6, 1.9]))
@@ -190,13 +189,13 @@ fn stated_uncertainties_hold_the_picture_of_strobed_runs() {
 
 #[test]
 #[ignore = "measures 800 runs: seconds"]
-fn stated_uncertainties_hold_for_lopsided_bodies() {
+fn stated_uncertainties_cover_lopsided_bodies() {
     let pairs: Vec<_> = (1..=800_u64).into_par_iter().filter_map(lopsided).collect();
     hold("lopsided", &pairs, 100);
 }
 
-/// A lopsided body of three solids on the axle and a lump beside it under `exact`; the same in rows of a 40th of a
-/// nutation, for 20 times as long.
+/// Measures a random body of three solids on the axle and a lump off it under `exact`, and the same in steps of
+/// 1/40 nutation for 20 times as long.
 fn lopsided_of_parts(seed: u64) -> Option<Pair> {
     let mut dice = dice(seed);
     let dice = &mut dice;
@@ -248,13 +247,13 @@ fn lopsided_of_parts(seed: u64) -> Option<Pair> {
 
 #[test]
 #[ignore = "measures hundreds of long runs: a minute"]
-fn stated_uncertainties_hold_for_lopsided_bodies_of_parts() {
+fn stated_uncertainties_cover_lopsided_bodies_of_parts() {
     let seeds = (1..=200_u64).into_par_iter();
     let pairs: Vec<_> = seeds.filter_map(lopsided_of_parts).collect();
     hold("lopsided of parts", &pairs, 60);
 }
 
-/// The scenario of a file, and for `times` as long.
+/// Parses the scenario in `text` and extends it to `times` its duration.
 fn for_times_as_long(text: &str, times: u64) -> Arc<Scenario> {
     let scenario = parse(text);
     let (motion, steps) = (scenario.motion, scenario.steps * times);
@@ -262,7 +261,7 @@ fn for_times_as_long(text: &str, times: u64) -> Arc<Scenario> {
 }
 
 #[test]
-fn a_lopsided_tops_beats_are_in_the_uncertainty() {
+fn the_uncertainty_of_a_lopsided_top_includes_its_beats() {
     let beats = include_str!("../../reference/lopsided/beats.toml");
     let short = measured(&for_times_as_long(beats, 1)).unwrap()[0];
     let long = measured(&for_times_as_long(beats, 20)).unwrap()[0];
@@ -274,7 +273,7 @@ fn a_lopsided_tops_beats_are_in_the_uncertainty() {
 }
 
 #[test]
-fn a_nutation_that_depends_on_which_swings_count_is_not_stated() {
+fn an_ambiguous_nutation_period_is_not_stated() {
     let uneven = for_times_as_long(include_str!("../../reference/lopsided/uneven.toml"), 1);
     let mut simulation = Simulation::new(Arc::clone(&uneven));
     let mut instruments = Instruments::new(simulation.now());
@@ -285,7 +284,7 @@ fn a_nutation_that_depends_on_which_swings_count_is_not_stated() {
     assert_eq!(nutation, Err(WithoutNutation::Uneven));
 }
 
-/// The nutation of a tumbling block as its rows show it, and in finer rows of the same stretch.
+/// Measures the nutation of a tumbling block, in coarse rows and in finer rows of the same duration.
 fn tumbling(seed: u64) -> Option<[MeasuredNumber; 2]> {
     let mut dice = dice(seed);
     let dice = &mut dice;
@@ -315,7 +314,7 @@ fn tumbling(seed: u64) -> Option<[MeasuredNumber; 2]> {
 
 #[test]
 #[ignore = "measures hundreds of runs: seconds"]
-fn a_nutation_that_may_lie_between_two_rows_is_not_counted() {
+fn nutations_hidden_between_rows_do_not_bias_the_period() {
     let seeds = (1..=400_u64).into_par_iter();
     let pairs: Vec<_> = seeds
         .filter_map(|seed| Some((seed, tumbling(seed)?)))
@@ -328,8 +327,8 @@ fn a_nutation_that_may_lie_between_two_rows_is_not_counted() {
 }
 
 #[test]
-fn a_nutation_that_only_the_scheme_makes_has_its_own_period() {
-    // A steady start has none; the first order of the scheme makes a small one of it.
+fn a_nutation_produced_by_the_scheme_has_its_own_period() {
+    // A steady start has no nutation, but the first-order scheme produces a small one.
     for (spin_rpm, period_s) in [(300, 0.2031), (180, 0.348)] {
         let start = format!("start.spin_rpm={spin_rpm}");
         let steady = ["start.tilt_deg=30", &start, "start.steady=true"];

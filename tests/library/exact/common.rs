@@ -1,4 +1,4 @@
-//! Tables of motions computed with 60 digits, and distances from them.
+//! Reference motions computed with 60 digits, and distances from them.
 
 use gyrolab::physics::exact::LagrangeTop;
 use nalgebra::{Matrix3, Rotation3, Vector3};
@@ -14,7 +14,7 @@ pub struct Start {
     pub momentum: Vector3<f64>,
 }
 
-/// A state with the second body axis left out: axle, first body axis, L (J s).
+/// A state without the second body axis: axle, first body axis, L (J s).
 pub struct Known {
     pub t: f64,
     pub axle: Vector3<f64>,
@@ -41,12 +41,12 @@ impl Start {
         Vector3::z() * self.load.transpose()
     }
 
-    /// Size of the momenta of the motion, J s.
+    /// Scale of the angular momentum, J s.
     pub fn momentum_scale(&self) -> f64 {
         self.momentum.norm() + (self.load.norm() * self.across).sqrt() + f64::MIN_POSITIVE
     }
 
-    /// Sum of the rates that the motion is made of, rad/s.
+    /// Sum of the frequencies of the motion, rad/s.
     pub fn rates(&self) -> f64 {
         let along = self.momentum.dot(&self.orientation.column(2)).abs();
         self.momentum_scale() / self.across + along / self.along
@@ -54,7 +54,7 @@ impl Start {
 }
 
 impl Known {
-    /// Distances of axle, first body axis and L (as a part of `scale`, J s).
+    /// Distances of axle, first body axis and L (relative to `scale`, J s).
     pub fn errors(
         &self,
         (orientation, momentum): &(Matrix3<f64>, Vector3<f64>),
@@ -68,14 +68,14 @@ impl Known {
     }
 }
 
-/// Greatest of some errors; not a number if any of them is not.
+/// Returns the maximum of `errors`, or NaN if any of them is NaN.
 pub fn greatest(errors: impl IntoIterator<Item = f64>) -> f64 {
     errors
         .into_iter()
         .fold(0.0, |worst, e| if e <= worst { worst } else { e })
 }
 
-/// Rows of a table: name, start, end.
+/// Parses the rows of a table: name, start, end.
 pub fn table(text: &str) -> Vec<(Start, Known)> {
     text.lines().skip(1).map(row).collect()
 }
@@ -106,7 +106,7 @@ fn row(line: &str) -> (Start, Known) {
     )
 }
 
-/// The body turned by `degrees` about the world's first axis.
+/// Returns the rotation by `degrees` about the world's first axis.
 pub fn tilted(degrees: f64) -> Matrix3<f64> {
     *Rotation3::from_axis_angle(&Vector3::x_axis(), degrees.to_radians()).matrix()
 }

@@ -1,4 +1,4 @@
-//! The closed form against an independent integration (Dormand-Prince 8(5,3), tolerance 1e-15), and the laws it must keep.
+//! The closed form compared with an independent integration (Dormand-Prince 8(5,3), tolerance 1e-15), and conservation laws.
 
 use super::common::{Dice, Start, greatest};
 use differential_equations::prelude::*;
@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, SVector, Vector3};
 
 const TIMES: [f64; 5] = [0.7, 2.3, 5.0, 7.9, 10.0];
 
-/// Three body axes and L, all in the world frame: Euler's equations without any angle or quaternion.
+/// Euler's equations for three body axes and L in the world frame, without angles or quaternions.
 struct Spinning<'a>(&'a Start);
 
 type State = SVector<f64, 12>;
@@ -110,7 +110,7 @@ fn random_tops_agree_with_an_independent_integration() {
     );
 }
 
-/// Orientation, L and axle of a top at some time.
+/// Returns the conserved quantities at the time `t`: spin momentum, vertical momentum and energy.
 fn constants(start: &Start, top: &LagrangeTop, t: f64) -> [f64; 3] {
     let (q, l) = top.at(t);
     let axle = q.column(2);
@@ -140,7 +140,7 @@ fn spin_vertical_momentum_and_energy_are_constant_at_any_time() {
 }
 
 #[test]
-fn every_orientation_is_a_rotation() {
+fn every_orientation_is_a_rotation_matrix() {
     let mut dice = Dice(78);
     for _ in 0..300 {
         let top = random_start(&mut dice).top();
@@ -150,7 +150,7 @@ fn every_orientation_is_a_rotation() {
 }
 
 #[test]
-fn a_top_begins_where_it_is_put() {
+fn a_top_starts_at_its_initial_state() {
     let mut dice = Dice(79);
     for _ in 0..300 {
         let start = random_start(&mut dice);
@@ -161,7 +161,7 @@ fn a_top_begins_where_it_is_put() {
 }
 
 #[test]
-fn going_on_from_a_later_state_is_the_same_motion() {
+fn continuing_from_a_later_state_gives_the_same_motion() {
     let mut dice = Dice(80);
     for _ in 0..300 {
         let start = random_start(&mut dice);
@@ -177,8 +177,8 @@ fn going_on_from_a_later_state_is_the_same_motion() {
 }
 
 #[test]
-fn degenerate_starts_are_limits_of_their_neighbours() {
-    // Steady, upright, hanging, free, plane: from one part in 1e3 down to exactly there, the motion moves no farther than its start.
+fn degenerate_starts_are_limits_of_nearby_starts() {
+    // Steady, upright, hanging, free, plane: for offsets from 1e-3 down to 0, the motion changes no more than its start.
     let load = Vector3::new(0.0, 0.0, -49.0);
     let at = |tilt: f64, momentum: Vector3<f64>, pull: Vector3<f64>| {
         LagrangeTop::new(6.6, 3.2, pull, super::common::tilted(tilt), momentum).at(0.8)
@@ -210,7 +210,7 @@ fn degenerate_starts_are_limits_of_their_neighbours() {
 }
 
 #[test]
-fn values_out_of_range_end_in_numbers_or_in_none_but_always_end() {
+fn extreme_values_always_terminate() {
     let values = [
         0.0,
         -0.0,

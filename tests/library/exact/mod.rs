@@ -1,4 +1,4 @@
-//! The exact motion: against motions known to many digits, an independent integration, and the laws it must keep.
+//! The exact motion, compared with reference motions and an independent integration, and its conservation laws.
 
 mod common;
 mod laws;

@@ -1,4 +1,4 @@
-//! The closed form at many times at once, against the closed form itself.
+//! The closed form at several times at once, compared with the closed form itself.
 
 use gyrolab::engine::run::{Simulation, Truth};
 use gyrolab::engine::scenario::Document;
@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use std::sync::Arc;
 
 #[test]
-fn it_is_the_closed_form_but_for_rounding() {
+fn positions_at_several_times_equal_the_closed_form_up_to_rounding() {
     let mut waving = 0;
     for preset in [
         "wobble-push",
@@ -46,7 +46,7 @@ fn it_is_the_closed_form_but_for_rounding() {
 }
 
 #[test]
-fn a_time_out_of_all_proportion_is_refused() {
+fn extremely_late_times_are_rejected() {
     let scenario = Arc::new(Document::open("cusps").unwrap().scenario().unwrap());
     let truth = Truth::new(scenario);
     let top = truth.motion().closed_form().unwrap();

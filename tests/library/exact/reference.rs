@@ -1,4 +1,4 @@
-//! The closed form against motions known to many digits, and its readouts against the textbook table.
+//! The closed form compared with reference motions, and its readouts with the textbook table.
 
 use super::common::{Known, Start, greatest, table, tilted};
 use gyrolab::physics::exact::LagrangeTop;
@@ -10,7 +10,7 @@ fn textbook(tilt_degrees: f64, momentum_body: [f64; 3]) -> LagrangeTop {
     LagrangeTop::new(6.6, 3.2, weight, orientation, orientation * momentum)
 }
 
-/// Rows: t (s), axle, L (J s), first body axis.
+/// Returns the maximum error over the rows of `text`: t (s), axle, L (J s), first body axis.
 fn worst_of_reference(text: &str, momentum_body: [f64; 3]) -> f64 {
     let orientation = tilted(45.0);
     let momentum = orientation * Vector3::from(momentum_body);
@@ -39,10 +39,11 @@ fn cusped_and_looping_tops_agree_with_the_reference_to_rounding() {
     }
 }
 
-/// Rounding of the start, as far as the motion magnifies it.
+/// Returns the tolerance: the rounding of the start, amplified by the motion.
 ///
-/// A top that comes from afar lingers near the upright rest for a time that depends on its energy's distance from the
-/// separatrix: for ever on it (where a neighbour parts as exp(rate t)), else rounding counts against the least tilt squared.
+/// A top that approaches the upright rest lingers there for a time that depends on the distance of its energy from the
+/// separatrix. On the separatrix it stays forever, and neighbors diverge as exp(rate t). Otherwise the rounding is relative
+/// to the square of the minimum tilt.
 fn allowed(start: &Start) -> f64 {
     let rate = (start.load.norm() / start.across).sqrt();
     let (least_tilt, _) = start.top().tilt_range();
@@ -65,7 +66,7 @@ fn degenerate_starts_agree_with_the_reference() {
 }
 
 #[test]
-fn a_million_seconds_cost_no_more_than_rounding_of_the_frequencies() {
+fn after_a_million_seconds_only_rounding_of_the_frequencies_shows() {
     for (start, known) in table(include_str!("../../reference/exact/far.csv")) {
         let error = greatest(known.errors(&start.top().at(known.t), start.momentum_scale()));
         let unit = f64::EPSILON * known.t * start.rates();
@@ -97,7 +98,7 @@ fn pendulum_has_the_textbook_period() {
         })
         .sum();
     let swing = std::f64::consts::TAU * (6.6_f64 / 49.0).sqrt() * series;
-    // The tilt returns twice in each full swing.
+    // The tilt has two periods in each full swing.
     let period = top.nutation_period().expect("it swings");
     let off = (2.0 * period / swing - 1.0).abs();
     assert!(off < 1e-14, "{period} against {}", swing / 2.0);

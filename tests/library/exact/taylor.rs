@@ -1,4 +1,4 @@
-//! The Taylor series against known motions, an independent integration and the laws of any rigid body.
+//! The Taylor series compared with reference motions and an independent integration, and the laws of a rigid body.
 
 use super::common::{Dice, greatest, table};
 use differential_equations::prelude::*;
@@ -26,7 +26,7 @@ impl Body {
     }
 }
 
-/// Five point masses in space, gravity at their centre, and two more forces elsewhere.
+/// Five point masses with gravity at their center of mass and two more forces elsewhere.
 fn random_body(dice: &mut Dice) -> Body {
     let points: Vec<Vector3<f64>> = (0..5).map(|_| dice.vector()).collect();
     let inertia = points
@@ -50,7 +50,7 @@ impl ODE<f64, [f64; 12]> for Body {
     fn diff(&self, _t: f64, y: &[f64; 12], rate: &mut [f64; 12]) {
         let q = Matrix3::from_column_slice(&y[..9]);
         let l = Vector3::new(y[9], y[10], y[11]);
-        // The torque one force at a time, as x F^T falls apart into three: body axis k carries row k.
+        // Torque of one force at a time: x F^T splits into three, and body axis k carries row k.
         let spin = q * (self.inertia.try_inverse().expect("a body") * q.tr_mul(&l));
         let mut torque = Vector3::zeros();
         for k in 0..3 {
@@ -84,7 +84,7 @@ fn apart(a: &(Matrix3<f64>, Vector3<f64>), b: &(Matrix3<f64>, Vector3<f64>)) -> 
     greatest([(a.0 - b.0).amax(), (a.1 - b.1).norm() / (a.1.norm() + 1.0)])
 }
 
-/// How many times farther apart two neighbours are after the motion: what no integration can do better than.
+/// Returns the factor by which the motion separates two nearby states: a lower bound on the error of any integration.
 fn growth(body: &Body, t: f64) -> f64 {
     let near = Body {
         momentum: body.momentum * (1.0 + 1e-8),
@@ -95,7 +95,7 @@ fn growth(body: &Body, t: f64) -> f64 {
 }
 
 #[test]
-fn the_reference_tops_are_followed_to_a_part_in_1e12() {
+fn the_reference_tops_are_reproduced_to_1e_12() {
     for (text, momentum) in [
         (
             include_str!("../../reference/exact/cusped.csv"),
@@ -134,8 +134,8 @@ fn the_reference_tops_are_followed_to_a_part_in_1e12() {
 }
 
 #[test]
-fn degenerate_tops_are_followed_too() {
-    // Away from the separatrix, where rounding on the way decides when the top leaves the upright rest.
+fn degenerate_tops_agree_with_the_reference() {
+    // Excludes the separatrix, where rounding decides when the top leaves the upright rest.
     let unstable = [
         "pendulum separatrix",
         "pendulum separatrix from bottom",
@@ -169,7 +169,7 @@ fn degenerate_tops_are_followed_too() {
 #[test]
 fn bodies_without_symmetry_agree_with_an_independent_integration() {
     let mut dice = Dice(0xA5A5_1234_9876_0F0F);
-    // At a tolerance of 1e-13 it is the Runge-Kutta side that is off by 1e-11: the gap shrinks with its tolerance, down to this.
+    // The gap is the error of the Runge-Kutta side: 1e-11 at a tolerance of 1e-13. It shrinks with the tolerance.
     let gaps = (0..60)
         .map(|_| random_body(&mut dice))
         .map(|body| apart(&body.motion().state_at(4.0), &integrated(&body, 4.0)));
@@ -216,7 +216,7 @@ fn vertical_forces_keep_the_vertical_momentum_bit_for_bit() {
 }
 
 #[test]
-fn how_often_it_is_asked_changes_nothing() {
+fn intermediate_queries_do_not_change_the_motion() {
     let body = random_body(&mut Dice(8));
     let (mut often, mut once) = (body.motion(), body.motion());
     for k in 1..=1000 {
@@ -226,7 +226,7 @@ fn how_often_it_is_asked_changes_nothing() {
 }
 
 #[test]
-fn it_runs_backwards_to_the_start() {
+fn integrating_backwards_returns_to_the_start() {
     let body = random_body(&mut Dice(9));
     let mut motion = body.motion();
     motion.state_at(3.0);
@@ -235,7 +235,7 @@ fn it_runs_backwards_to_the_start() {
 }
 
 #[test]
-fn a_body_at_rest_without_forces_stays() {
+fn a_body_at_rest_without_forces_stays_at_rest() {
     let body = Body {
         moment: Matrix3::zeros(),
         momentum: Vector3::zeros(),
@@ -246,7 +246,7 @@ fn a_body_at_rest_without_forces_stays() {
 }
 
 #[test]
-fn bodies_on_one_line_and_values_that_are_no_numbers_are_refused() {
+fn singular_inertia_and_non_finite_values_are_rejected() {
     let body = random_body(&mut Dice(11));
     let line = Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, 0.0));
     assert!(AccurateMotion::new(line, body.moment, body.orientation, body.momentum).is_none());
@@ -256,8 +256,8 @@ fn bodies_on_one_line_and_values_that_are_no_numbers_are_refused() {
 }
 
 #[test]
-fn the_phase_of_a_fast_top_is_off_by_rounding_of_its_rate_alone() {
-    // 400 000 rad of spin. Without the carry of L the rate itself would wander, and the angle with the power 3/2 of time.
+fn the_phase_error_of_a_fast_top_is_rounding_of_its_rate() {
+    // 400 000 rad of spin. Without compensated summation of L, the rate would drift, and the angle as time to the power 3/2.
     let orientation = super::common::tilted(44.0);
     let (load, momentum) = (
         Vector3::new(0.0, 0.0, -27.72),
@@ -280,8 +280,8 @@ fn the_phase_of_a_fast_top_is_off_by_rounding_of_its_rate_alone() {
 }
 
 #[test]
-fn times_do_not_add_up_their_rounding() {
-    // The steps' ends are sums; a body that turns evenly shows what their rounding does to the angle.
+fn rounding_of_step_ends_does_not_accumulate() {
+    // Step ends are sums of step lengths; uniform rotation shows the effect of their rounding on the angle.
     let inertia = Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, 1.0));
     let momentum = Vector3::new(0.0, 0.0, 512.0);
     let body = Body {
