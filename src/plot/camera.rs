@@ -1,4 +1,4 @@
-//! The parallel projection of the world onto a picture, along a direction that the user turns.
+//! The parallel projection of the world onto a picture, in a direction that the user can turn.
 
 use crate::engine::scenario::kind::{PITCH_DEG, ZOOM_RANGE};
 use crate::engine::text::nice_numbers;
@@ -8,27 +8,27 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Camera {
-    /// Angle about +z from −y, degrees: at 0 the picture's right is +x and its depth +y.
+    /// Angle about +z from −y, degrees. At 0, the picture's right is +x and its depth is +y.
     pub yaw_deg: f64,
-    /// Height of the eye above the horizontal, degrees, −90 to 90.
+    /// Elevation of the eye above the horizontal, degrees, −90 to 90.
     pub pitch_deg: f64,
 }
 
-/// The height of the eye for an axle that is seen aslant, degrees: the floor is an open ellipse.
+/// Elevation of the eye for an oblique view of the axle, degrees. The floor appears as an open ellipse.
 const ASLANT_PITCH_DEG: f64 = 24.0;
-/// The direction to which the camera turns an axle: this angle from the picture's right towards the eye, degrees. The
-/// axle is then seen at its length, and the wheel across it shows its face.
+/// Angle from the picture's right toward the eye, to which the camera turns an axle, degrees. The axle then shows its
+/// length, and the wheel shows its face.
 const ASIDE_DEG: f64 = 14.0;
-/// The least share of an axle's lean that is seen to the side, and not towards the eye or away from it.
+/// Minimum fraction of an axle's lean that must be visible sideways, not toward or away from the eye.
 const LEAST_ASIDE: f64 = 0.8;
-/// The least width of a wheel's ellipse, as a share of its length.
+/// Minimum width of a wheel's ellipse, relative to its length.
 const OPEN_WHEEL: f64 = 0.15;
-/// An axle nearer to the vertical than this, degrees, is seen from every side alike.
+/// An axle closer to the vertical than this, degrees, looks the same from every side.
 const UPRIGHT_DEG: f64 = 8.0;
-/// Directions that are chosen are multiples of this, degrees.
+/// Chosen directions are multiples of this angle, degrees.
 const NOTCH_DEG: f64 = 2.0;
 
-/// The enlargement of the pictures in space: 1 where a picture shows the whole.
+/// Magnification of the pictures in space; 1 shows the whole scene.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Zoom {
@@ -47,14 +47,15 @@ impl Default for Zoom {
 }
 
 impl Zoom {
-    /// `zoom` moved by `rungs` on the ladder 1, 2, 5, ..., down if negative; `None` if it is at its limit already.
+    /// Moves `zoom` by `rungs` on the ladder 1, 2, 5, ..., down if negative. Returns `None` if it is already at its
+    /// limit.
     pub fn shifted(zoom: f64, rungs: i32) -> Option<f64> {
         let next = nice_numbers::climbed(zoom, rungs).clamp(ZOOM_RANGE.0, ZOOM_RANGE.1);
         (next != zoom).then_some(next)
     }
 
-    /// The middle of a picture that reaches `half` to each side and shows a point at `at`. It is a multiple of `half`, so
-    /// that the picture stands still while the point moves, and the point is at most half of `half` away from it.
+    /// Returns the center of a picture with half-width `half` that shows the point `at`. The center is a multiple of
+    /// `half`, so that the picture does not move with the point. The point is at most `half`/2 away from it.
     pub fn middle(at: f64, half: f64) -> f64 {
         (at / half).round() * half
     }
@@ -70,14 +71,14 @@ impl Default for Camera {
 }
 
 impl Camera {
-    /// Turns the viewing direction by these angles, degrees; the pitch stays within −90 to 90.
+    /// Turns the viewing direction by these angles, degrees. The pitch stays within −90 to 90.
     pub fn turn(&mut self, yaw_deg: f64, pitch_deg: f64) {
         self.yaw_deg = (self.yaw_deg + yaw_deg).rem_euclid(360.0);
         self.pitch_deg = (self.pitch_deg + pitch_deg).clamp(PITCH_DEG.0, PITCH_DEG.1);
     }
 
-    /// Returns the camera from which `axle` (a direction, world frame) is seen aslant: leaning to the right, and a little
-    /// towards the eye.
+    /// Returns a camera with an oblique view of `axle` (a direction, world frame), which leans to the right and
+    /// slightly toward the eye.
     pub fn aslant(self, axle: &Vector3<f64>) -> Self {
         let azimuth_deg = libm::atan2(axle.y, axle.x).to_degrees();
         let yaw_deg = ((azimuth_deg + ASIDE_DEG) / NOTCH_DEG).round() * NOTCH_DEG;
@@ -91,14 +92,14 @@ impl Camera {
         }
     }
 
-    /// Returns true if it is seen how far `axle` leans, and the wheel across it is not seen as a line.
+    /// Returns true if the lean of `axle` is visible and the wheel does not appear as a line.
     pub fn reads(&self, axle: &Vector3<f64>) -> bool {
         let (right, _) = self.project(axle);
         let leans_aside = is_upright(axle) || right.abs() >= LEAST_ASIDE * axle.xy().norm();
         leans_aside && self.view().depth(axle).abs() >= OPEN_WHEEL * axle.norm()
     }
 
-    /// Its sines and cosines: for many points in turn. The same on every machine.
+    /// Computes the sines and cosines once for many points. They are the same on every machine.
     pub fn view(&self) -> CameraView {
         let (sin_yaw, cos_yaw) = libm::sincos(self.yaw_deg.to_radians());
         let (sin_pitch, cos_pitch) = libm::sincos(self.pitch_deg.to_radians());
@@ -110,7 +111,7 @@ impl Camera {
         }
     }
 
-    /// Where `point` (world frame, m) stands in the picture: right and up, m.
+    /// Projects `point` (world frame, m) onto the picture: right and up, m.
     pub fn project(&self, point: &Vector3<f64>) -> (f64, f64) {
         self.view().project(point)
     }
@@ -120,7 +121,7 @@ fn is_upright(axle: &Vector3<f64>) -> bool {
     axle.xy().norm() < libm::sin(UPRIGHT_DEG.to_radians()) * axle.norm()
 }
 
-/// A camera whose angles are known by their sines and cosines.
+/// A camera given by the sines and cosines of its angles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraView {
     sin_yaw: f64,
@@ -136,12 +137,12 @@ impl CameraView {
         (right, self.cos_pitch * point.z + self.sin_pitch * depth)
     }
 
-    /// The direction to the picture's right, world frame.
+    /// Returns the direction of the picture's right, world frame.
     pub fn right(&self) -> Vector3<f64> {
         Vector3::new(self.cos_yaw, self.sin_yaw, 0.0)
     }
 
-    /// How much farther from the eye than the pivot `point` (world frame, m) is, m.
+    /// Returns the additional distance of `point` (world frame, m) from the eye compared with the pivot, m.
     pub fn depth(&self, point: &Vector3<f64>) -> f64 {
         let depth = self.cos_yaw * point.y - self.sin_yaw * point.x;
         self.cos_pitch * depth - self.sin_pitch * point.z

@@ -1,4 +1,4 @@
-//! The forms in which a page is written to a file.
+//! The file formats of a page.
 
 use std::path::Path as FilePath;
 
@@ -8,23 +8,23 @@ use super::{pdf, png, svg};
 use crate::engine::provenance::{self, Origin};
 use crate::engine::text::printable::PrintablePath;
 
-/// Dots per inch of a PNG: what journals ask of drawings with lines and letters.
+/// Dots per inch of a PNG, as journals require for drawings with lines and letters.
 pub const DOTS_PER_INCH: f64 = 600.0;
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum PageFormat {
     Svg,
-    /// SVG with text as text, which can be selected and takes a font of its reader.
+    /// SVG with text elements, which can be selected and use a font of the reader's system.
     SvgText,
     Pdf,
-    /// Portable Network Graphics, at [`DOTS_PER_INCH`].
+    /// Portable Network Graphics with [`DOTS_PER_INCH`].
     Png,
 }
 
 impl PageFormat {
-    /// The form that the end of a file's name asks for; large and small letters are the same.
+    /// Returns the format for the extension of a file name, regardless of case.
     ///
     /// # Errors
-    /// When it is none of these.
+    /// Returns an error if the extension is not svg, pdf or png.
     pub fn from_path(file: &FilePath) -> Result<Self, Unwritable> {
         let ending = file.extension().map(|e| e.to_string_lossy().to_lowercase());
         match ending.as_deref() {
@@ -36,13 +36,14 @@ impl PageFormat {
     }
 }
 
-/// The bytes of a file that shows a page, and carries its `origin` where one is given.
+/// Returns the bytes of a file that shows a page, with its `origin` embedded if given.
 ///
-/// The bytes of SVG and PDF, and the pixels of PNG, are the same on every machine. Places and widths are rounded to
-/// hundredths of a point first, the same for all forms.
+/// The bytes of SVG and PDF and the pixels of PNG are the same on every machine. Positions and widths are first rounded
+/// to hundredths of a point in all formats.
 ///
 /// # Errors
-/// When the page has no size, is too large for the form, or holds a place that is no number; when the origin is too long.
+/// Returns an error if the page has no size, is too large for the format, or has a coordinate that is not a number.
+/// Also if the origin is too long.
 pub fn write(
     scene: &PageScene,
     format: PageFormat,
@@ -62,10 +63,10 @@ pub fn write(
     }
 }
 
-/// The page in whole hundredths of a point, all of them numbers that a file can hold, without empty paths.
+/// Rounds the page to hundredths of a point, checks that a file can hold all numbers, and removes empty paths.
 ///
 /// # Errors
-/// When the page has no size, is too large, or holds a place that is no number.
+/// Returns an error if the page has no size, is too large, or has a coordinate that is not a number.
 pub fn rounded(scene: &PageScene) -> Result<PageScene, Unwritable> {
     let (width_pt, height_pt) = (scene.width_pt, scene.height_pt);
     let is_side = [width_pt, height_pt].map(|pt| hundredths(pt) > 0.0 && pt <= LARGEST_PT);
@@ -103,7 +104,7 @@ fn rounded_item(item: &SceneItem) -> Option<SceneItem> {
         pen.dash_pt
             .iter_mut()
             .for_each(|length| *length = hundredths(*length));
-        // A dash of no length at all would never end: dashes that are too short to be seen make a solid line.
+        // Dashes of length 0 would never end. Dashes too short to be seen are replaced by a solid line.
         if pen.dash_pt.iter().sum::<f64>() <= 0.0 {
             pen.dash_pt.clear();
         }

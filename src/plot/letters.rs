@@ -1,8 +1,8 @@
-//! Text as outlines, from a table of letters that the program carries: a figure looks the same where no font is
-//! installed, and no file of it names one.
+//! Text as outlines, from a table of letters in the program. Figures look the same without an installed font, and their
+//! files refer to no font.
 //!
-//! Labels are written in a small markup: `*t* (s)` has a slanted t, `10^{-3}` a superscript and `*Ω*_{p}` a subscript. What
-//! users have written goes through [`escape`]. A hyphen stays a hyphen; a minus sign is U+2212 and the caller's to write.
+//! Labels use a small markup: `*t* (s)` has an italic t, `10^{-3}` a superscript and `*Ω*_{p}` a subscript. Pass text
+//! from users through [`escape`]. A hyphen stays a hyphen; for a minus sign, write U+2212.
 
 pub mod font;
 mod setter;
@@ -12,27 +12,27 @@ use self::setter::Setter;
 use super::scene::{PlacedLetter, VectorPath};
 use crate::engine::text::printable::printable;
 
-/// Height of capital letters and digits, as a share of their size.
+/// Height of capital letters and digits, relative to the font size.
 pub const CAP_HEIGHT: f64 = 0.656;
 
-/// From this many characters on a text is cut before it is measured: no page is that wide.
+/// Texts are cut to this number of characters before they are measured: no page is that wide.
 const LONGEST_LABEL: usize = 2000;
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SetLabel {
-    /// Its outline, to be filled by the non-zero rule, pt; the origin is the left end of its baseline, y down.
+    /// Outline to be filled by the non-zero rule, pt. The origin is the left end of the baseline, y down.
     pub path: VectorPath,
-    /// From the origin to where a text behind it would begin, pt.
+    /// Distance from the origin to the start of a following text, pt.
     pub width_pt: f64,
     pub ascent_pt: f64,
     pub descent_pt: f64,
-    /// The text without markup: superscripts as characters or behind `^`, subscripts behind `_`.
+    /// The text without markup: superscripts as characters or after `^`, subscripts after `_`.
     pub words: String,
     pub letters: Vec<PlacedLetter>,
 }
 
-/// A text in markup as outlines. A character that the table does not have is drawn as a box. What is not closed ends with
-/// the text; a brace that closes nothing is a brace.
+/// Converts markup to outlines. A character that is not in the table is drawn as a box. Unclosed markup ends with the
+/// text; an unmatched brace is drawn as a brace.
 pub fn label(markup: &str, size_pt: f64) -> SetLabel {
     let mut setter = Setter::new(size_pt);
     let mut rest = markup.chars().peekable();
@@ -48,7 +48,7 @@ pub fn label(markup: &str, size_pt: f64) -> SetLabel {
     setter.finish()
 }
 
-/// Markup for a text as it is: nothing in it is markup any more, and what would steer a terminal is spelled out.
+/// Escapes a text so that none of it is markup, and spells out control characters.
 pub fn escape(text: &str) -> String {
     let mut markup = String::with_capacity(text.len());
     for c in printable(text).chars() {
@@ -60,7 +60,7 @@ pub fn escape(text: &str) -> String {
     markup
 }
 
-/// Markup for a text as it is, cut with "…" at its end where it would be wider than `width_pt`.
+/// Escapes a text, and cuts it with "…" if it is wider than `width_pt`.
 pub fn shortened(text: &str, size_pt: f64, width_pt: f64) -> String {
     let letters: Vec<char> = text.chars().take(LONGEST_LABEL + 1).collect();
     let whole = beginning(&letters, letters.len());
@@ -75,7 +75,7 @@ pub fn shortened(text: &str, size_pt: f64, width_pt: f64) -> String {
     beginning(&letters, longest)
 }
 
-/// Returns the first `length` of `letters` as markup, with dots where some are missing.
+/// Returns the first `length` of `letters` as markup, with "…" if some are missing.
 fn beginning(letters: &[char], length: usize) -> String {
     let dots = if length < letters.len() { "…" } else { "" };
     escape(&letters[..length].iter().collect::<String>()) + dots

@@ -1,13 +1,15 @@
-//! A line on the page: what of it lies in a rectangle, and the same line through fewer points.
+//! Lines on the page: clips a line to a rectangle, and reduces the number of its points.
 
 use super::ink::{PageRectangle, at};
 use super::scene::Point;
 use std::cmp::Ordering;
 
-/// Points that are thinned together; the first and the last of them stay. It bounds the time that a hostile line takes.
+/// Number of points that are simplified together; the first and last are kept. This bounds the time for a pathological
+/// line.
 const POINTS_TOGETHER: usize = 512;
 
-/// The parts of the line through `points` that lie in `frame`; it is interrupted where a point is not finite.
+/// Returns the pieces of the line through `points` inside `frame`. The line is interrupted at points that are not
+/// finite.
 pub fn clipped(points: impl Iterator<Item = Point>, frame: &PageRectangle) -> Vec<Vec<Point>> {
     let mut parts: Vec<Vec<Point>> = Vec::new();
     let mut part: Vec<Point> = Vec::new();
@@ -43,8 +45,8 @@ fn keep(parts: &mut Vec<Vec<Point>>, part: &mut Vec<Point>) {
     }
 }
 
-/// The part of a straight line that lies in `frame` (Liang and Barsky, 1984); its ends are those of the line where they
-/// are inside.
+/// Returns the piece of a straight line inside `frame` (Liang and Barsky, 1984). An end inside the frame is returned
+/// exactly.
 fn inside(from: Point, to: Point, frame: &PageRectangle) -> Option<[Point; 2]> {
     let (dx, dy) = (to.x - from.x, to.y - from.y);
     let edges = [
@@ -68,7 +70,7 @@ fn inside(from: Point, to: Point, frame: &PageRectangle) -> Option<[Point; 2]> {
             end = end.min(share);
         }
     }
-    // Neither where one of them is no number.
+    // Also outside if one of them is NaN.
     if begin.partial_cmp(&end).is_none_or(Ordering::is_gt) {
         return None;
     }
@@ -79,8 +81,8 @@ fn inside(from: Point, to: Point, frame: &PageRectangle) -> Option<[Point; 2]> {
     }))
 }
 
-/// Some of the points, the first and the last among them: none of the others lies farther than `within_pt` from the line
-/// between its neighbours that are kept (Douglas and Peucker, 1973).
+/// Returns a subset of the points, including the first and the last. No other point is farther than `within_pt` from
+/// the line between its kept neighbors (Douglas and Peucker, 1973).
 pub fn simplified(points: &[Point], within_pt: f64) -> Vec<Point> {
     let Some(last) = points.len().checked_sub(1) else {
         return vec![];
@@ -106,8 +108,8 @@ pub fn simplified(points: &[Point], within_pt: f64) -> Vec<Point> {
     kept.map(|(point, _)| *point).collect()
 }
 
-/// The square of the distance of a point from the straight line between two others; infinite if it is not a number, so that
-/// the point is kept.
+/// Returns the squared distance of a point from the line segment between two others; infinity if it is NaN, so that the
+/// point is kept.
 fn beyond(point: Point, from: Point, to: Point) -> f64 {
     let (dx, dy) = (to.x - from.x, to.y - from.y);
     let (px, py) = (point.x - from.x, point.y - from.y);

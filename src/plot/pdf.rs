@@ -1,4 +1,4 @@
-//! A page as PDF 1.4: paths and words, without a font from elsewhere, a date or an identifier.
+//! Writes a page as PDF 1.4: paths and words, without external fonts, a date or an identifier.
 
 mod words;
 
@@ -18,11 +18,12 @@ const CONTENT: Ref = Ref::new(4);
 const INFORMATION: Ref = Ref::new(5);
 const PDF_COMPRESSION: u8 = 9;
 
-/// A page whose places are whole hundredths of a point, written by this `version` of the program; its title is the file's.
+/// Writes a page whose coordinates are whole hundredths of a point. `version` is the program's version; the page's
+/// title becomes the file's title.
 pub fn written(scene: &PageScene, version: &str) -> Vec<u8> {
     let fonts = Fonts::from_scene(scene);
     let mut pdf = Pdf::new();
-    // The version which every pdflatex includes without a warning.
+    // Every pdflatex includes this version without a warning.
     pdf.set_version(1, 4);
     pdf.catalog(CATALOG).pages(PAGES);
     pdf.pages(PAGES).kids([PAGE]).count(1);
@@ -43,7 +44,7 @@ pub fn written(scene: &PageScene, version: &str) -> Vec<u8> {
 
 fn content(scene: &PageScene, fonts: &Fonts) -> Vec<u8> {
     let mut content = Content::new();
-    // The origin goes to the upper left corner, y down.
+    // Moves the origin to the upper left corner, y down.
     content.transform([1.0, 0.0, 0.0, -1.0, 0.0, scene.height_pt as f32]);
     content.set_miter_limit(MITER_LIMIT as f32);
     for group in scene.groups() {
@@ -52,7 +53,7 @@ fn content(scene: &PageScene, fonts: &Fonts) -> Vec<u8> {
     content.finish().into_vec()
 }
 
-/// Items that are drawn and cut off alike.
+/// Writes items with the same paint and clip rectangle.
 fn put_group(content: &mut Content, items: &[SceneItem], fonts: &Fonts) {
     let Some(first) = items.first() else {
         return;
@@ -69,7 +70,7 @@ fn put_group(content: &mut Content, items: &[SceneItem], fonts: &Fonts) {
     }
     for item in items {
         if let Some(words) = &item.words {
-            // A line of plain text for what is read aloud or copied: the letters alone do not say what is a power.
+            // Plain text for reading aloud and copying: the letters alone do not show which of them are superscripts.
             let mut span = content.begin_marked_content_with_properties(Name(b"Span"));
             let text = printable(&words.text);
             span.properties().actual_text(TextStr(&text));
@@ -111,7 +112,7 @@ fn put_pen(content: &mut Content, pen: &StrokeStyle) {
     }
 }
 
-/// Red, green and blue as shares of white, in thousandths: as exact as 256 steps need.
+/// Returns red, green and blue as fractions of white, rounded to thousandths, which is enough for 256 levels.
 fn shares(Color(parts): Color) -> [f32; 3] {
     parts.map(|part| (libm::round(f64::from(part) / 0.255) / 1000.0) as f32)
 }
@@ -138,7 +139,7 @@ fn put_cubic(content: &mut Content, points: [Point; 3]) -> &mut Content {
     content.cubic_to(a.0, a.1, b.0, b.1, to.0, to.1)
 }
 
-/// The control point of a cubic curve that is the parabola with this one, in hundredths.
+/// Returns a control point, in hundredths, of the cubic curve that equals the parabola with this `control` point.
 fn two_thirds(end: Point, control: Point) -> Point {
     at(
         hundredths(end.x + (control.x - end.x) * 2.0 / 3.0),

@@ -1,4 +1,4 @@
-//! A page as PNG: white paper, and how large it is printed.
+//! Writes a page as PNG on white paper, with its print size.
 
 use std::io::Write;
 use tiny_skia::{
@@ -14,13 +14,13 @@ use super::{
 use crate::engine::text::printable::printable;
 
 const MOST_DOTS: f64 = 1e8;
-/// The most dots that are drawn together: a large picture is drawn in bands of 40 MB each.
+/// Maximum number of dots that are drawn together. A large picture is drawn in bands of 40 MB each.
 const DOTS_OF_BAND: u32 = 8_000_000;
 
-/// A page whose places are whole hundredths of a point, with this many dots per inch.
+/// Writes a page whose coordinates are whole hundredths of a point, with this resolution.
 ///
 /// # Errors
-/// Where the picture is too large.
+/// Returns an error if the picture is too large.
 pub fn written(scene: &PageScene, dots_per_inch: f64) -> Result<Vec<u8>, Unwritable> {
     let [width, height] = [scene.width_pt, scene.height_pt].map(|pt| {
         libm::ceil(pt * dots_per_inch / 72.0 - 1e-6).clamp(1.0, f64::from(u32::MAX)) as u32
@@ -37,7 +37,7 @@ pub fn written(scene: &PageScene, dots_per_inch: f64) -> Result<Vec<u8>, Unwrita
     })
 }
 
-/// The file: in grey where all is grey.
+/// Writes the file, in grayscale if all colors are gray.
 fn in_bands(
     scene: &PageScene,
     (width, height): (u32, u32),
@@ -78,7 +78,7 @@ fn in_bands(
     Ok(file)
 }
 
-/// `sheet` with its part of the page, `top` dots below the page's upper edge.
+/// Draws the part of the page that starts `top` dots below its upper edge onto `sheet`.
 fn drawn(scene: &PageScene, sheet: Pixmap, top: u32, dots_per_inch: f64) -> Pixmap {
     let scale = (dots_per_inch / 72.0) as f32;
     let mut easel = Easel {
@@ -91,11 +91,11 @@ fn drawn(scene: &PageScene, sheet: Pixmap, top: u32, dots_per_inch: f64) -> Pixm
     easel.sheet
 }
 
-/// The paper while it is drawn on.
+/// The sheet that is being drawn on.
 struct Easel {
     sheet: Pixmap,
     transform: Transform,
-    /// The rectangle of the last item that was cut off, and its mask: many items in turn have the same.
+    /// The last clip rectangle with its mask, because consecutive items often share it.
     clip: Option<([Point; 2], Mask)>,
 }
 
@@ -132,7 +132,7 @@ impl Easel {
     }
 }
 
-/// `None` for a path without a line.
+/// Converts a path; `None` if it has no line.
 fn outline(path: &VectorPath) -> Option<tiny_skia::Path> {
     let mut builder = PathBuilder::new();
     for segment in &path.0 {
@@ -161,7 +161,7 @@ fn ink(Color([red, green, blue]): Color) -> Ink<'static> {
 }
 
 fn stroke(pen: &StrokeStyle) -> Stroke {
-    // An odd number of lengths is gone through twice, as in SVG and PDF.
+    // An odd number of lengths is repeated, as in SVG and PDF.
     let twice = 1 + pen.dash_pt.len() % 2;
     let dash = pen
         .dash_pt

@@ -1,31 +1,31 @@
-//! A page as filled and stroked paths, in order from the back to the front.
+//! A page as filled and stroked paths, from back to front.
 //!
-//! Lengths are points (1/72 inch); the origin is the upper left corner, x to the right, y down. Text is a path too: the
-//! outlines of its letters, so that a page looks the same where no font is installed.
+//! Lengths are in points (1/72 inch). The origin is the upper left corner, with x to the right and y down. Text is a
+//! path too: the outlines of its letters, so that a page looks the same without an installed font.
 
 use thiserror::Error;
 
-/// The largest number that a page can hold, pt: far beyond every sheet, and exact in a file to a hundredth.
+/// The largest coordinate on a page, pt: far beyond any sheet, and exact to a hundredth in every file format.
 pub(super) const LARGEST_PT: f64 = 20_000.0;
 
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum Unwritable {
-    /// The file's name does not say which form it shall have.
+    /// The file name does not give a known format.
     #[error(
         "{0}: a figure is written as .svg, .pdf or .png, and the file's name must end with one of them"
     )]
     Ending(String),
-    /// The page is empty, or larger than a file can say.
+    /// The page is empty, or too large for a file.
     #[error(
         "a page of {width_pt} pt x {height_pt} pt cannot be written: each side must be above 0 and at most {LARGEST_PT} pt"
     )]
     Size { width_pt: f64, height_pt: f64 },
-    /// Something on the page lies at no place, or at one that a file cannot say.
+    /// An item on the page has an invalid position or one that is out of range.
     #[error(
-        "item {0} of the page lies farther than {LARGEST_PT} pt from its corner, or its place or its line is not a number"
+        "item {0} of the page is farther than {LARGEST_PT} pt from the corner, or has a coordinate or line width that is not a number"
     )]
     Place(usize),
-    /// The picture would not fit into memory, or its form cannot hold it.
+    /// The picture does not fit into memory, or its format cannot hold it.
     #[error(
         "a picture of {width} x {height} dots cannot be written: {reason}; make the figure smaller, or write SVG or PDF"
     )]
@@ -35,7 +35,7 @@ pub enum Unwritable {
         reason: String,
     },
     #[error(
-        "the runs and the words of this figure are too long to travel with it: draw fewer runs, or give shorter words"
+        "the runs and texts of this figure are too long to be embedded in the file: draw fewer runs, or use shorter texts"
     )]
     Origin,
 }
@@ -50,12 +50,12 @@ pub const fn at(x: f64, y: f64) -> Point {
     Point { x, y }
 }
 
-/// `pt` in whole hundredths.
+/// Rounds `pt` to hundredths.
 pub fn hundredths(pt: f64) -> f64 {
     libm::round(pt * 100.0) / 100.0 + 0.0
 }
 
-/// A letter in its place.
+/// A letter with its position on the page.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlacedLetter {
     pub letter: char,
@@ -65,7 +65,8 @@ pub struct PlacedLetter {
 }
 
 impl PlacedLetter {
-    /// Returns its place along its line of text and across it, pt, in the directions in which the letters run and descend.
+    /// Returns the position along and across the line of text, pt, in the directions in which letters advance and
+    /// descend.
     pub fn along_and_across(&self, is_upward: bool) -> (f64, f64) {
         let Point { x, y } = self.origin;
         if is_upward { (-y, x) } else { (x, y) }
@@ -76,15 +77,15 @@ impl PlacedLetter {
 pub enum Segment {
     Move(Point),
     Line(Point),
-    /// A parabola: its control point, its end.
+    /// A parabola: control point and end point.
     Quadratic(Point, Point),
-    /// A cubic curve: its two control points, its end.
+    /// A cubic curve: two control points and the end point.
     Cubic(Point, Point, Point),
     Close,
 }
 
 impl Segment {
-    /// Where it ends; `None` for [`Close`](Self::Close), which ends where its line began.
+    /// Returns the end point; `None` for [`Close`](Self::Close), which ends at the start of its line.
     pub fn end(&self) -> Option<Point> {
         match *self {
             Self::Move(end)
@@ -101,7 +102,7 @@ impl Segment {
 pub struct VectorPath(pub Vec<Segment>);
 
 impl VectorPath {
-    /// Straight lines from corner to corner, and back to the first.
+    /// Creates a closed polygon with these corners.
     pub fn polygon(corners: impl IntoIterator<Item = Point>) -> Self {
         let mut path = Self::polyline(corners);
         path.0.push(Segment::Close);
@@ -121,7 +122,7 @@ impl VectorPath {
         )
     }
 
-    /// The path with each of its points, control points too, moved to where `to` says.
+    /// Maps all points, including control points, with `to`.
     pub fn mapped(self, to: impl Fn(Point) -> Point) -> Self {
         Self(
             self.0
@@ -139,7 +140,7 @@ impl VectorPath {
         )
     }
 
-    /// The points of the path, control points among them: what it covers lies inside of their hull.
+    /// Returns the points of the path, including control points. The path lies within their convex hull.
     pub fn points(&self) -> impl Iterator<Item = Point> {
         self.0
             .iter()
@@ -169,12 +170,12 @@ pub struct StrokeStyle {
     pub color: Color,
     /// Lengths of strokes and gaps in turn, pt; empty for a solid line.
     pub dash_pt: Vec<f64>,
-    /// Whether corners and the ends of solid lines are round; else corners are sharp and ends flat.
+    /// True for round corners, and round ends of solid lines; false for sharp corners and flat ends.
     pub is_round: bool,
 }
 
 impl StrokeStyle {
-    /// Whether the ends of lines are round: those of dashes are flat, so that they are as long as they are said to be.
+    /// Returns true if the ends of lines are round. Ends of dashes are flat, so that dashes have their exact length.
     pub fn has_round_ends(&self) -> bool {
         self.is_round && self.dash_pt.is_empty()
     }
@@ -182,7 +183,7 @@ impl StrokeStyle {
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Paint {
-    /// Its inside, by the non-zero rule.
+    /// Fills the inside, by the non-zero rule.
     Fill(Color),
     Stroke(StrokeStyle),
 }
@@ -199,7 +200,7 @@ impl Paint {
 pub struct SceneItem {
     pub path: VectorPath,
     pub paint: Paint,
-    /// What it is cut off at: upper left and lower right corner; `None` for the page.
+    /// The clip rectangle, as upper left and lower right corner; `None` for the whole page.
     pub clip: Option<[Point; 2]>,
     pub words: Option<TextItem>,
 }
@@ -212,7 +213,7 @@ pub struct TextItem {
 }
 
 impl SceneItem {
-    /// The item with each of its points moved to where `to` says; what it is cut off at stays.
+    /// Maps all points of the item with `to`. The clip rectangle is not changed.
     #[must_use]
     pub fn mapped(mut self, to: impl Fn(Point) -> Point) -> Self {
         for letter in self.words.iter_mut().flat_map(|words| &mut words.letters) {
@@ -227,13 +228,13 @@ impl SceneItem {
 pub struct PageScene {
     pub width_pt: f64,
     pub height_pt: f64,
-    /// Its title, for readers of the file; it is not drawn.
+    /// The title in the file's metadata, which is not drawn.
     pub title: String,
     pub items: Vec<SceneItem>,
 }
 
 impl PageScene {
-    /// The items in their order; those of one slice are drawn and cut off alike.
+    /// Groups consecutive items with the same paint and clip rectangle.
     pub fn groups(&self) -> impl Iterator<Item = &[SceneItem]> {
         self.items
             .chunk_by(|a, b| a.paint == b.paint && a.clip == b.clip)

@@ -1,23 +1,24 @@
 //! The area that the ink of a line covers, as outlines.
 //!
-//! The ink is put into a grid of square cells, the boundary of the inked cells is followed, and its steps are made straight
-//! again. The grid is finer than the dots of a printer, and what it cannot tell apart is one area.
+//! The ink is drawn into a grid of square cells. The boundary of the inked cells is traced, and its steps are
+//! straightened. The grid is finer than the dots of a printer, so that lines closer than a cell become one area.
 
 use super::line::simplified;
 use super::scene::{Point, Segment, VectorPath, at};
 use crate::plot::extent;
 
-/// Sides of a cell, pt: at 1200 and at 600 dots an inch. The coarser one where the finer one gives too many points.
+/// Sides of a cell, pt, at 1200 and at 600 dots per inch. The coarser grid is used if the finer one gives too many
+/// points.
 const CELLS_PT: [f64; 2] = [0.06, 0.12];
-/// Points of an outline beyond which the grid is made coarser: a file of 800 kB.
+/// Number of points above which the coarser grid is used, about 800 kB in a file.
 const MANY_OUTLINE_POINTS: usize = 100_000;
 const MOST_GRID_CELLS: f64 = 32e6;
-/// How far an outline may leave the middles of the cells' sides, in cells.
+/// Maximum distance of an outline from the midpoints of the cells' sides, in cells.
 const OUTLINE_TOLERANCE: f64 = 1.0;
-/// An outline of no more sides of cells than this is a dot that cannot be seen.
+/// Outlines with at most this number of cell sides are invisible dots.
 const SMALLEST_OUTLINE: usize = 8;
 
-/// The outline of the ink of lines with round corners and ends, `width_pt` wide; inked is what it winds about.
+/// Returns the outline of lines with round corners and ends, `width_pt` wide. It winds around the inked area.
 pub fn area(lines: &[Vec<Point>], width_pt: f64) -> VectorPath {
     let mut area = VectorPath::default();
     for cell_pt in CELLS_PT {
@@ -33,7 +34,7 @@ pub fn area(lines: &[Vec<Point>], width_pt: f64) -> VectorPath {
     area
 }
 
-/// Cells in rows from the top, with an empty one at each edge.
+/// Cells in rows from the top, with an empty cell at each edge.
 pub struct Grid {
     origin: Point,
     cell_pt: f64,
@@ -42,8 +43,8 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// A grid with room for lines `width_pt` wide, in which the cells that `lines` pass through are inked. `None` where nothing
-    /// is drawn, where a place is not a number, or where the grid would be too large.
+    /// Creates a grid for lines `width_pt` wide, and inks the cells that `lines` cross. Returns `None` if nothing is
+    /// drawn, if a coordinate is not a number, or if the grid would be too large.
     pub fn inked(lines: &[Vec<Point>], cell_pt: f64, width_pt: f64) -> Option<Self> {
         let mut grid = Self::around(lines, width_pt, cell_pt)?;
         for pair in lines.iter().flat_map(|line| line.windows(2)) {
@@ -57,9 +58,10 @@ impl Grid {
         inked as f64 * self.cell_pt * self.cell_pt
     }
 
-    /// The area of the inked cells that are the lower right corner of a square of ink with sides of more than `inside` cells, pt².
+    /// Returns the area of the inked cells that are the lower right corner of an inked square with sides of more than
+    /// `inside` cells, pt².
     pub fn area_inside_pt2(&self, inside: usize) -> f64 {
-        // Ink to the left without a gap, up to the cell; the same to the top gives squares.
+        // Side of the largest inked square whose lower right corner is this cell.
         let mut sides = vec![0_u16; self.is_inked.len()];
         let mut count = 0;
         let cells = self.is_inked.iter().enumerate();
@@ -89,7 +91,7 @@ impl Grid {
         })
     }
 
-    /// Inks the cells that a straight line passes through, a run of them in each row.
+    /// Inks the cells that a straight line crosses, one run per row.
     fn trace(&mut self, from: Point, to: Point) {
         let [mut upper, mut lower] = [from, to].map(|p| {
             (
@@ -120,7 +122,7 @@ impl Grid {
         }
     }
 
-    /// Inks all cells whose middle is at most `radius` (in cells) from the middle of an inked one.
+    /// Inks all cells whose center is within `radius` (in cells) of the center of an inked cell.
     fn widen(&mut self, radius: f64) {
         let blank = vec![false; self.is_inked.len()];
         let traced = std::mem::replace(&mut self.is_inked, blank);
@@ -147,14 +149,14 @@ impl Grid {
         }
     }
 
-    /// Whether the cell right of and below the corner of cells is inked.
+    /// Returns true if the cell to the lower right of this grid corner is inked.
     fn at(&self, x: isize, y: isize) -> bool {
         let is_inside = x >= 0 && y >= 0 && (x as usize) < self.columns;
         is_inside && self.is_inked.get(y as usize * self.columns + x as usize) == Some(&true)
     }
 
-    /// All outlines, with the ink to their right. Each runs to the right somewhere, along the upper side of an inked cell. The
-    /// uppermost row is empty.
+    /// Returns all outlines, with the ink on their right. Each outline runs to the right at least once, along the upper
+    /// side of an inked cell. The uppermost row is empty.
     fn outlines(&self) -> VectorPath {
         let mut path = VectorPath::default();
         let mut is_done = vec![false; self.is_inked.len()];
@@ -181,8 +183,8 @@ impl Grid {
         path
     }
 
-    /// The middles of the sides of cells along one outline, the first once more at its end. The sides where it runs to the
-    /// right are marked.
+    /// Returns the midpoints of the cell sides along one outline, closed by repeating the first. Marks the sides where
+    /// the outline runs to the right.
     fn outline(&self, start: (isize, isize), is_done: &mut [bool]) -> Vec<Point> {
         let (mut at, mut step) = (start, (1, 0));
         let mut middles = Vec::new();
@@ -198,7 +200,7 @@ impl Grid {
             at = (x + step.0, y + step.1);
             let right = (-step.1, step.0);
             let left = (-right.0, -right.1);
-            // The cell ahead on each side of the corner: the corner's cell is to its right and below.
+            // The cells ahead on each side. The cell of a grid corner is to its lower right.
             let ahead = [right, left].map(|side| {
                 let column = at.0 - isize::from(step.0 + side.0 < 0);
                 let row = at.1 - isize::from(step.1 + side.1 < 0);
@@ -217,7 +219,7 @@ impl Grid {
     }
 }
 
-/// The least and the greatest of `numbers`; `None` where there is none, or one is not finite.
+/// Returns the minimum and maximum of `numbers`; `None` if there are none, or if one is not finite.
 fn range(numbers: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     extent(numbers).filter(|(low, high)| (high - low).is_finite())
 }
@@ -227,7 +229,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// How often the outlines wind about a place; whether to the right or to the left does not matter.
+    /// Counts how often the outlines wind around a point, ignoring the sign's meaning.
     fn winding(area: &VectorPath, x: f64, y: f64) -> i32 {
         let (mut count, mut start) = (0, at(0.0, 0.0));
         let mut at = start;
@@ -276,7 +278,7 @@ mod tests {
             let area = area(&lines, width);
             for (x, y) in tries {
                 let beyond = distance(&lines, x, y) - 0.5 * width;
-                // The diagonal of a cell, half of it on the line and half at the edge, and what the smoothing takes.
+                // Half a cell's diagonal at the line, half at the edge, and the tolerance of the smoothing.
                 if beyond.abs() > CELLS_PT[0] * (1.42 + OUTLINE_TOLERANCE) {
                     prop_assert_eq!(winding(&area, x, y).abs(), i32::from(beyond < 0.0), "{} {}: {}", x, y, beyond);
                 }

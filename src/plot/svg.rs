@@ -1,17 +1,17 @@
-//! A page as SVG 1.1: paths alone, no font, no script, no style sheet; where it is asked for, text as text.
+//! Writes a page as SVG 1.1 with paths only: no fonts, scripts or style sheets. On request, text is written as text.
 
-use std::fmt::Write; // which cannot fail on a `String`
+use std::fmt::Write; // cannot fail on a `String`
 
 use super::scene::TextItem;
 use super::{Color, PageScene, Paint, Point, SceneItem, Segment, StrokeStyle, VectorPath};
 use crate::engine::text::printable::xml;
 use crate::plot::PT_PER_MM;
 
-/// How much farther a sharp corner may reach than half the line's width: what SVG takes if nothing is said.
+/// Maximum length of a sharp corner, relative to half the line width: the default of SVG.
 pub const MITER_LIMIT: f64 = 4.0;
 
-/// A page whose places are whole hundredths of a point. The words of a text are its label for readers of the screen; with
-/// `has_text` they are text.
+/// Writes a page whose coordinates are whole hundredths of a point. The words of a text are its label for screen
+/// readers; with `has_text` they are written as text.
 pub fn written(scene: &PageScene, has_text: bool) -> String {
     let mut out = String::new();
     let (width, height) = (number(scene.width_pt), number(scene.height_pt));
@@ -38,7 +38,7 @@ pub fn written(scene: &PageScene, has_text: bool) -> String {
     out
 }
 
-/// The rectangles that something is cut off at, each once.
+/// Returns the clip rectangles, each once.
 fn clips(scene: &PageScene) -> Vec<[Point; 2]> {
     let mut clips: Vec<[Point; 2]> = Vec::new();
     for clip in scene.items.iter().filter_map(|item| item.clip) {
@@ -49,13 +49,14 @@ fn clips(scene: &PageScene) -> Vec<[Point; 2]> {
     clips
 }
 
-/// The name of a rectangle says where it is: where two figures are put into one document, equal names mean the same.
+/// Names a clip rectangle by its coordinates, so that equal names mean the same rectangle if two figures are put into
+/// one document.
 fn name(clip: &[Point; 2]) -> String {
     let parts = clip.iter().flat_map(|p| [p.x, p.y]).map(number);
     format!("clip_{}", parts.collect::<Vec<_>>().join("_"))
 }
 
-/// Items that are drawn and cut off alike.
+/// Writes items with the same paint and clip rectangle.
 fn put_group(out: &mut String, items: &[SceneItem], has_text: bool) {
     let Some(first) = items.first() else {
         return;
@@ -84,11 +85,11 @@ fn put_group(out: &mut String, items: &[SceneItem], has_text: bool) {
     *out += "</g>\n";
 }
 
-/// The fonts of text, the one of the outlines first.
+/// Fonts for text; the first is the font of the outlines.
 const SVG_TEXT_FONTS: &str =
     "STIX Two Text,STIXTwoText,Times New Roman,Times,Liberation Serif,serif";
 
-/// Words as text: a part of one style and height begins where its outlines do.
+/// Writes words as text. Letters of one style and height form a part, which starts at the position of their outlines.
 fn put_text(out: &mut String, words: &TextItem) {
     let turned = if words.is_upward {
         " transform=\"rotate(-90)\""
@@ -138,7 +139,8 @@ fn put_pen(out: &mut String, pen: &StrokeStyle) {
     }
 }
 
-/// The data of a path. Each line begins at its place on the page and goes on by steps, which are short numbers.
+/// Writes the data of a path. Each line starts at an absolute position and continues in relative steps, which are
+/// shorter numbers.
 fn data(path: &VectorPath) -> String {
     let mut data = PathData::default();
     for segment in &path.0 {
@@ -165,16 +167,16 @@ fn data(path: &VectorPath) -> String {
 #[derive(Default)]
 struct PathData {
     text: String,
-    /// The command that is repeated where only numbers follow.
+    /// The last command, which is implied if only numbers follow.
     command: char,
-    /// Where the line is and where it began, in hundredths.
+    /// Current position and start of the current line, in hundredths.
     at: [i64; 2],
     start: [i64; 2],
 }
 
 impl PathData {
-    /// A command with the steps from where the line is to `points`, of which the last is where it goes; `axes` are those
-    /// of x (0) and y (1) that the command takes.
+    /// Writes a command with the relative coordinates of `points`, the last of which becomes the current position.
+    /// `axes` lists the coordinates that the command needs: x (0) and y (1).
     fn step(&mut self, command: char, points: &[Point], axes: &[usize]) {
         if command != self.command || axes.is_empty() || command == 'M' {
             self.text.push(command);
@@ -185,7 +187,7 @@ impl PathData {
             self.at = [hundredths(point.x), hundredths(point.y)];
             for &axis in axes {
                 let step = number((self.at[axis] - from[axis]) as f64 / 100.0);
-                // A blank where one number would run into the next.
+                // A blank separates two numbers that would otherwise run together.
                 if self.text.ends_with(|c: char| c.is_ascii_digit()) && !step.starts_with('-') {
                     self.text.push(' ');
                 }
@@ -199,7 +201,7 @@ fn hundredths(pt: f64) -> i64 {
     libm::round(pt * 100.0) as i64
 }
 
-/// A number with two decimals at most, in as few characters as possible: `12.5`, `-.25`, `0`.
+/// Formats a number with at most two decimals, as short as possible: `12.5`, `-.25`, `0`.
 fn number(value: f64) -> String {
     let cents = hundredths(value);
     let (whole, rest) = (cents.abs() / 100, cents.abs() % 100);
@@ -210,7 +212,7 @@ fn number(value: f64) -> String {
     }
 }
 
-/// `#rgb` where that says it all, else `#rrggbb`.
+/// Formats a color as `#rgb` if possible, else as `#rrggbb`.
 fn hex(Color([red, green, blue]): Color) -> String {
     if [red, green, blue].iter().all(|part| part % 17 == 0) {
         format!("#{:x}{:x}{:x}", red / 17, green / 17, blue / 17)

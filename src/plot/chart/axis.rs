@@ -1,10 +1,10 @@
-//! An axis in its place: where a value stands on the page, and the ticks that have room there.
+//! An axis on the page: the positions of values, and the ticks that have room.
 
 use super::ChartAxis;
 use super::ticks::{Tick, Ticks};
 use crate::plot::ink::{self, LABEL_PT};
 
-/// Least distance of two labels beside each other, and of two above each other, pt.
+/// Minimum distance between two labels side by side, and between two labels on top of each other, pt.
 pub const BESIDE: f64 = 6.0;
 const AXIS_HEADROOM: f64 = 7.5;
 
@@ -24,7 +24,7 @@ impl AxisScale {
         }
     }
 
-    /// Where `value` stands, pt; far outside, or not finite, where it cannot be shown.
+    /// Returns the position of `value`, pt. It is far outside or not finite if the value cannot be shown.
     pub fn place(&self, value: f64) -> f64 {
         let (low, high) = self.range;
         let share = if self.is_log {
@@ -45,7 +45,7 @@ impl AxisScale {
         place >= low.min(high) - 0.01 && place <= low.max(high) + 0.01
     }
 
-    /// The ticks of an axis below the picture, whose labels stand beside each other.
+    /// Returns the ticks of an axis below the picture, whose labels are side by side.
     pub fn ticks_below(&self, axis: &ChartAxis) -> Ticks {
         self.ticks(axis, |ticks| {
             ticks.array_windows().all(|[a, b]| {
@@ -55,7 +55,7 @@ impl AxisScale {
         })
     }
 
-    /// The ticks of an axis at the left, whose labels stand above each other.
+    /// Returns the ticks of an axis on the left, whose labels are on top of each other.
     pub fn ticks_beside(&self, axis: &ChartAxis) -> Ticks {
         let apart = ink::height(LABEL_PT) + AXIS_HEADROOM;
         self.ticks(axis, |ticks| {
@@ -74,7 +74,7 @@ impl AxisScale {
         };
         ticks.major.retain(|tick| self.shows(tick.at));
         ticks.minor.retain(|at| self.shows(*at));
-        // Minor ticks that nearly touch are no help.
+        // Minor ticks that almost touch are not helpful.
         if ticks.minor.len() as f64 * 1.6 > self.length() {
             ticks.minor.clear();
         }

@@ -1,24 +1,25 @@
-//! Where an axis has its ticks, and what is written at them.
+//! Positions and labels of the ticks on an axis.
 //!
-//! A tick is a whole number of steps of 1, 2 or 5 times a power of ten, never a sum of steps: no label reads
-//! 0.30000000000000004. Large and small numbers leave a power of ten to the axis's title, and numbers that differ in far
-//! digits only leave an offset to it.
+//! A tick is a whole multiple of 1, 2 or 5 times a power of ten, never a sum of steps, so that no label reads
+//! 0.30000000000000004. Large and small numbers move a power of ten to the axis's title. Numbers that differ only in
+//! distant digits move an offset to it.
 
 use crate::engine::text::nice_numbers;
 use crate::plot::ink::{self, LABEL_PT};
 
-/// Numbers from this power of ten on leave a power to the title, and those up to the other.
+/// Numbers with at least this exponent, or at most the exponent below, move a power of ten to the title.
 const LARGE_POWER: i32 = 4;
 const SMALL_POWER: i32 = -3;
-/// A step below this part of the numbers leaves an offset to the title: else each label repeats the same digits.
+/// A step smaller than this fraction of the numbers moves an offset to the title, because all labels would repeat the
+/// same digits.
 const OFFSET: f64 = 2e-6;
-/// Ticks at most; an axis that has room for more is better off with minor ticks.
+/// Maximum number of ticks. An axis with more room gets minor ticks instead.
 const MOST_TICKS: f64 = 8.0;
-/// Relative differences below this are rounding.
+/// Relative differences below this are rounding errors.
 const TICK_ROUNDING: f64 = 1e-9;
 
 const MINUS: char = '\u{2212}';
-/// The longest row of zeros that an offset has.
+/// Maximum number of zeros in an offset.
 const MOST_ZEROS: i32 = 12;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -28,7 +29,7 @@ pub struct Tick {
 }
 
 impl Tick {
-    /// Returns half of the width of its label, pt.
+    /// Returns half the width of its label, pt.
     pub fn half_width(&self) -> f64 {
         0.5 * ink::width(&self.label, LABEL_PT)
     }
@@ -36,18 +37,18 @@ impl Tick {
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Ticks {
-    /// Those with a label, from the least to the greatest.
+    /// Ticks with a label, in ascending order.
     pub major: Vec<Tick>,
     pub minor: Vec<f64>,
-    /// The labels are in units of ten to this power.
+    /// Exponent of the power of ten that is the unit of the labels.
     pub power: i32,
-    /// What is to be added to the labels, as it is written in the title; none where that is 0.
+    /// Offset to add to the labels, as text for the title; `None` if it is 0.
     pub offset: Option<String>,
 }
 
 impl Ticks {
-    /// The ticks from `low` to `high`, finite and in this order, on a linear axis: the finest for which `fits` says that the
-    /// labels have room. Where no step of them does, the ends alone have labels.
+    /// Returns the ticks of a linear axis from `low` to `high`, both finite: the finest ticks whose labels have room
+    /// according to `fits`. If no step has room, only the ends get labels.
     pub fn linear(low: f64, high: f64, fits: impl Fn(&[Tick]) -> bool) -> Self {
         let span = high - low;
         if !(span > 0.0 && span.is_finite()) {
@@ -73,7 +74,7 @@ impl Ticks {
         best.with_few_labels(fits)
     }
 
-    /// The same with labels at the first and the last tick alone, or where these have no room either, at the last.
+    /// Keeps the labels of the first and last tick only; if these have no room either, only the last.
     fn with_few_labels(mut self, fits: impl Fn(&[Tick]) -> bool) -> Self {
         if fits(&self.major) || self.major.len() < 2 {
             return self;
@@ -87,7 +88,7 @@ impl Ticks {
         self
     }
 
-    /// The ticks whose step is the number on that rung of the ladder.
+    /// Returns the ticks whose step is this rung of the ladder.
     fn with_step(low: f64, high: f64, rung: i64) -> Self {
         let step = nice_numbers::rung(rung);
         let numbers = RoundMultiples::of_rung(rung);
@@ -120,8 +121,9 @@ impl Ticks {
         }
     }
 
-    /// The ticks from `low` to `high`, both above 0, on a logarithmic axis: powers of ten as close as `fits` allows; over
-    /// less than a decade and a half their 2- and 5-fold too, or else the ticks of a linear axis.
+    /// Returns the ticks of a logarithmic axis from `low` to `high`, both above 0: powers of ten as close as `fits`
+    /// allows. Over less than one and a half decades, their multiples by 2 and 5 are used too, or the ticks of a linear
+    /// axis.
     pub fn log(low: f64, high: f64, fits: impl Fn(&[Tick]) -> bool) -> Self {
         let (first, last) = (ceil(libm::log10(low)), floor(libm::log10(high)));
         if high / low < 32.0 {
@@ -175,7 +177,7 @@ impl Ticks {
     }
 }
 
-/// Returns the round values from `low` to `high`, the finest of which there are at most `most`.
+/// Returns the finest round values from `low` to `high`, at most `most` of them.
 pub fn round_values(low: f64, high: f64, most: usize) -> Vec<f64> {
     let range = high - low;
     if !(range > 0.0 && range.is_finite()) || most == 0 {
@@ -203,7 +205,7 @@ fn floor(number: f64) -> i64 {
     (number + TICK_ROUNDING).floor() as i64
 }
 
-/// The power of ten that numbers up to `largest` leave to the title: a multiple of 3, and 0 for ordinary numbers.
+/// Returns the exponent that numbers up to `largest` move to the title: a multiple of 3, and 0 for ordinary numbers.
 fn leading_power(largest: f64) -> i32 {
     let exponent = libm::log10(largest).floor() as i32;
     if (SMALL_POWER + 1..LARGE_POWER).contains(&exponent) {
@@ -213,12 +215,12 @@ fn leading_power(largest: f64) -> i32 {
     }
 }
 
-/// 2, 3, ..., 9 times ten to this power.
+/// Returns 2, 3, ..., 9 times this power of ten.
 fn parts_of_decade(power: i64) -> impl Iterator<Item = f64> {
     (2..10).map(move |digit| f64::from(digit) * nice_numbers::rung(3 * power))
 }
 
-/// Returns ticks at the powers of ten from `first` to `last` that are multiples of `every`.
+/// Returns ticks at the powers of ten from `first` to `last` whose exponents are multiples of `every`.
 fn decades(first: i64, last: i64, every: i64) -> Vec<Tick> {
     let powers = (first..=last).filter(|power| power.rem_euclid(every) == 0);
     powers.map(|power| decade(power as i32)).collect()
@@ -252,7 +254,7 @@ struct RoundMultiples {
 }
 
 impl RoundMultiples {
-    /// The multiples of the number on that rung of the ladder.
+    /// Returns the multiples of this rung of the ladder.
     fn of_rung(rung: i64) -> Self {
         Self {
             digit: [1, 2, 5][rung.rem_euclid(3) as usize],
@@ -269,7 +271,8 @@ impl RoundMultiples {
         text.parse().unwrap_or_default()
     }
 
-    /// The multiple in full; of the order of ten to a `power` beyond [`MOST_ZEROS`], as a multiple of that.
+    /// Formats the multiple in full. If `power` exceeds [`MOST_ZEROS`], it is written as a multiple of ten to that
+    /// power.
     fn offset(self, count: i64, power: i32) -> String {
         if power.abs() <= MOST_ZEROS {
             return self.label(count, 0);
@@ -277,7 +280,7 @@ impl RoundMultiples {
         format!("{}·{}", self.label(count, power), power_of_ten(power))
     }
 
-    /// The multiple in units of ten to `power`, with all of its digits and no more.
+    /// Formats the multiple in units of ten to `power`, with exactly its digits.
     fn label(self, count: i64, power: i32) -> String {
         let exponent = self.decade - power;
         let whole = i128::from(count) * i128::from(self.digit);

@@ -1,5 +1,4 @@
-//! The letters of a page as a TrueType font, for a file whose text can be searched and copied: the outlines of the table,
-//! and no others.
+//! Creates a TrueType font with only the letters of a page, for a file whose text can be searched and copied.
 //!
 //! Source: Microsoft, OpenType specification 1.9: otff, head, hhea, hmtx, maxp, loca, glyf.
 
@@ -8,21 +7,21 @@ use super::table::{FontStyle, Letter, UNITS_PER_EM};
 use crate::plot::{Point, Segment};
 use std::collections::BTreeSet;
 
-/// A font of some letters. Glyph 0 is the box for a letter that there is not; the letters follow in the order of their codes.
+/// A font with some letters. Glyph 0 is the box for missing letters; the letters follow in the order of their codes.
 pub struct Font {
     letters: Vec<char>,
     glyphs: Vec<Glyph>,
 }
 
-/// A place x, y, and whether the outline runs through it.
+/// Coordinates x, y, and true if the point is on the outline.
 type ContourPoint = (i16, i16, bool);
 
 /// A letter in the units of the font, y up.
 struct Glyph {
     advance: u16,
-    /// The contours, each without its first point at its end.
+    /// The contours, without a repeated first point at the end.
     contours: Vec<Vec<ContourPoint>>,
-    /// Left, lowest, right and highest place.
+    /// Bounding box: left, bottom, right, top.
     bounds: [i16; 4],
 }
 
@@ -41,7 +40,7 @@ impl Font {
         }
     }
 
-    /// The number of a letter's glyph; 0 where there is none.
+    /// Returns the glyph number of a letter; 0 if the font does not have it.
     pub fn glyph(&self, letter: char) -> u16 {
         let place = self.letters.binary_search(&letter);
         place.map_or(0, |place| place as u16 + 1)
@@ -51,12 +50,12 @@ impl Font {
         (1..).zip(self.letters.iter().copied())
     }
 
-    /// From each glyph's origin to the next letter's origin, thousandths of the size.
+    /// Returns the advance of each glyph, in thousandths of the size.
     pub fn advances(&self) -> impl Iterator<Item = f32> + '_ {
         self.glyphs.iter().map(|glyph| f32::from(glyph.advance))
     }
 
-    /// Left, lowest, right and highest place of any letter, thousandths of the size.
+    /// Returns the bounding box of all letters (left, bottom, right, top), in thousandths of the size.
     pub fn bounds(&self) -> [i16; 4] {
         let all = self.glyphs.iter().map(|glyph| glyph.bounds);
         all.fold([0; 4], |[left, low, right, high], b| {
@@ -76,7 +75,7 @@ impl Font {
             let left = glyph.bounds[0].to_be_bytes();
             [glyph.advance.to_be_bytes(), left].concat()
         });
-        // In the order of their names.
+        // Sorted by name, as the specification requires.
         file([
             (*b"glyf", outlines),
             (*b"head", self.head()),
@@ -91,14 +90,14 @@ impl Font {
         shorts(&[
             &[1, 0], // version
             &[1, 0], // revision of the font
-            &[0, 0], // the sum of the file, which nobody asks for of a font within a file
+            &[0, 0], // the checksum of the file, which is not needed in an embedded font
             &[0x5F0F, 0x3CF5],
             &[0b11], // the baseline is at 0, and letters begin at 0
             &[UNITS_PER_EM as u16],
             &[0; 8], // dates
             &self.bounds().map(|bound| bound as u16),
-            &[0, 6],    // no style; legible from 6 dots on
-            &[2, 1, 0], // from left to right; long places; the one form of outlines
+            &[0, 6],    // no style; legible from 6 dots
+            &[2, 1, 0], // left to right; long offsets; the only outline format
         ])
     }
 
@@ -107,7 +106,7 @@ impl Font {
         let widest = self.glyphs.iter().map(|glyph| glyph.advance).max();
         shorts(&[
             &[1, 0, high, low, 0, widest.unwrap_or(0), left, 0, right, 1],
-            &[0; 7], // an upright cursor at 0, and what is reserved
+            &[0; 7], // upright cursor at 0; reserved fields
             &[self.glyphs.len() as u16],
         ])
     }
@@ -119,7 +118,7 @@ impl Font {
             .iter()
             .map(|glyph| glyph.contours.iter().map(Vec::len).sum::<usize>());
         let count = self.glyphs.len() as u16;
-        // No letters made of others, no instructions.
+        // No composite letters, no instructions.
         shorts(&[
             &[
                 1,
@@ -158,7 +157,7 @@ impl Glyph {
                 Segment::Quadratic(control, to) => {
                     vec![contour_point(control, false), contour_point(to, true)]
                 }
-                // The table has none, and a contour is closed by itself.
+                // The table has no cubic curves, and contours close automatically.
                 Segment::Cubic(..) | Segment::Close => vec![],
             };
             contour.for_each(|contour| contour.extend(&points));
@@ -180,7 +179,7 @@ impl Glyph {
         }
     }
 
-    /// Adds it to the table of outlines; a blank has none.
+    /// Appends the glyph to the table of outlines. A blank has no outline.
     fn write(&self, table: &mut Vec<u8>) {
         if self.contours.is_empty() {
             return;
@@ -208,7 +207,7 @@ impl Glyph {
 }
 
 fn file<const N: usize>(tables: [([u8; 4], Vec<u8>); N]) -> Vec<u8> {
-    let largest = N.ilog2() as u16; // of the powers of two up to N
+    let largest = N.ilog2() as u16; // exponent of the largest power of two up to N
     let range = 16 << largest;
     let mut file = 0x0001_0000_u32.to_be_bytes().to_vec();
     let counts = [N as u16, range, largest, 16 * N as u16 - range];
@@ -227,7 +226,7 @@ fn file<const N: usize>(tables: [([u8; 4], Vec<u8>); N]) -> Vec<u8> {
     file
 }
 
-/// The sum of a table as numbers of four bytes.
+/// Returns the checksum of a table: the sum of its four-byte numbers.
 fn sum(table: &[u8]) -> u32 {
     table.chunks(4).fold(0, |sum: u32, chunk| {
         let mut word = [0; 4];
@@ -242,7 +241,7 @@ mod tests {
     use crate::plot::extent;
     use crate::plot::letters::table::REGULAR;
 
-    /// The tables of a font file by their names.
+    /// Returns the tables of a font file with their names.
     fn tables(file: &[u8]) -> Vec<(String, &[u8])> {
         let word = |at: usize| u32::from_be_bytes(file[at..at + 4].try_into().unwrap()) as usize;
         let count = usize::from(file[5]);
@@ -276,7 +275,7 @@ mod tests {
             .collect();
         assert_eq!((places[0], places[4]), (0, glyphs.len()));
         assert_eq!(places[1], places[2], "a blank has no outline");
-        // The letter with two dots has an outline of its own for each of them.
+        // The letter with two dots has a separate contour for each dot.
         assert_eq!([0, 2, 3].map(|glyph| glyphs[places[glyph] + 1]), [2, 2, 4]);
     }
 

@@ -1,4 +1,4 @@
-//! Letters set one behind another: kerning, scripts, and what a slanted letter needs to its right.
+//! Sets letters in a line: kerning, scripts, and the space after an italic letter.
 
 use super::SetLabel;
 use super::table::{self, ITALIC, REGULAR, UNITS_PER_EM};
@@ -6,48 +6,48 @@ use crate::plot::scene::PlacedLetter;
 use crate::plot::scene::VectorPath;
 use crate::plot::scene::at;
 
-/// Size of a sub- or superscript, as a share of its text's size.
+/// Size of a subscript or superscript, relative to its text.
 const SCRIPT: f64 = 0.7;
-/// How far a subscript's baseline lies below its text's baseline, as a share of the text's size.
+/// Distance of a subscript's baseline below the text's baseline, relative to the text's size.
 const SUBSCRIPT_DROP: f64 = 0.18;
-/// How far a superscript's baseline lies above its text's baseline, as a share of the text's size.
+/// Distance of a superscript's baseline above the text's baseline, relative to the text's size.
 const SUPERSCRIPT_RISE: f64 = 0.36;
-/// Advance of the box that stands for a letter which the table does not have, thousandths of the size.
+/// Advance of the box that replaces a missing letter, in thousandths of the size.
 pub const BOX: f64 = 600.0;
 
-/// A sub- or superscript that has been begun and not ended.
+/// A subscript or superscript that has begun and not yet ended.
 struct RaisedText {
     is_above: bool,
-    /// Where it began, and where the text before it ended, pt.
+    /// Start of the script, and end of the text before it, pt.
     began_pt: f64,
     behind_pt: f64,
-    /// How much of `words` came before it.
+    /// Length of `words` before the script.
     words_before: usize,
-    /// The size and the baseline of the text around it, pt.
+    /// Size and baseline of the surrounding text, pt.
     outer_size_pt: f64,
     outer_baseline_pt: f64,
 }
 
-/// The letter before the next one, if they stand in one line.
+/// The previous letter, if it is in the same line as the next one.
 struct PrecedingLetter {
     letter: char,
     is_italic: bool,
-    /// How far its ink reaches beyond its advance, pt.
+    /// Distance of its ink beyond its advance, pt.
     overhang_pt: f64,
 }
 
 #[derive(Default)]
 pub struct Setter {
     label: SetLabel,
-    /// Where the next letter begins, pt.
+    /// Start of the next letter, pt.
     x_pt: f64,
     size_pt: f64,
-    /// Below the baseline of the whole label, pt.
+    /// Current baseline, below the baseline of the whole label, pt.
     baseline_pt: f64,
     pub is_italic: bool,
     scripts: Vec<RaisedText>,
     before: Option<PrecedingLetter>,
-    /// The script that has just ended: another one, above or below it, begins where it began.
+    /// The script that has just ended. A script on the other side of the line starts at the same position.
     ended: Option<RaisedText>,
 }
 
@@ -59,7 +59,7 @@ impl Setter {
         }
     }
 
-    /// What comes between the letter before and the next one, pt.
+    /// Returns the space between the previous letter and the next one, pt.
     fn gap(&mut self, style: &table::FontStyle, letter: char) -> f64 {
         match self.before.take() {
             Some(before) if before.is_italic == self.is_italic => {
@@ -70,7 +70,7 @@ impl Setter {
         }
     }
 
-    /// Sets a letter, or a box where the table has none.
+    /// Sets a letter, or a box if the table does not have it.
     pub fn letter(&mut self, letter: char) {
         let style = if self.is_italic { &*ITALIC } else { &*REGULAR };
         let slanted = ITALIC.letter(letter).filter(|_| self.is_italic);
@@ -112,7 +112,7 @@ impl Setter {
         !self.scripts.is_empty()
     }
 
-    /// Goes on smaller, above or below the line.
+    /// Starts a smaller script above or below the line.
     pub fn begin_script(&mut self, is_above: bool) {
         let overhang_pt = self.before.take().map_or(0.0, |before| before.overhang_pt);
         let (began_pt, behind_pt) = match self.ended.take() {
@@ -138,7 +138,7 @@ impl Setter {
         self.size_pt *= SCRIPT;
     }
 
-    /// Goes back to the line around the script.
+    /// Returns to the line around the script.
     pub fn end_script(&mut self) {
         let Some(script) = self.scripts.pop() else {
             return;
@@ -151,7 +151,7 @@ impl Setter {
         self.ended = Some(script);
     }
 
-    /// The label, with what was not ended.
+    /// Ends all open scripts and returns the label.
     pub fn finish(mut self) -> SetLabel {
         while !self.scripts.is_empty() {
             self.end_script();
@@ -164,7 +164,7 @@ impl Setter {
     }
 }
 
-/// An upright box, drawn as a line around nothing: the inner contour runs against the outer one.
+/// Returns an upright box, drawn as a frame: the inner contour runs opposite to the outer one.
 pub fn missing() -> table::Letter {
     let outer = [
         at(70.0, 0.0),
@@ -186,7 +186,7 @@ pub fn missing() -> table::Letter {
     }
 }
 
-/// A script in a line of plain text: `⁻³`, `₂`, `_p`, `^(a+b)`.
+/// Writes a script in a line of plain text: `⁻³`, `₂`, `_p`, `^(a+b)`.
 fn script_words(words: &str, is_above: bool) -> String {
     let characters: Option<String> = words
         .chars()
@@ -199,7 +199,7 @@ fn script_words(words: &str, is_above: bool) -> String {
     })
 }
 
-/// The character for a digit or a sign as a superscript or a subscript.
+/// Returns the superscript or subscript character for a digit or sign.
 fn script_character(c: char, is_above: bool) -> Option<char> {
     let above = "⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻⁻";
     let below = "₀₁₂₃₄₅₆₇₈₉₊₋₋";

@@ -1,7 +1,7 @@
 //! The table of letters: outlines, advances and kerning of the font STIX Two Text, regular and italic.
 //!
-//! The files beside this one were made by `make.py`, which says how their lines read. Their copyright and their licence,
-//! the SIL Open Font License, are in `OFL.txt`.
+//! `make.py` made the data files in this folder and describes their format. Copyright and license, the SIL Open Font
+//! License, are in `OFL.txt`.
 
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
@@ -9,13 +9,13 @@ use std::sync::LazyLock;
 use crate::plot::scene::at;
 use crate::plot::scene::{Point, Segment, VectorPath};
 
-/// How large the tables draw a letter: lengths are thousandths of its size.
+/// Size of a letter in the tables: lengths are in thousandths of it.
 pub const UNITS_PER_EM: f64 = 1000.0;
 
-/// A letter: lengths are thousandths of its size, y down from the baseline.
+/// A letter. Lengths are in thousandths of its size, y down from the baseline.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Letter {
-    /// From its origin to the next letter's origin.
+    /// Distance from its origin to the next letter's origin.
     pub advance: f64,
     pub outline: VectorPath,
 }
@@ -23,7 +23,7 @@ pub struct Letter {
 #[derive(Default)]
 pub struct FontStyle {
     lines: BTreeMap<u32, &'static str>,
-    /// The classes of letters at the left and at the right of a pair.
+    /// The kerning classes of letters on the left and on the right of a pair.
     classes: [BTreeMap<u32, u32>; 2],
     kerning: BTreeMap<(u32, u32), f64>,
 }
@@ -34,7 +34,7 @@ pub static REGULAR: LazyLock<FontStyle> = LazyLock::new(|| {
         include_str!("regular.kern.txt"),
     )
 });
-/// Slanted letters, as for the names of quantities.
+/// Italic letters, as for the names of quantities.
 pub static ITALIC: LazyLock<FontStyle> =
     LazyLock::new(|| FontStyle::new(include_str!("italic.txt"), include_str!("italic.kern.txt")));
 
@@ -59,12 +59,12 @@ impl FontStyle {
         style
     }
 
-    /// The letter, if this style has it.
+    /// Returns the letter, if this style has it.
     pub fn letter(&self, letter: char) -> Option<Letter> {
         self.numbered(letter.into())
     }
 
-    /// By how much the right letter of a pair is moved to the right, in thousandths of their size; mostly not at all.
+    /// Returns the shift of the right letter of a pair to the right, in thousandths of their size; 0 for most pairs.
     pub fn kerning(&self, left: char, right: char) -> f64 {
         let [lefts, rights] = &self.classes;
         let classes = lefts.get(&left.into()).zip(rights.get(&right.into()));
@@ -86,7 +86,7 @@ impl FontStyle {
         })
     }
 
-    /// The outline of a letter that consists of others: `+CODE,RIGHT,UP` for each.
+    /// Composes the outline of a letter from other letters, each given as `+CODE,RIGHT,UP`.
     fn put_together(&self, parts: &str) -> Option<VectorPath> {
         let mut whole = VectorPath::default();
         for part in parts.split(' ') {
@@ -103,7 +103,7 @@ impl FontStyle {
     }
 }
 
-/// A line's first field, a number in hexadecimal, and its rest.
+/// Splits a line into its first field, a hexadecimal number, and the rest.
 fn numbered(line: &str) -> Option<(u32, &str)> {
     let (code, rest) = line.split_once(' ')?;
     Some((u32::from_str_radix(code, 16).ok()?, rest))
@@ -115,14 +115,14 @@ fn codes(members: &str) -> impl Iterator<Item = u32> {
         .filter_map(|code| u32::from_str_radix(code, 16).ok())
 }
 
-/// `LEFT RIGHT THOUSANDTHS`.
+/// Parses a line `LEFT RIGHT THOUSANDTHS`.
 fn kerned(line: &str) -> Option<((u32, u32), f64)> {
     let mut fields = line.split(' ');
     let pair = (fields.next()?.parse().ok()?, fields.next()?.parse().ok()?);
     Some((pair, fields.next()?.parse().ok()?))
 }
 
-/// The data of an SVG path with the commands m, l, h, v, q and z, y up; `None` where it is not that.
+/// Parses SVG path data with the commands m, l, h, v, q and z, y up. Returns `None` if it is invalid.
 fn read_outline(data: &str) -> Option<VectorPath> {
     let mut numbers = PackedIntegers(data);
     let mut path = VectorPath::default();
@@ -147,7 +147,7 @@ fn read_outline(data: &str) -> Option<VectorPath> {
             start = to;
         }
         if segment == Segment::Close {
-            // A number behind it would be read as another z, for ever.
+            // A number after z would be parsed as another z, forever.
             command = ' ';
         }
         path.0.push(segment);
@@ -155,7 +155,7 @@ fn read_outline(data: &str) -> Option<VectorPath> {
     Some(path)
 }
 
-/// Whole numbers, apart by a blank or by the minus of the next.
+/// Whole numbers, separated by a blank or by the minus sign of the next number.
 struct PackedIntegers<'a>(&'a str);
 
 impl PackedIntegers<'_> {
@@ -171,7 +171,7 @@ impl PackedIntegers<'_> {
         number.parse().ok()
     }
 
-    /// A place that is given from `here`, y up.
+    /// Parses a point relative to `here`, y up.
     fn point(&mut self, here: Point) -> Option<Point> {
         let (right, up) = (self.next()?, self.next()?);
         Some(at(here.x + right, here.y - up))

@@ -1,5 +1,5 @@
-//! The words of a page as text that can be searched and copied: in fonts of the page's own, which hold the outlines of its
-//! letters and no others.
+//! Writes the words of a page as text that can be searched and copied, in embedded fonts that contain only the letters
+//! of the page.
 
 use crate::plot::letters::CAP_HEIGHT;
 use crate::plot::letters::font::Font;
@@ -11,20 +11,20 @@ use pdf_writer::writers::Resources;
 use pdf_writer::{Content, Filter, Name, Pdf, Rect, Ref, Str};
 use std::collections::BTreeSet;
 
-/// The objects of the first font; each takes this many.
+/// The first object number of the first font, and the number of objects per font.
 const FIRST_FONT_OBJECT: i32 = 6;
 const OBJECTS: i32 = 5;
-/// Lengths in an outline and in a line of letters that differ by less than this count as the same, thousandths of the size.
+/// Lengths that differ by less than this are equal, in thousandths of the font size.
 const SAME_LENGTH: f64 = 0.5;
-/// Angle of the slanted letters, degrees, as the font they are from has it.
+/// Angle of the italic letters, degrees, as in the original font.
 const SLANT_DEG: f32 = -14.0;
 
 pub struct Fonts([OfPage; 2]);
 
 struct OfPage {
-    /// `None` where no letter is of it.
+    /// `None` if the page has no letter in this style.
     font: Option<Font>,
-    /// What it is called on the page, and in the file.
+    /// The names of the font on the page and in the file.
     names: (&'static [u8], String),
     is_italic: bool,
 }
@@ -59,7 +59,7 @@ impl Fonts {
             .filter_map(|(first, of_page)| Some((Ref::new(first), of_page, of_page.font.as_ref()?)))
     }
 
-    /// Names the fonts among the page's resources.
+    /// Adds the names of the fonts to the page's resources.
     pub fn name_in(&self, resources: &mut Resources<'_>) {
         let mut names = resources.fonts();
         for (id, of_page, _) in self.used() {
@@ -73,7 +73,7 @@ impl Fonts {
         }
     }
 
-    /// Writes `words` where they stand; y runs down.
+    /// Writes `words` at their position. y points down.
     pub fn put(&self, words: &TextItem, content: &mut Content) {
         content.begin_text();
         for line in words
@@ -88,7 +88,7 @@ impl Fonts {
         content.end_text();
     }
 
-    /// Letters of one font and size on one baseline.
+    /// Writes letters of one font and size on one baseline.
     fn put_line(&self, line: &[PlacedLetter], is_upward: bool, content: &mut Content) {
         let Some(first) = line.first() else {
             return;
@@ -183,7 +183,7 @@ impl OfPage {
     }
 }
 
-/// Six capital letters that tell a font of some letters from one of others.
+/// Returns six capital letters that identify a subset of a font.
 fn tag(letters: &BTreeSet<char>) -> String {
     // FNV-1a: Fowler, Noll and Vo.
     let mixed = letters.iter().fold(0xcbf2_9ce4_8422_2325_u64, |mixed, &c| {
