@@ -36,7 +36,7 @@ pub(super) struct FigureArgs {
     /// Of a figure its own options hold where none is given. Of compare the slope is told where the error falls evenly over
     /// three time steps or more.
     #[arg(required = true, value_name = "RUN")]
-    runs: Vec<String>,
+    pub(super) runs: Vec<String>,
 
     /// Write the figure to this file; its name's end says in which form: .svg, .pdf or .png (600 dpi)
     #[arg(short, long, value_name = "FILE")]
@@ -246,7 +246,7 @@ fn said(source: &FigureSource) -> Vec<String> {
 }
 
 /// What the RUNs name, with what the command line changes.
-fn read_source(args: &FigureArgs) -> anyhow::Result<FigureSource> {
+pub(super) fn read_source(args: &FigureArgs) -> anyhow::Result<FigureSource> {
     let mut source = FigureSource::default();
     for name in &args.runs {
         add(&mut source, name, args)?;
@@ -287,6 +287,18 @@ fn read_source(args: &FigureArgs) -> anyhow::Result<FigureSource> {
             );
         }
     }
+    source.check()?;
+    Ok(source)
+}
+
+/// The figure of a `table` that no file holds yet.
+pub(super) fn of_table(args: &FigureArgs, table: TableSource) -> anyhow::Result<FigureSource> {
+    refuse_for_table(args)?;
+    let mut source = FigureSource {
+        table: Some(table),
+        ..FigureSource::default()
+    };
+    ask(args, &mut source.spec);
     source.check()?;
     Ok(source)
 }

@@ -23,6 +23,7 @@ mod new_lab;
 mod notes;
 mod progress;
 mod rehearsal;
+mod reproduce;
 mod run;
 mod sessions;
 mod settings;
@@ -77,6 +78,8 @@ enum CliCommand {
     Figure(figure::FigureArgs),
     /// Make a folder for a write-up: text, CSV, figures and numbers
     Writeup(writeup::WriteupArgs),
+    /// Repeat the report's computations and test its claims, as one document
+    Reproduce(reproduce::ReproduceArgs),
     /// Recompute CSVs, figures and write-ups, and report any difference
     Verify(verify::VerifyArgs),
     /// Record the lab playing a file of commands, for asciinema 3
@@ -176,6 +179,7 @@ fn execute(cli: Cli) -> anyhow::Result<ExitCode> {
         CliCommand::Keys => print(&info::key_list()?),
         CliCommand::Readouts => print(&info::readout_list()?),
         CliCommand::Writeup(args) => writeup::writeup(&args),
+        CliCommand::Reproduce(args) => reproduce::reproduce(&args),
         CliCommand::Class(args) => class::class(&args),
         CliCommand::Lesson(args) => lesson::lesson(&args),
         CliCommand::Check { files } => info::check(&files),

@@ -2,7 +2,7 @@
 
 use super::args::{LengthArgs, ScenarioArgs, changed, open};
 use super::layout_args::LayoutArgs;
-use super::progress::{self, Interrupted};
+use super::progress::{self, Interrupted, Interruption};
 use super::{ended_by, one_on_stdout, print_result, tell_of_rows};
 use crate::engine::analysis::cost;
 use crate::engine::export::columns::DISTANCE;
@@ -104,6 +104,20 @@ pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let name = args.scenario.scenario.clone();
     let broke = played.ended.not_finite();
     Ok(ended_by(broke.map(|error| anyhow!(error).context(name))))
+}
+
+/// Computes the CSV that the command writes.
+pub(super) fn csv(args: &RunArgs, interruption: &Interruption) -> anyhow::Result<Vec<u8>> {
+    let document = open(&args.scenario.scenario)?;
+    let layout = args.layout.layout(layout_in_header(&document)?);
+    let scenario = Arc::new(changed(document, &args.scenario.changes, &args.length)?);
+    let mut csv = CsvWriter::with_layout(Vec::new(), &scenario, layout)?;
+    let played = PlayedRun::play(&scenario, Some(&mut csv), |_| {}, interruption.meter())?;
+    match played.ended {
+        Ended::Done => Ok(csv.finish()?),
+        Ended::Stopped => bail!(Interrupted),
+        Ended::NotFinite(error) => bail!(error),
+    }
 }
 
 /// Returns the layout in the header of a run's CSV, so that the new CSV has the same layout. Other documents have none:

@@ -13,6 +13,7 @@ use crate::studies::sweep::in_order::in_order;
 use crate::studies::sweep::join::join;
 use crate::studies::sweep::part::{Opened, PartialSweep, SweepFileError};
 use crate::studies::sweep::{self, RowTally, SWEEPS, Shard, Sweep, SweepFile, axis};
+use crate::studies::verify::write_rows;
 use anyhow::bail;
 use clap::Args;
 use clap::error::ErrorKind;
@@ -178,6 +179,14 @@ fn place(problem: &mut Problem, keys: &[String], args: &SweepArgs) {
     };
     problem.place = Some(option);
     problem.key.clear();
+}
+
+/// Computes the CSV that the command writes.
+pub(super) fn csv(args: &SweepArgs, interruption: &Interruption) -> anyhow::Result<Vec<u8>> {
+    let sweep = sweep_of(args.scenario.as_deref().unwrap_or_default(), args)?;
+    let mut csv = sweep.header().into_bytes();
+    write_rows(&sweep, &mut csv, interruption.meter())?;
+    Ok(csv)
 }
 
 /// Makes the file whole, or as much of it as there is time for.

@@ -3,7 +3,7 @@
 
 use super::argument_values::{one_or_more, setting};
 use super::progress::{self, Interrupted, Interruption};
-use super::{fit, print, tell, writeup};
+use super::{fit, print, reproduce, tell, writeup};
 use crate::engine::export::OutputFolder;
 use crate::engine::scenario::csv::{self, Renaming, renaming};
 use crate::engine::scenario::{Document, Problems, Scenario};
@@ -11,6 +11,7 @@ use crate::engine::text::io_errors::unread;
 use crate::engine::text::number::counted;
 use crate::engine::text::printable::{PrintablePath, brief, printable_lines};
 use crate::report::figure::redraw;
+use crate::report::reproduce::CLAIMS_FILE;
 use crate::report::writeup::{CSV, MEASURED_DATA, READOUTS_FILE, RUN_FILE};
 use crate::studies::own_code::{self, Verdict};
 use crate::studies::verify::verify as verified;
@@ -29,7 +30,7 @@ use toml::Value;
 
 #[derive(Debug, Args)]
 pub(super) struct VerifyArgs {
-    /// CSVs, figures and write-up folders from gyrolab; with --against, files that your own program wrote
+    /// CSVs, figures and folders from gyrolab; with --against, files that your own program wrote
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
 
@@ -57,6 +58,7 @@ pub(super) struct VerifyArgs {
 
 /// The version that recomputes.
 const OWN_VERSION: &str = env!("CARGO_PKG_VERSION");
+const RECREATED: &str = "the same, recreated";
 const MISSING: &str = "it is missing or not a regular file";
 /// Maximum number of bytes read from a file beyond its expected length.
 const MOST_FILE_EXCESS: u64 = 1 << 20;
@@ -100,8 +102,41 @@ fn judged(file: &Path, result: anyhow::Result<bool>) -> anyhow::Result<bool> {
     })
 }
 
-/// Recreates the write-up in `folder` and compares every file. Returns true if all are the same.
+/// Recreates what is in `folder` and compares every file. Returns true if all are the same.
 fn folder(folder: &Path, interruption: &Interruption) -> anyhow::Result<bool> {
+    if folder.join(CLAIMS_FILE).is_file() {
+        reproduction(folder, interruption)
+    } else {
+        writeup_again(folder, interruption)
+    }
+}
+
+/// Recreates the reproduced report in `folder` and compares every file.
+fn reproduction(folder: &Path, interruption: &Interruption) -> anyhow::Result<bool> {
+    let version = version_of_claims(&folder.join(CLAIMS_FILE));
+    let files = reproduce::files(interruption)?;
+    let mut is_good = true;
+    for (name, made) in &files {
+        let file = folder.join(name);
+        let difference = differs(&file, made, &version, interruption)?;
+        is_good &= say(&file, RECREATED, difference.as_ref(), &[])?;
+    }
+    if let Some(note) = other_version(&version) {
+        print(&format!("    {note}\n"))?;
+    }
+    Ok(is_good)
+}
+
+/// Returns the version that wrote the claims in `file`, or this one if it is not stated.
+fn version_of_claims(file: &Path) -> String {
+    let text = csv::text(file).unwrap_or_default();
+    let claims: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
+    let version = claims.get("gyrolab").and_then(serde_json::Value::as_str);
+    version.unwrap_or(OWN_VERSION).to_owned()
+}
+
+/// Recreates the write-up in `folder` and compares every file.
+fn writeup_again(folder: &Path, interruption: &Interruption) -> anyhow::Result<bool> {
     let [run_file, csv] = [RUN_FILE, CSV].map(|name| folder.join(name));
     if !run_file.is_file() {
         let rule = format!(
@@ -129,7 +164,7 @@ fn folder(folder: &Path, interruption: &Interruption) -> anyhow::Result<bool> {
         let same = if data.as_ref().is_some_and(|data| Path::new(data) == file) {
             "the same: measured data, which is not recomputed"
         } else {
-            "the same, recreated"
+            RECREATED
         };
         let difference = differs(&file, made, version, interruption)?;
         is_good &= say(&file, same, difference.as_ref(), &[])?;

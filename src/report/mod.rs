@@ -5,8 +5,10 @@
 //!
 //! - [`document`]: documents of text, tables and figures, written as Markdown and as TeX.
 //! - [`figure`]: pictures of runs and of tables, and the same pictures drawn again from their files.
+//! - [`reproduce`]: the report's computations and claims, with the exact motion, as one document.
 //! - [`writeup`]: a run as a folder of files for a write-up.
 
 pub mod document;
 pub mod figure;
+pub mod reproduce;
 pub mod writeup;

@@ -10,7 +10,7 @@ use crate::engine::scenario::{Document, Problem, Problems};
 use file_comparison::UntilDifference;
 pub use file_comparison::{FileComparison, FileDifference, first_difference};
 use recipe::CsvRecipe;
-pub use recipe::csv_of_comparison;
+pub use recipe::{csv_of_comparison, write_rows};
 use std::fs::File;
 use std::io::BufReader;
 use std::ops::ControlFlow;

@@ -17,6 +17,11 @@ const NOT_CARRIED_OUT: &[(&str, &str)] = &[
         "start.spin_rpm=1000",
         "750 s of the exact motion with friction take half a second",
     ),
+    (
+        "gyrolab reproduce",
+        "half a minute of computing; a test of its own does it",
+    ),
+    ("gyrolab verify report", "what that would have made"),
     ("gyrolab lesson is-the-wobble-real\n", "needs a terminal"),
     ("--rehearse", "needs a terminal"),
 ];

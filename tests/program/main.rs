@@ -29,6 +29,7 @@ mod measured;
 mod messages;
 mod mouse;
 mod readme;
+mod reproduce;
 mod sessions;
 mod settings;
 mod sweep;

@@ -306,8 +306,7 @@ impl OutputFolder {
         fs::create_dir_all(&self.path).map_err(refused)?;
         let new = names(self.temporary.path()).map_err(refused)?;
         for name in &new {
-            let (from, to) = (self.temporary.path().join(name), self.path.join(name));
-            fs::rename(from, to).map_err(refused)?;
+            move_to(&self.temporary.path().join(name), &self.path.join(name)).map_err(refused)?;
         }
         Self::others(&self.path, &new).map_err(refused)
     }
@@ -327,6 +326,17 @@ impl OutputFolder {
 fn names(folder: &Path) -> io::Result<Vec<OsString>> {
     let files = fs::read_dir(folder)?;
     files.map(|file| Ok(file?.file_name())).collect()
+}
+
+/// Moves a file or folder. If there is a folder at `to` already, the files of the moved one replace those of the same names.
+fn move_to(from: &Path, to: &Path) -> io::Result<()> {
+    if !(from.is_dir() && to.is_dir()) {
+        return fs::rename(from, to);
+    }
+    for name in names(from)? {
+        move_to(&from.join(&name), &to.join(&name))?;
+    }
+    Ok(())
 }
 
 fn may_be_written(path: &Path, replace: bool) -> Result<(), DestinationError> {

@@ -173,7 +173,7 @@ impl CsvRecipe {
 }
 
 /// Computes the rows of `sweep` on all cores, writes them to `out`, and returns the number of failed runs.
-fn write_rows(
+pub fn write_rows(
     sweep: &Sweep,
     mut out: impl Write,
     watch: impl Fn(u64, u64) -> ControlFlow<()> + Sync,

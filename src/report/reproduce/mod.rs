@@ -1,0 +1,99 @@
+//! The report, reproduced: one document that follows the student's report, runs its method again, and compares every claim
+//! with the exact motion.
+//!
+//! The document is computed from CSVs, and shows figures. A single command writes each of these ([`TABLES`],
+//! [`FIGURES`]). Whoever makes the document carries the commands out and gives the CSVs back as [`Tables`]:
+//! [`texts`] then writes the words around the numbers.
+//!
+//! - `made`: the commands.
+//! - `tables`: what the commands wrote.
+//! - `numbers`: the numbers of the document, read from the tables.
+//! - `explanation`, `sections`, `reading`: the words.
+//! - `claims`: what the report claims, and what is true.
+
+mod claims;
+mod explanation;
+mod made;
+mod numbers;
+mod reading;
+mod sections;
+mod tables;
+
+use super::document::Block;
+use super::document::{BIBLIOGRAPHY_FILE, Document, Entry, Figure, Reference, Text};
+use crate::engine::scenario::Problems;
+use claims::{Claim, claims};
+pub use made::{FIGURES, Made, TABLES};
+use numbers::Numbers;
+pub use tables::Tables;
+
+/// The document as Markdown: the first file to read.
+pub const REPRODUCTION_PAGE: &str = "README.md";
+const TEX_FILE: &str = "report.tex";
+/// The claims and their verdicts, for a program. No other folder that gyrolab writes holds a file of this name.
+pub const CLAIMS_FILE: &str = "claims.json";
+
+const TITLE: &str = "What the time step did: a report on the gyroscope, computed again";
+
+const REPORT: Reference = Reference {
+    key: "report",
+    entry: Entry::Other,
+    author: "{A student}",
+    title: "Simulation on Precession Motion of a Gyroscope and Analysis of Precession Motion With Respect To the Tilted Axis",
+    published: "report of a course, with programs in MATLAB",
+    volume: "",
+    pages: "",
+    year: "",
+};
+const GOLDSTEIN: Reference = Reference {
+    key: "goldstein",
+    entry: Entry::Book,
+    author: "H. Goldstein and C. Poole and J. Safko",
+    title: "Classical Mechanics, 3rd edition, section 5.7",
+    published: "Addison-Wesley",
+    volume: "",
+    pages: "",
+    year: "2002",
+};
+
+/// Returns the texts of the reproduced report, which are computed from `tables`: the names of their files and their bytes.
+///
+/// # Errors
+/// When a preset cannot be read.
+pub fn texts(tables: &Tables) -> Result<Vec<(String, Vec<u8>)>, Problems> {
+    let numbers = Numbers::read(tables)?;
+    let claims = claims(&numbers);
+    let document = document(&numbers, &claims);
+    let texts = [
+        (REPRODUCTION_PAGE, document.markdown()),
+        (TEX_FILE, document.tex()),
+        (BIBLIOGRAPHY_FILE, document.bibliography()),
+        (CLAIMS_FILE, claims::json(&claims)),
+    ];
+    let named = texts.map(|(name, text)| (name.to_owned(), text.into_bytes()));
+    Ok(named.into())
+}
+
+fn document(numbers: &Numbers, claims: &[Claim]) -> Document {
+    let mut document = Document::new(Text::plain(TITLE));
+    document.references = vec![REPORT, GOLDSTEIN];
+    explanation::summary(&mut document, numbers);
+    explanation::gyroscope(&mut document, numbers);
+    explanation::method(&mut document, numbers);
+    explanation::sampling(&mut document, numbers);
+    sections::sections(&mut document, numbers);
+    claims::table(&mut document, claims);
+    reading::open_questions(&mut document, numbers);
+    reading::files(&mut document);
+    document
+}
+
+/// Adds the figure that [`FIGURES`] has under this `name`.
+fn figure(document: &mut Document, name: &str, caption: &str) {
+    document.blocks.push(Block::Figure(Figure {
+        label: name.to_owned(),
+        pictures: vec![made::picture(name)],
+        width_mm: made::WIDTH_MM,
+        caption: Text::marked(caption),
+    }));
+}
