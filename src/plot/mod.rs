@@ -1,15 +1,17 @@
-//! Charts and pages, and their files in SVG, PDF and PNG. Nothing here knows a run or a body.
+//! Charts and pages, and their files in SVG, PDF and PNG. This module knows nothing about runs or bodies.
 //!
-//! It uses the [`engine`](crate::engine) for numbers and text only, and to embed the provenance of a figure in its file. The
-//! drawing of any chart belongs here. The choice of curves for a run or a table belongs to [`report`](crate::report).
+//! It uses the [`engine`](crate::engine) only for numbers and text, and to embed the provenance of a figure in its
+//! file. Put the drawing of any chart here. The choice of curves for a run or a table belongs to
+//! [`report`](crate::report).
 //!
-//! - [`chart`]: the axes, curves, marks and legends of a chart, and its place on a page.
-//! - [`camera`]: positions in space in a plane picture.
-//! - [`scene`]: filled and stroked paths; no form of file is named there.
-//! - [`ink`]: the pens, marks and lines of text of which figures are made.
-//! - [`letters`]: text as outlines, and as a font of them.
-//! - [`line`](mod@line): lines that end at a frame, and lines through fewer points; [`stroke_outline`]: the outline of what a line covers.
-//! - [`format`](mod@format): the forms of file, by [`svg`], [`pdf`] and [`png`].
+//! - [`chart`]: the axes, curves, marks and legends of a chart, and their layout on a page.
+//! - [`camera`]: the projection of points in space onto a picture.
+//! - [`scene`]: filled and stroked paths, independent of file formats.
+//! - [`ink`]: the pens, marks and lines of text in figures.
+//! - [`letters`]: text as outlines, and as an embedded font.
+//! - [`line`](mod@line): clips lines to a frame and reduces their points. [`stroke_outline`]: the outline of a line's
+//!   ink.
+//! - [`format`](mod@format): the file formats, written by [`svg`], [`pdf`] and [`png`].
 
 pub mod camera;
 pub mod chart;

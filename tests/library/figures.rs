@@ -360,7 +360,7 @@ fn a_path_of_few_steps_a_turn_is_drawn_as_points() {
         let coarse = drawn(&runs, &with_exact(kind));
         let name = "the report's scheme, Δt = 1 ms, every step";
         says(&coarse.scene, &[name, "exact motion"]);
-        let words = "about 10 time steps for a turn";
+        let words = "about 10 time steps per turn";
         has(told(&coarse).join("; "), words);
         // Nothing is drawn from one step to the next.
         let is_dot = |item: &&SceneItem| matches!(&item.paint, Paint::Stroke(pen) if pen.width_pt >= 0.5 && pen.dash_pt.is_empty());

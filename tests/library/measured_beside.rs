@@ -348,7 +348,7 @@ fn a_figure_that_shows_no_point_says_so() {
     assert_eq!(warned("spin_rpm"), "");
     // The run has 20 s.
     let longer = figure(None, "t_s,x_m\n5,0.5\n25,0.4\n").warnings;
-    let words = "the run ends at 20 s, before the last point of bench.csv at 25 s: --duration 25 draws the run up to there";
+    let words = "the run ends at 20 s, before the last point of bench.csv at 25 s: use --duration 25 to extend the run";
     assert_eq!(longer[1..], [words]);
 }
 

@@ -252,7 +252,7 @@ fn an_unresolved_figure_suggests_a_shorter_time_range() {
     let lab = Ground::new();
     done(lab.run("writeup method-1 -o w"));
     let page = lab.read("w/README.md");
-    let begin = "In this figure, on 86 mm about 203 swings are not told apart";
+    let begin = "In this figure, about 203 swings are too dense to be drawn on 86 mm";
     let remark = page.lines().find(|line| line.starts_with(begin)).unwrap();
     // The suggested command works.
     let command = remark.split('`').find(|part| part.starts_with("gyrolab "));

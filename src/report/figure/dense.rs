@@ -1,5 +1,5 @@
-//! Curves and paths whose turns are not told apart on paper: a band from the least to the greatest, and a stretch of time in
-//! which they are.
+//! Curves and paths whose turns are too dense on paper: draws a band from minimum to maximum, and finds a time range in
+//! which the turns are visible.
 
 use super::course::{Bin, SampledRun};
 use super::job::{Dense, SampledRunNumbers};
@@ -15,17 +15,18 @@ use crate::plot::chart::layout::{ChartLayout, PlacedPanel};
 use crate::plot::scene::Point;
 use crate::plot::stroke_outline::Grid;
 
-/// Parts of a panel's width that are looked at, pt.
+/// Width of the parts of a panel that are examined, pt.
 const PART_PT: f64 = 1.0;
-/// The turns of a curve are not told apart where its lines take so much of such a part's width, and reach over so much of the
+/// A part of a curve is dense if its lines cover this fraction of the part's width, and reach over this fraction of the
 /// panel's height.
 const FILLED: f64 = 0.75;
 const HIGH: f64 = 0.05;
-/// A curve is dense where more than this share of its parts is, a path where this share of its places is inside of the ink.
+/// A curve is dense if more than this fraction of its parts is dense; a path if this fraction of its positions is
+/// inside the ink.
 const DENSE_SHARE: f64 = 0.5;
 const MAGNIFIED_SWINGS: f64 = 20.0;
 
-/// A curve over time in parts of a panel's width: how often it turns, and from where to where it goes.
+/// A curve over time in parts of a panel's width: the number of turns and the range of each part.
 struct Columns(Vec<(u32, Option<Extent>)>);
 
 impl Columns {
@@ -47,7 +48,7 @@ impl Columns {
         self.0.iter().map(|(turns, _)| u64::from(*turns)).sum()
     }
 
-    /// Whether a line `width_pt` wide is too dense in most of them.
+    /// Returns true if a line `width_pt` wide is too dense in most parts.
     fn are_dense(&self, width_pt: f64, placed: &PlacedPanel) -> bool {
         let high = HIGH * (placed.y.range.1 - placed.y.range.0);
         let dense = self.0.iter().filter(|(turns, extent)| {
@@ -57,7 +58,7 @@ impl Columns {
         dense.count() as f64 > DENSE_SHARE * self.0.len() as f64
     }
 
-    /// The band between the extremes of each part and its neighbours.
+    /// Returns the band between the extremes of each part and its neighbors.
     fn band(&self, placed: &PlacedPanel) -> Vec<[f64; 3]> {
         let (low, high) = placed.x.range;
         let apart = (high - low) / self.0.len() as f64;
@@ -71,7 +72,7 @@ impl Columns {
             .collect();
         let (begin, end) = (low + 0.5 * apart, high - 0.5 * apart);
         if let [first, .., last] = &mut band[..] {
-            // The outermost ones reach to the ends of the axis.
+            // The outermost parts extend to the ends of the axis.
             first[0] -= if first[0] <= begin { 0.5 * apart } else { 0.0 };
             last[0] += if last[0] >= end { 0.5 * apart } else { 0.0 };
         }
@@ -79,7 +80,8 @@ impl Columns {
     }
 }
 
-/// Which stretch of time shows the curves of `chart` apart, where one of them, of the `columns` of `drawn`, is too dense.
+/// Proposes a time range for `chart` if one of its curves, the `columns` of `drawn`, is too dense. In this range all
+/// curves are visible.
 pub(super) fn over_time(
     chart: &Chart,
     columns: &[&'static CsvColumn],
@@ -87,7 +89,7 @@ pub(super) fn over_time(
     spec: &FigureSpec,
 ) -> Option<Dense> {
     if chart.x.is_log {
-        return None; // swings are ever denser along it
+        return None; // swings become denser and denser along it
     }
     let layout = ChartLayout::new(chart, 0.0);
     let panels = columns.iter().zip(chart.panels.iter().zip(&layout.panels));
@@ -101,21 +103,21 @@ pub(super) fn over_time(
             is_dense.then(|| parts.turns().max((2.0 * swings) as u64))
         })
     });
-    // What shows the most swings shows those of the other curves too.
+    // A range that resolves the curve with the most swings resolves the others too.
     let turns = all.max()?;
     let (_, end_s) = layout.panels.first()?.x.range;
-    // The axis may begin before the run, so that a measured point at 0 has room.
+    // The axis may begin before the run, as a margin for a measured point at 0.
     let window_s = 2.0 * MAGNIFIED_SWINGS * (end_s - spec.from_s) / turns as f64;
     let what = format!(
-        "on {} mm about {} swings are not told apart: they are drawn as a band from the least to the greatest, with a stretch of it magnified",
+        "about {1} swings are too dense to be drawn on {0} mm: they are drawn as a band from minimum to maximum, with a part of it magnified",
         width_mm(spec),
         turns / 2
     );
     Some(proposal(window_s, spec, what))
 }
 
-/// Makes those curves of `chart` bands that are too dense in its places; in a panel with one of them the others too that
-/// would be in a line as wide.
+/// Turns curves of `chart` into bands if they are too dense. In a panel with a band, other curves become bands too if
+/// they would be dense with the same line width.
 pub(super) fn draw_bands(
     chart: &mut Chart,
     columns: &[&'static CsvColumn],
@@ -143,15 +145,16 @@ pub(super) fn draw_bands(
     }
 }
 
-/// Side of the places of a path that are looked at, pt, and how many places from the edge of the ink make its inside.
+/// Size of the examined positions of a path, pt, and the number of positions from the edge of the ink to its inside.
 const PLACE_PT: f64 = 0.5;
 const INSIDE: usize = 3;
-/// About the width of a path's line, pt, and the part of the black places that the lines of a proposed stretch are to cover.
+/// Approximate width of a path's line, pt, and the fraction of the black positions that the lines of a proposed range
+/// should cover.
 const LINE_PT: f64 = 0.9;
 const LOOSE: f64 = 0.3;
 
-/// As [`over_time`], of each `path` of `drawn`, whose points stand at a `place` on the page: of the runs, and where none of them
-/// is dense, of the exact motion.
+/// Proposes a time range as [`over_time`] does, for the `path` of each of `drawn`. `place` maps a point to the page.
+/// The exact motion is examined only if no run is dense.
 pub(super) fn of_paths(
     drawn: &[SampledRunNumbers],
     spec: &FigureSpec,
@@ -166,7 +169,7 @@ pub(super) fn of_paths(
     })
 }
 
-/// Proposes a stretch for one `path`, which was recorded until `end_s`; `None` where it is not dense.
+/// Proposes a time range for one `path`, which was recorded until `end_s`; `None` if it is not dense.
 fn of_path(
     path: &TracedPath,
     end_s: f64,
@@ -185,7 +188,7 @@ fn of_path(
     let length_pt: f64 = lines.iter().map(|line| curve::length(line)).sum();
     let share = (LOOSE * area_pt2 / (path.times * length_pt * LINE_PT)).min(0.5);
     let what = format!(
-        "on {} mm its turns cover the paper, so that nothing of them is told apart",
+        "its turns are too dense to be drawn on {} mm and cover the paper",
         width_mm(spec)
     );
     Some(proposal(share * (end_s - spec.from_s), spec, what))

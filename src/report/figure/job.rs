@@ -1,4 +1,4 @@
-//! A figure of runs at work: the runs with their numbers, and what it is once it is drawn.
+//! A figure of runs that is being drawn: the runs with their numbers, and the finished figure.
 
 use super::course::SampledRun;
 use super::kind::FigureKind;
@@ -19,22 +19,22 @@ pub struct FigureRun {
 }
 
 impl FigureRun {
-    /// The run under the title of its scenario.
+    /// Creates a run named by the title of its scenario.
     pub fn titled(scenario: Arc<Scenario>) -> Self {
         let named = scenario.file.title.clone();
         Self { scenario, named }
     }
 }
 
-/// What is known of a single run before its figures are drawn: so much of it need not be computed once more.
+/// Numbers of a single run that are known before its figures are drawn, and need not be recomputed.
 #[derive(Clone, Debug, Default)]
 pub struct KnownNumbers {
     pub recorded: Option<SampledRun>,
-    /// What it says of the measured data of the figures: of each column a value for every point.
+    /// The run's values for the measured data of the figures: for each column, one value per point.
     pub said: Option<Vec<Vec<f64>>>,
 }
 
-/// A run with its numbers, or the exact motion beside it.
+/// A run with its numbers, or the exact motion drawn with it.
 pub(super) struct SampledRunNumbers {
     pub name: String,
     pub style: SeriesStyle,
@@ -42,19 +42,19 @@ pub(super) struct SampledRunNumbers {
     pub is_exact: bool,
 }
 
-/// A figure of runs that is being drawn: its source, of which the kind is known, and what is known of its runs.
+/// A figure of runs to draw: its source, its kind, and the known numbers of its runs.
 #[derive(Clone, Copy)]
 pub(super) struct FigureJob<'a> {
     pub runs: &'a [FigureRun],
     pub spec: &'a FigureSpec,
     pub kind: &'a FigureKind,
-    /// What was measured on a run, to be drawn with them.
+    /// Data measured on a run, to be drawn with the runs.
     pub measured: Option<&'a MeasuredData>,
     pub known: &'a KnownNumbers,
 }
 
 impl FigureJob<'_> {
-    /// Whether both are drawn from the same numbers of the runs under the same names.
+    /// Returns true if both figures use the same numbers of the runs, with the same names.
     pub fn is_alike(&self, other: &Self) -> bool {
         let are_residuals = [self, other].map(|it| matches!(it.kind, FigureKind::Residuals));
         let [a, b] = [self.spec, other.spec];
@@ -66,24 +66,24 @@ impl FigureJob<'_> {
             && a.labels == b.labels
     }
 
-    /// Whether something is drawn beside the runs, so that a single run needs a name.
+    /// Returns true if the exact motion or data are drawn too, so that even a single run needs a name.
     pub fn is_beside(&self) -> bool {
         self.spec.exact || self.measured.is_some()
     }
 
-    /// The end of the longest run, s.
+    /// Returns the end time of the longest run, s.
     pub fn end_s(&self) -> f64 {
         let ends = self.runs.iter().map(|run| Clock::end_s(&run.scenario));
         ends.fold(0.0, f64::max)
     }
 
-    /// Whether `time_s` is in the stretch that is drawn.
+    /// Returns true if `time_s` is in the time range of the figure.
     pub fn has(&self, time_s: f64) -> bool {
         let to_s = self.spec.to_s;
         time_s >= self.spec.from_s && to_s.is_none_or(|to_s| time_s <= to_s)
     }
 
-    /// The titles of the runs, each once.
+    /// Returns the titles of the runs, each once.
     pub fn title(&self) -> String {
         let mut titles: Vec<&str> = Vec::new();
         for run in self.runs {
@@ -106,10 +106,10 @@ impl FigureJob<'_> {
     }
 }
 
-/// What is too dense on paper to be told apart, and a shorter stretch of time in which it is not.
+/// A curve or path that is too dense on paper, and a shorter time range in which its turns are visible.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dense {
-    /// What is, and how it is drawn, in words.
+    /// Description of the problem and of the drawing.
     pub what: String,
     pub from_s: f64,
     pub to_s: f64,
@@ -124,23 +124,23 @@ impl Dense {
 
 impl fmt::Display for Dense {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}; {} shows a part", self.what, self.options())
+        write!(f, "{}; use {} to show a part", self.what, self.options())
     }
 }
 
 #[derive(Clone, Debug)]
 pub struct DrawnFigure {
     pub scene: PageScene,
-    /// Warnings without the one of `dense`, each a sentence without its full stop.
+    /// Warnings other than `dense`, each a sentence without a period.
     pub warnings: Vec<String>,
-    /// What covers the paper so densely that it is solid black, where something does.
+    /// A curve or path that covers the paper solidly, if any.
     pub dense: Option<Dense>,
-    /// Which run's numbers stopped being finite, and at which step.
+    /// The run whose numbers stopped being finite, and the step.
     pub broke: Option<String>,
 }
 
 impl DrawnFigure {
-    /// A picture of which there is nothing to say.
+    /// Creates a figure without remarks.
     pub fn without_remarks(scene: PageScene) -> Self {
         Self {
             scene,
@@ -150,7 +150,7 @@ impl DrawnFigure {
         }
     }
 
-    /// All that its reader should know of it, each a sentence without its end.
+    /// Returns all warnings, each a sentence without a period.
     pub fn told(&self) -> impl Iterator<Item = String> + '_ {
         let dense = self.dense.iter().map(ToString::to_string);
         self.warnings.iter().cloned().chain(dense)

@@ -1,4 +1,4 @@
-//! What was measured, drawn with runs: points with error bars over time and from above, and their residuals.
+//! Measured data in figures of runs: points with error bars over time and from above, and residuals.
 
 use super::job::{DrawnFigure, FigureJob, FigureRun};
 use super::names::names;
@@ -18,17 +18,17 @@ use std::cell::RefCell;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-/// The room before the first and after the last residual, of the time between them.
+/// Margin before the first and after the last residual, relative to the time between them.
 const RESIDUAL_MARGIN: f64 = 0.02;
 
-/// The room before a first and after a last point that would stand on the frame, of the time that is drawn.
+/// Margin before the first and after the last point if it would lie on the frame, relative to the time range.
 const BESIDE_POINTS: f64 = 0.015;
 
-/// Adds the points to the panels of `columns`, and the time in which they were measured to the axis of the time. Returns
-/// what is to be said where no panel shows what was measured.
+/// Adds the points to the panels of `columns`, and extends the time axis to them. Returns a warning if no panel shows
+/// measured data.
 ///
 /// # Errors
-/// Where the data are no series, or the numbers of a run stop being finite.
+/// Returns an error if the data are not a time series, or if the numbers of a run stop being finite.
 pub(super) fn over_time(
     job: &FigureJob<'_>,
     chart: &mut Chart,
@@ -67,7 +67,7 @@ pub(super) fn over_time(
     let names: Vec<_> = series.curves.iter().map(|it| it.quantity.name).collect();
     Ok((count == 0).then(|| {
         format!(
-            "no point of {} is in this figure: it has {}; --kind {} shows them",
+            "this figure shows no point of {}, which has {}: use --kind {} to show them",
             measured.origin,
             names.join(", "),
             names.join(",")
@@ -75,7 +75,7 @@ pub(super) fn over_time(
     }))
 }
 
-/// Widens the `range` of an axis where one of `times_s` would stand on the frame: its error bar would lie on it.
+/// Widens the `range` of an axis if one of `times_s` would lie on the frame and hide its error bar.
 fn make_room(range: &mut (f64, f64), times_s: &[f64]) {
     let room = BESIDE_POINTS * (range.1 - range.0);
     let (least, most) = (range.0 + room, range.1 - room);
@@ -87,10 +87,10 @@ fn make_room(range: &mut (f64, f64), times_s: &[f64]) {
     }
 }
 
-/// The places from above, or what is to be said where the data do not tell any.
+/// Returns the measured positions from above, or a warning if the data contain none.
 ///
 /// # Errors
-/// Where the data are no series.
+/// Returns an error if the data are not a time series.
 pub(super) fn above(job: &FigureJob<'_>) -> Result<(Option<ChartSeries>, Option<String>), String> {
     let (Some(measured), Some(run)) = (job.measured, job.runs.first()) else {
         return Ok((None, None));
@@ -104,7 +104,7 @@ pub(super) fn above(job: &FigureJob<'_>) -> Result<(Option<ChartSeries>, Option<
         return Ok((
             None,
             Some(format!(
-                "no point of {origin} is in this figure: from above are x_m and y_m, or tilt_deg and azimuth_deg of a point on the axle"
+                "this figure shows no point of {origin}: a view from above needs x_m and y_m, or tilt_deg and azimuth_deg of a point on the axle"
             )),
         ));
     }
@@ -121,7 +121,7 @@ pub(super) fn above(job: &FigureJob<'_>) -> Result<(Option<ChartSeries>, Option<
     Ok((Some(places), None))
 }
 
-/// What is said where the runs end before the last point of a figure.
+/// Returns a warning if the runs end before the last measured point of the figure.
 pub(super) fn beyond_runs(job: &FigureJob<'_>) -> Option<String> {
     let measured = job.measured?;
     let series = measured.series().ok()?;
@@ -133,32 +133,32 @@ pub(super) fn beyond_runs(job: &FigureJob<'_>) -> Option<String> {
             .rfind(|time_s| **time_s > end_s && job.has(**time_s))?,
     );
     Some(format!(
-        "the run ends at {} s, before the last point of {} at {last_s} s: --duration {last_s} draws the run up to there",
+        "the run ends at {} s, before the last point of {} at {last_s} s: use --duration {last_s} to extend the run",
         shortest(end_s),
         measured.origin
     ))
 }
 
-/// What is said where measured points are asked for in space.
+/// Returns a warning if there are measured data in a figure in space.
 pub(super) fn in_space(job: &FigureJob<'_>) -> Option<String> {
     let measured = job.measured?;
     Some(format!(
-        "the points of {} are not drawn in space: --kind above or columns show them",
+        "the points of {} are not drawn in space: use --kind above or columns to show them",
         measured.origin
     ))
 }
 
-/// The figure of what was measured less what each of the runs says.
+/// Draws the figure of the residuals: measured values minus the values of each run.
 ///
 /// # Errors
-/// Where there is nothing measured, or the numbers of a run stop being finite.
+/// Returns an error if there are no measured data, or if the numbers of a run stop being finite.
 pub(super) fn residuals(
     job: &FigureJob<'_>,
     mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Result<Option<DrawnFigure>, String> {
     let &FigureJob { runs, spec, .. } = job;
     let Some(measured) = job.measured else {
-        return Err("residuals are of measured data: --measured FILE".to_owned());
+        return Err("residuals need measured data: use --measured FILE".to_owned());
     };
     let series = series(measured)?;
     let last_s = series.times_s.last().copied().unwrap_or(0.0);
@@ -195,14 +195,14 @@ pub(super) fn residuals(
     Ok(Some(DrawnFigure::without_remarks(scene)))
 }
 
-/// The panel of the residuals of `curve` with the line of zero alone.
+/// Creates the panel for the residuals of `curve`, with only the zero line.
 fn empty(curve: &MeasuredCurve, range: (f64, f64)) -> Panel {
     let axis = quantity::axis(curve.quantity.name);
     let y = ChartAxis::new(format!("{}, measured − run", axis.name), axis.unit);
     Panel::new(y, vec![ChartSeries::level(range)])
 }
 
-/// What `run` says of each curve of `series`; `None` where `watch` stopped it.
+/// Returns the values of `run` for each curve of `series`; `None` if `watch` stopped the computation.
 fn said(
     job: &FigureJob<'_>,
     series: &data::TimeSeries,
@@ -219,7 +219,7 @@ fn said(
     .map_err(|error| error.to_string())
 }
 
-/// The points of `curve` with what `value` makes of each and of what the run says of it, `model`.
+/// Returns the points of `curve` with values that `value` computes from each point and its value in the run, `model`.
 fn beside(
     curve: &MeasuredCurve,
     model: &[f64],
@@ -241,7 +241,7 @@ fn series(measured: &MeasuredData) -> Result<&data::TimeSeries, String> {
     series.map_err(|problems| format!("{}: {}", problems.origin, problems.in_one_line()))
 }
 
-/// The name of the data in the legend, as markup, with the `count` of the points that the figure has of them.
+/// Returns the legend's name of the data, as markup, with the number of points in the figure.
 fn name(measured: &MeasuredData, count: usize, spec: &FigureSpec) -> String {
     let file = Path::new(&measured.origin)
         .file_stem()
@@ -256,7 +256,7 @@ fn name(measured: &MeasuredData, count: usize, spec: &FigureSpec) -> String {
     letters::shortened(&whole, LABEL_PT, longest_name(spec.page_width_pt()))
 }
 
-/// `points` in the stretch of time that is drawn, with their errors: NaN where none is stated.
+/// Returns the points in the figure's time range with their errors; NaN if no error is stated.
 fn drawn(
     job: &FigureJob<'_>,
     series: &data::TimeSeries,
@@ -275,8 +275,8 @@ fn drawn(
     }
 }
 
-/// The points of the curve at `place`: of directions each with the number of full turns at which it is nearest to the first of
-/// the runs.
+/// Returns the points of the curve at index `place`. A direction gets the number of full turns that brings it closest
+/// to the first run.
 fn turned(
     job: &FigureJob<'_>,
     series: &data::TimeSeries,

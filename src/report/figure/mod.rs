@@ -1,16 +1,15 @@
-//! Figures for write-ups: a run, or a table of runs, drawn on paper.
+//! Figures for write-ups: runs, or a table of runs, drawn on paper.
 //!
-//! - [`of_runs`]: figures of runs: their curves over time, from above and in space. [`kind`] has the names of these,
-//!   [`course`] takes the numbers from stepping through the runs, in bounded memory (`path` those of a path),
-//!   `measured` draws what was measured with them, `dense` finds the curves and paths whose turns are not told apart,
-//!   `chords` those whose paths have too few points, [`labels`] gives words and axes that were asked for, `size` tells what of a curve is rounding.
-//!   `job` is a figure that is being drawn, and what it is once it is drawn.
-//! - [`of_table`]: figures of a comparison, of a sweep or of a fit, read by [`table`](crate::studies::table).
-//! - `spec`: what a figure shows.
-//! - `source`: the runs or the table that a figure shows, what of them its file carries, and the way back.
-//! - `drawing`: a figure of runs or of a table is drawn from its source.
-//! - `redraw`: a figure, drawn again from its file.
-//! - [`quantity`]: columns and readouts as they stand at an axis.
+//! - [`of_runs`]: figures of runs: curves over time, from above and in space. [`kind`] names them, and [`course`]
+//!   samples the runs in bounded memory, with `path` for paths. `measured` adds measured data. `dense` finds curves and
+//!   paths whose turns are too dense, `chords` paths with too few points. [`labels`] applies requested words and axes,
+//!   and `size` separates values from rounding. `job` is a figure that is being drawn.
+//! - [`of_table`]: figures of a comparison, a sweep or a fit, read by [`table`](crate::studies::table).
+//! - `spec`: the request for a figure.
+//! - `source`: the runs or the table of a figure, and their embedding in its file.
+//! - `drawing`: draws a figure from its source.
+//! - `redraw`: redraws a figure from its file.
+//! - [`quantity`]: axis labels of columns and readouts.
 
 mod chords;
 pub mod course;

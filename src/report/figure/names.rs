@@ -1,4 +1,4 @@
-//! What runs are called beside each other: by what differs.
+//! Names of runs in a legend, which tell how the runs differ.
 
 use super::chords::EVERY_STEP;
 use super::job::{FigureJob, FigureRun};
@@ -9,7 +9,7 @@ use crate::plot::ink::{self, LABEL_PT};
 use crate::plot::letters;
 use toml::Table;
 
-/// A name for each of the runs, as markup with room in the legend; empty where there is nothing to tell apart.
+/// Returns a name for each run, as markup that fits into the legend; empty if no name is needed.
 pub(super) fn names(job: &FigureJob<'_>) -> Vec<String> {
     let &FigureJob { runs, spec, .. } = job;
     let room_pt = longest_name(spec.page_width_pt()) - ink::width(EVERY_STEP, LABEL_PT);
@@ -38,8 +38,8 @@ pub(super) fn names(job: &FigureJob<'_>) -> Vec<String> {
     by_settings(runs, &names, room_pt)
 }
 
-/// Returns names of `runs` that say in which settings they differ, since `names` are not all different. Where no setting does
-/// either, the run is named as the user did.
+/// Returns names of `runs` with the settings in which they differ, because some of `names` are equal. A run without
+/// different settings gets the name that the user gave.
 fn by_settings(runs: &[FigureRun], names: &[String], room_pt: f64) -> Vec<String> {
     let files = runs.iter().map(|run| Table::try_from(&run.scenario.file));
     let tables: Vec<Table> = files.map(Result::unwrap_or_default).collect();
@@ -52,13 +52,13 @@ fn by_settings(runs: &[FigureRun], names: &[String], room_pt: f64) -> Vec<String
     told.collect()
 }
 
-/// Returns the name of `run` by those of its [`PARTS`] that differ.
+/// Returns the name of `run`, composed of the [`PARTS`] that differ.
 fn by_parts(run: &FigureRun, differs: [bool; 3], room_pt: f64) -> String {
     let words: Vec<_> = (0..2)
         .filter(|part| differs[*part])
         .map(|part| PARTS[part](run))
         .collect();
-    // The step comes as markup, and keeps its room; the title is cut.
+    // The time step is markup and is never shortened; the title is.
     let step = match (differs[2], words.is_empty()) {
         (false, _) => String::new(),
         (true, true) => step(run),
@@ -68,14 +68,14 @@ fn by_parts(run: &FigureRun, differs: [bool; 3], room_pt: f64) -> String {
     letters::shortened(&words.join(", "), LABEL_PT, rest) + &step
 }
 
-/// What a name consists of.
+/// The parts of a name.
 const PARTS: [fn(&FigureRun) -> String; 3] = [
     |run| run.scenario.file.title.clone(),
     |run| scheme_in_words(run.scenario.motion.scheme.name).to_owned(),
     step,
 ];
 
-/// What a reader who does not know the program calls the motion of a scheme.
+/// Returns a name of a scheme's motion for readers who do not know the program.
 pub(super) fn scheme_in_words(name: &str) -> &str {
     match name {
         "report" => "the report's scheme",
@@ -86,7 +86,7 @@ pub(super) fn scheme_in_words(name: &str) -> &str {
 
 pub(super) const EXACT_CURVE_NAME: &str = "exact motion";
 
-/// "Δt = 10 ms" as markup.
+/// Formats the time step as markup, such as "Δt = 10 ms".
 fn step(run: &FigureRun) -> String {
     let seconds = run.scenario.motion.time_step_s;
     let (number, unit) = match seconds {

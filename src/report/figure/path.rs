@@ -1,25 +1,27 @@
-//! A path in bounded memory: where it has been already, it is not kept again.
+//! Recording of a path in bounded memory: repeated parts are stored only once.
 
 use nalgebra::Vector3;
 use std::collections::HashSet;
 use std::f64::consts::TAU;
 
 const MOST_PATH_POINTS: usize = 1 << 19;
-/// The cells along each side of the path that it is first thinned by: finer than a page's dots at 600 an inch.
+/// Number of cells along each side of the first grid: finer than the dots of a page at 600 dots per inch.
 const FINEST_PATH_CELLS: f64 = 4096.0;
 
-/// The path of a point. Of a short one every point is kept; of a long one those that lead from one cell of a grid to another by
-/// a way that has not been gone before. Of a path that is drawn as points each cell has one. The cells grow with what there is
-/// to keep; upright they have a size of their own, since a picture in space may stretch z.
+/// Recorder of the path of a point.
+///
+/// Every point of a short path is kept. Of a long path, only points that lead from one grid cell to another in a new
+/// way are kept; if it is drawn as points, each cell keeps one. The cells grow with the number of points. They have a
+/// separate height, since a picture in space may stretch z.
 #[derive(Clone, Debug)]
 pub struct PathRecorder {
     is_line: bool,
     path: TracedPath,
     low: [f64; 3],
     high: [f64; 3],
-    /// Where it was last, once it is thinned.
+    /// The last point, if the path is thinned.
     last: Option<[f64; 3]>,
-    /// Cells along each side; `None` while every point is kept.
+    /// Number of cells along each side; `None` as long as every point is kept.
     cells: Option<f64>,
     size: [f64; 3],
     gone: HashSet<[[i32; 3]; 2]>,
@@ -28,16 +30,16 @@ pub struct PathRecorder {
 
 #[derive(Clone, Debug, Default)]
 pub struct TracedPath {
-    /// Its points, world frame, m; NaN where the line is interrupted, since it has been there before.
+    /// Points of the path, world frame, m. NaN interrupts the line where it repeats an earlier part.
     pub points: Vec<[f64; 3]>,
-    /// How many times as long the whole path is, about.
+    /// Approximate length of the whole path, as a multiple of the stored path.
     pub times: f64,
-    /// How many points it has to a turn, where they are too few to look round.
+    /// Number of points per turn, if there are too few to look round.
     pub few_a_turn: Option<f64>,
 }
 
 impl TracedPath {
-    /// Its lines, of each point what `place` gives.
+    /// Returns the lines of the path, with each point converted by `place`.
     pub fn lines<Place>(&self, place: impl Fn(&[f64; 3]) -> Place) -> Vec<Vec<Place>> {
         let lines = self.points.split(|point| point[0].is_nan());
         lines
@@ -47,7 +49,7 @@ impl TracedPath {
 }
 
 impl PathRecorder {
-    /// A recorder of a path that has not begun; `is_line` says whether it is drawn as a line however few points it has.
+    /// Creates a recorder. With `is_line`, the path is drawn as a line even if it has few points.
     pub fn new(is_line: bool) -> Self {
         Self {
             is_line,
@@ -77,7 +79,7 @@ impl PathRecorder {
         }
     }
 
-    /// Keeps `point` where it is new; `is_joined` says whether a line leads there.
+    /// Stores `point` if it is new. `is_joined` is true if a line leads to it.
     fn keep(&mut self, point: [f64; 3], is_joined: bool) {
         let to = self.cell(&point);
         if self.is_dots() {
@@ -121,7 +123,7 @@ impl PathRecorder {
         [0, 1, 2].map(|axis| (point[axis] / self.size[axis]).floor() as i32)
     }
 
-    /// Thins the path until half as many points are kept as there may be.
+    /// Thins the path until it has at most half the maximum number of points.
     fn coarsen(&mut self) {
         if self.cells.is_none() {
             self.path.few_a_turn = points_a_turn(&self.path.points);
@@ -148,7 +150,7 @@ impl PathRecorder {
         if self.cells.is_none() {
             self.path.few_a_turn = points_a_turn(&self.path.points);
         } else if self.path.points.is_empty() {
-            self.path.points.extend(self.last); // it stands still
+            self.path.points.extend(self.last); // the point never moved
         }
         let kept = self.path.points.len().max(1) as f64;
         self.path.times = 1.0 + self.left_out as f64 / kept;
@@ -156,16 +158,16 @@ impl PathRecorder {
     }
 }
 
-/// A path with more points than this in a turn, on the average, looks round: the chords are off it by 1.5 % of its radius.
+/// A path with more points per turn than this looks round: the chords deviate from it by 1.5 % of its radius.
 const ROUND: f64 = 18.0;
-/// Chords that are off it by less than this part of the picture's width look round too: about 0.15 pt.
+/// Chords that deviate by less than this fraction of the picture's width look round too: about 0.15 pt.
 const UNSEEN_CHORD: f64 = 7e-4;
-/// Of fewer bends than these there is no average.
+/// Minimum number of bends for an average.
 const FEWEST_BENDS: u32 = 3;
-/// About this many points of a path are examined.
+/// Approximate number of points of a path that are examined.
 const LOOKED_AT: usize = 50_000;
 
-/// How many points there are to a turn of `path` (m), where they are too few to look round.
+/// Returns the number of points per turn of `path` (m), if they are too few to look round.
 fn points_a_turn(path: &[[f64; 3]]) -> Option<f64> {
     let bends = path.windows(3).step_by(1 + path.len() / LOOKED_AT);
     let bends = bends.filter_map(|three| {
@@ -185,7 +187,7 @@ fn points_a_turn(path: &[[f64; 3]]) -> Option<f64> {
     (count >= FEWEST_BENDS && a_turn < ROUND && is_seen).then_some(a_turn)
 }
 
-/// The longest way along one of the axes from one end of `path` to the other, m.
+/// Returns the largest extent of `path` along an axis, m.
 fn width(path: &[[f64; 3]]) -> f64 {
     let far = Vector3::repeat(f64::INFINITY);
     let (low, high) = path.iter().fold((far, -far), |(low, high), at| {

@@ -1,4 +1,4 @@
-//! What is written along the axis of a quantity: symbol and unit of a column, a readout or a key of a scenario.
+//! The axis label of a quantity: symbol and unit of a column, a readout or a scenario key.
 
 use crate::engine::analysis::readouts;
 use crate::engine::text::unit::Unit;
@@ -6,15 +6,15 @@ use crate::plot::chart::ChartAxis;
 use crate::plot::chart::ticks::with_minus;
 use crate::plot::letters;
 
-/// How the names of a run's own numbers begin, and what they are called: what is measured is data.
+/// Prefix of a run's own measurements, and the word for it on an axis: in figures, "measured" refers to data.
 pub const MEASURED_PREFIX: &str = "measured_";
 pub const SIMULATED: &str = "simulated";
 
-/// The parts of a vector, by the numbers that keys give them.
+/// The components of a vector, by their index in a key.
 const VECTOR_PARTS: [(&str, &str); 3] = [("0", "*x*"), ("1", "*y*"), ("2", "*z*")];
 
-/// The axis of a column, of a readout, or of a dotted key of a scenario: of the readout's value at the start, where there is
-/// such a readout.
+/// Returns the axis of a column, a readout or a dotted scenario key. A key gets the symbol of the matching readout at
+/// the start, if there is one.
 pub fn axis(name: &str) -> ChartAxis {
     let last = name.rsplit('.').next().unwrap_or(name);
     let readout = readouts::find(if last == "step" { "steps" } else { last });
@@ -33,8 +33,8 @@ pub fn axis(name: &str) -> ChartAxis {
     }
 }
 
-/// The axis of a key of this `scenario`: a point or a part of the body is called by its name, "mass of weight", and L has the
-/// axes of its frame.
+/// Returns the axis of a key in this `scenario`. A point or part of the body is called by its name, as in "mass of
+/// weight", and L has the axes of its frame.
 pub fn axis_in(scenario: &toml::Table, key: &str) -> ChartAxis {
     if let Some(axis) = of_momentum(scenario, key) {
         return axis;
@@ -54,8 +54,8 @@ pub fn axis_in(scenario: &toml::Table, key: &str) -> ChartAxis {
     ChartAxis::new(format!("{} of {}", own.name, letters::escape(name)), unit)
 }
 
-/// The axis of a part of L at the start: along x, y, z of the world, or along 1, 2, 3 of the body. `None` where `key` is
-/// another one, or `scenario` has no start.
+/// Returns the axis of a component of L at the start: x, y, z in the world frame, or 1, 2, 3 in the body frame. Returns
+/// `None` for another `key`, or if `scenario` has no start.
 fn of_momentum(scenario: &toml::Table, key: &str) -> Option<ChartAxis> {
     let number = key.strip_prefix("start.momentum_Js.")?;
     let part = VECTOR_PARTS
@@ -70,7 +70,7 @@ fn of_momentum(scenario: &toml::Table, key: &str) -> Option<ChartAxis> {
     Some(ChartAxis::new(at_start(&format!("*L*_{{{index}}}")), unit))
 }
 
-/// The symbol of a quantity's value at the start: with the index 0, behind the one that it may have.
+/// Returns the symbol of a quantity at the start: with the index 0, after an existing index.
 fn at_start(symbol: &str) -> String {
     match symbol.strip_suffix('}') {
         Some(indexed) => format!("{indexed},0}}"),
@@ -78,14 +78,14 @@ fn at_start(symbol: &str) -> String {
     }
 }
 
-/// A name as words in markup, and its unit.
+/// Returns a name as words in markup, and its unit.
 pub fn words(name: &str) -> (String, &'static str) {
     let mut unit = "";
     let mut parts: Vec<&str> = name.split('.').collect();
     if parts.len() > 1 && ["motion", "body"].contains(&parts[0]) {
         parts.remove(0);
     }
-    // A number at the end is a component, elsewhere a point, a part or a push.
+    // A number at the end is a component; elsewhere it is the index of a point, a part or a push.
     let mut components = VECTOR_PARTS.iter();
     let component = components.find(|(number, _)| parts.last() == Some(number));
     if component.is_some() {
@@ -110,7 +110,7 @@ pub fn words(name: &str) -> (String, &'static str) {
     (words.join(" "), unit)
 }
 
-/// A unit in markup: rad/s becomes rad s^{−1}.
+/// Converts a unit to markup: rad/s becomes rad s^{−1}.
 pub fn unit_markup(unit: &str) -> String {
     let (above, below) = unit.split_once('/').unwrap_or((unit, ""));
     let numerator = above
@@ -124,7 +124,7 @@ pub fn unit_markup(unit: &str) -> String {
     numerator.chain(denominator).collect::<Vec<_>>().join(" ")
 }
 
-/// Returns a factor of a unit such as `m2` as markup; `sign` is "-" in the denominator and "" above.
+/// Converts a factor of a unit, such as `m2`, to markup. `sign` is "-" in the denominator and "" in the numerator.
 fn power(word: &str, sign: &str) -> String {
     let digits = word.trim_start_matches(|c: char| !c.is_ascii_digit());
     let base = match &word[..word.len() - digits.len()] {

@@ -1,4 +1,4 @@
-//! A figure, drawn again from what its file carries.
+//! Redraws a figure from the data in its file, to verify it.
 
 use crate::engine::provenance::{FigureFile, FileFormat, Payload, SCREEN};
 use crate::plot::{PageFormat, write};
@@ -7,11 +7,11 @@ use crate::studies::verify::{Unverified, other_version};
 use std::ops::ControlFlow;
 use std::path::Path;
 
-/// What differs in a figure, and what else there is to say, a line each.
+/// The difference in a figure, if any, and remarks.
 type Redrawn = (Option<String>, Vec<String>);
 
-/// Draws the figure in the file `path` again: what differs, where something does, and what else there is to say, a line each.
-/// `None` where the file is no figure. `watch` is as for a CSV.
+/// Redraws the figure in the file `path`. Returns the difference, if any, and remarks; `None` if the file is not a
+/// figure. `watch` is called as in the verification of a CSV.
 pub fn redraw(
     path: &Path,
     watch: impl Fn(u64, u64) -> ControlFlow<()>,
@@ -24,7 +24,7 @@ pub fn redraw(
         return Ok(Some((Some(changed.to_owned()), notes)));
     }
     if figure.origin.figure.contains_key(SCREEN) {
-        let rule = "is a picture of the lab's screen, which is not drawn again; picture and run are as they were written, and gyrolab run takes the run";
+        let rule = "is a picture of the lab's screen and cannot be redrawn; the file is unchanged, and gyrolab run can play the run in it";
         return Err(rule.to_owned().into());
     }
     let folder = path.parent().unwrap_or(Path::new(""));
@@ -36,21 +36,21 @@ pub fn redraw(
     let again = write(&drawn.scene, format(&figure, &source), Some(&figure.origin));
     let again = FigureFile::parse(again.map_err(|error| error.to_string())?)?;
     if figure.origin.all(Payload::Table).next().is_some() {
-        notes.push("drawn from the table in it; gyrolab verify computes that where it has a file of its own".to_owned());
+        notes.push("redrawn from its table, which is not recomputed; to verify the table, run gyrolab verify on its own file".to_owned());
     }
     let mut difference = None;
     if figure.picture != again.picture {
         let is_png = figure.form == FileFormat::Png;
         if is_png && have_same_pixels(&figure.picture, &again.picture) == Some(true) {
-            notes.push("its pixels are the same, compressed otherwise".to_owned());
+            notes.push("its pixels are the same, but compressed differently".to_owned());
         } else {
-            difference = Some("its run, drawn again, gives another picture".to_owned());
+            difference = Some("its run, redrawn, gives another picture".to_owned());
         }
     }
     Ok(Some((difference, notes)))
 }
 
-/// Returns whether two PNG files show the same; `None` where one of them cannot be read.
+/// Returns true if two PNG files show the same picture; `None` if one of them cannot be read.
 fn have_same_pixels(there: &[u8], drawn: &[u8]) -> Option<bool> {
     let of_drawn = pixels(drawn, MOST_PIXELS)?;
     Some(pixels(there, of_drawn.1.len())? == of_drawn)
@@ -65,10 +65,10 @@ fn format(figure: &FigureFile, source: &FigureSource) -> PageFormat {
     }
 }
 
-/// The most bytes of the pixels of a PNG that is drawn.
+/// Maximum size of the pixels of a redrawn PNG, bytes.
 const MOST_PIXELS: usize = 300_000_000;
 
-/// The size and the pixels of a PNG whose pixels take no more than `most` bytes.
+/// Decodes the pixels of a PNG, if they take at most `most` bytes.
 fn pixels(file: &[u8], most: usize) -> Option<(png::OutputInfo, Vec<u8>)> {
     let mut reader = png::Decoder::new(std::io::Cursor::new(file))
         .read_info()

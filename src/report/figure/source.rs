@@ -1,4 +1,4 @@
-//! What a figure is drawn from, what of that its file carries, and the way back.
+//! The source of a figure: the runs, data or table to draw, and their embedding in the figure's file.
 
 use super::job::{FigureJob, FigureRun, KnownNumbers};
 use super::kind::FigureKind;
@@ -13,7 +13,7 @@ use crate::studies::table::TableSource;
 use std::path::Path;
 use std::sync::Arc;
 
-/// What a figure shows: runs, beside what was measured where there is something, or else a table.
+/// The content of a figure: runs with optional measured data, or a table.
 #[derive(Clone, Debug, Default)]
 pub struct FigureSource {
     pub spec: FigureSpec,
@@ -23,17 +23,21 @@ pub struct FigureSource {
 }
 
 impl FigureSource {
-    /// Draws `measured` with the runs.
+    /// Adds `measured` to the figure.
     pub fn draw_with(&mut self, measured: Option<Arc<MeasuredData>>) {
         self.spec.measured_until_s = measured.as_ref().and_then(|it| it.until_s);
         self.measured = measured;
     }
 
-    /// Refuses what no command line gives, and other names than there are runs.
+    /// Checks that the request is valid, and that there is one name per run.
+    ///
+    /// # Errors
+    /// Returns an error for values that no command line allows, or if the number of names differs from the number of
+    /// runs.
     pub fn check(&self) -> Result<(), Problems> {
         let (runs, named) = (self.runs.len(), self.spec.labels.names.len());
         if !self.spec.is_sound() || (runs == 0 && self.table.is_none()) {
-            return Err(refused("was asked for what no figure can have"));
+            return Err(refused("contains an invalid request for a figure"));
         }
         if ![0, runs].contains(&named) && self.table.is_none() {
             return Err(refused(&format!(
@@ -43,7 +47,7 @@ impl FigureSource {
         Ok(())
     }
 
-    /// Returns its kind, of a figure of runs.
+    /// Returns the kind of a figure of runs.
     pub(super) fn kind(&self) -> Result<FigureKind, String> {
         match (&self.spec.kind, &self.measured) {
             (Some(kind), _) => {
@@ -54,7 +58,7 @@ impl FigureSource {
         }
     }
 
-    /// Returns it as a figure of runs to be drawn: of this `kind`, with what is `known` of its runs.
+    /// Returns the job that draws this figure of runs as `kind`, reusing the numbers in `known`.
     pub(super) fn job<'a>(
         &'a self,
         kind: &'a FigureKind,
@@ -69,15 +73,15 @@ impl FigureSource {
         }
     }
 
-    /// The bytes of a file of the `scene` that was drawn, which carries what it was drawn from.
+    /// Returns the bytes of a file that shows `scene`, with this source embedded.
     ///
     /// # Errors
-    /// As [`format::write`].
+    /// Returns the errors of [`format::write`].
     pub fn write(&self, scene: &PageScene, format: PageFormat) -> Result<Vec<u8>, Unwritable> {
         format::write(scene, format, Some(&self.origin(format)))
     }
 
-    /// What its file carries.
+    /// Returns the data to embed in the figure's file.
     pub fn origin(&self, format: PageFormat) -> Origin {
         let spec = FigureSpec {
             text: format == PageFormat::SvgText,
@@ -98,7 +102,7 @@ impl FigureSource {
         Origin::new(&spec, runs.chain(data).chain(table).collect())
     }
 
-    /// What the figure of that `origin` shows. A file that was too large to travel is sought in `folder`.
+    /// Restores the source from an embedded `origin`. A file that was too large to embed is read from `folder`.
     pub fn from_origin(origin: &Origin, folder: &Path) -> Result<Self, Problems> {
         let spec: Result<FigureSpec, _> = origin.figure.clone().try_into();
         let mut source = Self {
@@ -129,7 +133,7 @@ fn refused(rule: &str) -> Problems {
     Problem::at("", rule).into()
 }
 
-/// What is in a carried `file`; of one that was too large for it what is in the file of that name in `folder`.
+/// Returns the content of an embedded `file`. If it was too large to embed, the file of that name in `folder` is read.
 fn content(file: &File, folder: &Path) -> Result<String, Problems> {
     let Some(sum) = &file.sha256 else {
         return Ok(file.text.clone());
@@ -140,7 +144,7 @@ fn content(file: &File, folder: &Path) -> Result<String, Problems> {
     text.ok_or_else(|| {
         let name = &file.name;
         refused(&format!(
-            "needs {name} (SHA-256 {sum}), which was too large to travel with it: put that file into the same folder"
+            "needs {name} (SHA-256 {sum}), which was too large to embed: put that file into the same folder"
         ))
     })
 }

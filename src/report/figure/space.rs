@@ -1,7 +1,7 @@
-//! The path in space: a box with grids on its far sides, axes along its near edges, the path's shadow on the floor, and depth
-//! by weight and grey of the line.
+//! The figure of paths in space: a box with grids on its far sides, axes along its near edges, and the paths with their
+//! shadows on the floor. Width and gray level of the lines show the depth.
 //!
-//! x and y have one scale; z has its own, since a swing is often small beside the precession.
+//! x and y have the same scale; z has its own, since a swing is often small compared with the precession.
 
 mod path;
 
@@ -20,19 +20,19 @@ use crate::plot::ink::{self, BLACK, LABEL_PT, TITLE_PT, at, grey, pen};
 use crate::plot::scene::{Color, PageScene, Point, StrokeStyle};
 use nalgebra::Vector3;
 
-/// Height of the box, of the length of its sides.
+/// Height of the box, relative to its sides.
 const TALL: f64 = 0.72;
-/// Distance of the eye from the middle of the box, in the same.
+/// Distance of the eye from the center of the box, relative to its sides.
 const EYE: f64 = 5.0;
-/// The lowest and the highest eye with which both floor and walls are seen, degrees.
+/// Minimum and maximum elevation of the eye at which both floor and walls are visible, degrees.
 const PITCHES_DEG: (f64, f64) = (8.0, 65.0);
-/// Length of a tick, and of the gap between it and its label, pt.
+/// Length of a tick, and the gap between a tick and its label, pt.
 const SPACE_TICK_LENGTH: f64 = 2.5;
 const TICK_GAP: f64 = 2.2;
-/// Between labels and title, pt.
+/// Gap between labels and title, pt.
 const SPACE_TITLE_GAP: f64 = 3.0;
 
-/// z is said to be stretched from this factor on.
+/// Minimum stretch factor of z that the legend mentions.
 const STATED_STRETCH: f64 = 1.1;
 
 /// Lengths of the box's sides.
@@ -40,12 +40,12 @@ const SIZES: [f64; 3] = [1.0, 1.0, TALL];
 
 struct Space {
     view: CameraView,
-    /// What the three sides of the box show.
+    /// Ranges of the three axes.
     ranges: [(f64, f64); 3],
     side_pt: f64,
 }
 
-/// The figure of paths in space; and of one that is solid black, what it is and which stretch of time is not.
+/// Draws the figure of paths in space. If a path is too dense, also returns a time range in which it is not.
 pub(super) fn scene(
     job: &FigureJob<'_>,
     drawn: &[SampledRunNumbers],
@@ -78,7 +78,8 @@ pub(super) fn scene(
     (items, dense)
 }
 
-/// The direction that the first run's file asks for, or the usual one; never so low or so high that a side of the box vanishes.
+/// Returns the camera in the first run's file, or the default one. The elevation is limited so that no side of the box
+/// disappears.
 fn camera(runs: &[FigureRun]) -> Camera {
     let file = runs
         .first()
@@ -104,7 +105,7 @@ fn ranges(drawn: &[SampledRunNumbers], size: &ChartAxis) -> [(f64, f64); 3] {
     [x, y, z]
 }
 
-/// Left, upper, right and lower end of what is drawn, pt.
+/// Returns the bounding box of the scene, pt: left, top, right, bottom.
 fn extent(scene: &PageScene) -> (f64, f64, f64, f64) {
     let sides: [fn(Point) -> f64; 2] = [|p| p.x, |p| p.y];
     let [(left, right), (top, bottom)] = sides.map(|side| {
@@ -115,14 +116,15 @@ fn extent(scene: &PageScene) -> (f64, f64, f64, f64) {
 }
 
 impl Space {
-    /// The space in which the box and its labels are as wide as the page.
+    /// Creates the space, scaled so that box and labels are as wide as the page.
     fn fitted(runs: &[FigureRun], drawn: &[SampledRunNumbers], width_pt: f64) -> Self {
         let mut space = Self {
             view: camera(runs).view(),
             ranges: ranges(drawn, &size::axis(runs, "z_m")),
             side_pt: 0.5 * width_pt,
         };
-        // The labels do not grow with the box: the room that is left over tells how much larger it may be. All paths are in it.
+        // The labels do not grow with the box, so its size is adjusted to the remaining width. The paths are always
+        // inside the box.
         for _ in 0..4 {
             let (left, _, right, _) = extent(&space.draw(&[], &[]));
             let over = right - left - (width_pt - 2.0 * PAGE_EDGE);
@@ -134,7 +136,7 @@ impl Space {
         space
     }
 
-    /// How much longer z is drawn than x and y, where that is to be seen, as markup.
+    /// Returns a remark, as markup, if z has another scale than x and y.
     fn stretched(&self) -> Option<String> {
         let [x, _, z] = self.ranges.map(|(low, high)| high - low);
         let factor = TALL * x / z;
@@ -145,19 +147,19 @@ impl Space {
         is_shorter.then(|| format!("*z* shortened to {} of its length", significant(factor, 2)))
     }
 
-    /// A place in the box: from −1/2 to 1/2 along each side, but for its height.
+    /// Maps a point into the box: from −1/2 to 1/2 along each side, except for the height.
     fn boxed(&self, point: &[f64; 3]) -> Vector3<f64> {
         Vector3::from_fn(|axis, _| SIZES[axis] * (self.share(axis, point[axis]) - 0.5))
     }
 
-    /// Where a place in the box stands on the page, pt.
+    /// Returns the position on the page of a point in the box, pt.
     fn place(&self, boxed: &Vector3<f64>) -> Point {
         let (right, up) = self.view.project(boxed);
         let size = self.side_pt * EYE / (EYE + self.view.depth(boxed));
         at(size * right, -size * up)
     }
 
-    /// The end of an axis that is nearer to the eye.
+    /// Returns the end of an axis that is closer to the eye.
     fn near(&self, axis: usize) -> f64 {
         let mut ahead = Vector3::zeros();
         ahead[axis] = 1.0;
@@ -168,7 +170,7 @@ impl Space {
         }
     }
 
-    /// The box with the paths of `drawn`, each in one of `styles`.
+    /// Draws the box with the paths of `drawn` in `styles`.
     fn draw(&self, drawn: &[SampledRunNumbers], styles: &[SeriesStyle]) -> PageScene {
         let mut scene = PageScene::new(0.0, 0.0, "");
         let edges = [self.edge(0), self.edge(1), self.edge(2)];
@@ -181,12 +183,12 @@ impl Space {
         scene
     }
 
-    /// The ends of the edge along which the axis runs.
+    /// Returns the ends of the edge along which the axis runs.
     fn edge(&self, axis: usize) -> [Vector3<f64>; 2] {
         let (x, y) = (self.near(0), self.near(1));
         let mut foot = Vector3::new(x, y, -0.5 * TALL);
         if axis == 2 {
-            // The one farther to the left of the two uprights between a near and a far side.
+            // Of the two vertical edges between a near and a far side, the left one.
             let [a, b] = [(x, -y), (-x, y)].map(|(x, y)| Vector3::new(x, y, 0.0));
             foot = if self.place(&b).x < self.place(&a).x {
                 b
@@ -201,7 +203,7 @@ impl Space {
         })
     }
 
-    /// Where the value `share` of the way along an edge stands.
+    /// Returns the point at the fraction `share` of an edge.
     fn along(edge: &[Vector3<f64>; 2], share: f64) -> Vector3<f64> {
         edge[0] + (edge[1] - edge[0]) * share
     }
@@ -212,7 +214,7 @@ impl Space {
     }
 
     fn ticks(&self, axis: usize, edge: &[Vector3<f64>; 2]) -> Ticks {
-        /// Between two labels, beside and above each other, pt.
+        /// Minimum distance between two labels, horizontally and vertically, pt.
         const LABEL_DISTANCE: (f64, f64) = (6.0, 6.5);
         let (low, high) = self.ranges[axis];
         let height = ink::height(LABEL_PT);
@@ -226,7 +228,7 @@ impl Space {
                         || (at_a.y - at_b.y).abs() >= height + LABEL_DISTANCE.1
                 })
         });
-        // Labels at a corner would stand beside those of another axis.
+        // Labels at a corner would collide with labels of another axis.
         let (inside, _): (Vec<Tick>, Vec<Tick>) = ticks
             .major
             .iter()
@@ -238,9 +240,9 @@ impl Space {
         ticks
     }
 
-    /// The far sides: their grids, and their outlines.
+    /// Draws the far sides: their grids and outlines.
     fn walls(&self, ticks: &[Ticks; 3], scene: &mut PageScene) {
-        /// Along which sides the grid of each axis runs.
+        /// The sides along which the grid lines of each axis run.
         const ALONG: [[usize; 2]; 3] = [[1, 2], [0, 2], [1, 0]];
         let far = Vector3::new(-self.near(0), -self.near(1), -0.5 * TALL);
         for (axis, along_axis) in ticks.iter().enumerate() {
@@ -267,7 +269,7 @@ impl Space {
         }
     }
 
-    /// An axis with its ticks, labels and title, outside of the box.
+    /// Draws an axis with its ticks, labels and title, outside the box.
     fn axis(&self, axis: usize, edge: &[Vector3<f64>; 2], ticks: &Ticks, scene: &mut PageScene) {
         let ends = edge.map(|end| self.place(&end));
         scene.line(ends, 0.6, BLACK);
@@ -276,7 +278,7 @@ impl Space {
         let mut reach: f64 = 0.0;
         for tick in &ticks.major {
             let foot = self.place(&Self::along(edge, self.share(axis, tick.at)));
-            // As far out as the label needs to be clear of the tick.
+            // The label is moved outward until it is clear of the tick.
             let half = at(0.5 * ink::width(&tick.label, LABEL_PT), 0.5 * height);
             let clear = SPACE_TICK_LENGTH + TICK_GAP + half.x * out.x.abs() + half.y * out.y.abs();
             let [end, middle] = [SPACE_TICK_LENGTH, clear]
@@ -304,7 +306,7 @@ impl Space {
         scene.write(&title, size, base, 0.5);
     }
 
-    /// The direction on the page that leads from an axis out of the box.
+    /// Returns the direction on the page from an axis out of the box.
     fn outwards(&self, axis: usize, edge: &[Vector3<f64>; 2]) -> Point {
         if axis == 2 {
             return at(-1.0, 0.0);
@@ -319,7 +321,7 @@ impl Space {
     }
 }
 
-/// Returns the place across the box from `place` along one axis.
+/// Returns the point opposite to `place` along one axis of the box.
 fn opposite(mut place: Vector3<f64>, axis: usize) -> Vector3<f64> {
     place[axis] = -place[axis];
     place

@@ -1,4 +1,4 @@
-//! The paths in the box: what is near is wide and dark.
+//! The paths in the box. Close lines are wide and dark.
 
 use super::{Space, TALL, round_pen};
 use crate::plot::chart::SeriesStyle;
@@ -11,15 +11,15 @@ use crate::report::figure::job::SampledRunNumbers;
 use nalgebra::Vector3;
 
 const DEPTHS: usize = 6;
-/// Width of the nearest and of the farthest line, pt, and the part of white in the farthest.
+/// Width of the nearest and the farthest line, pt, and the fraction of white in the farthest.
 const WIDTHS: (f64, f64) = (0.95, 0.5);
 const FARTHEST_WHITE: f64 = 0.58;
 
-/// A path, or its shadow on the floor: places on the page and their depths, in pieces.
+/// A path, or its shadow on the floor: points on the page with their depths, in pieces.
 type PathPieces = Vec<Vec<(Point, f64)>>;
 
 impl Space {
-    /// The paths, the farthest parts first, and their shadows behind them.
+    /// Draws the paths, the farthest parts first, with their shadows behind them.
     pub(super) fn paths(
         &self,
         drawn: &[SampledRunNumbers],
@@ -57,7 +57,7 @@ impl Space {
                 })
             })
             .collect();
-        // Runs are drawn first, the first of them last; the exact motion is on top of them.
+        // Runs are drawn first, in reverse order. The exact motion is drawn on top of them.
         let (behind, before): (Vec<_>, Vec<_>) = parted
             .iter()
             .zip(styles)
@@ -82,7 +82,7 @@ impl Space {
     }
 }
 
-/// Draws pieces of that nearness: what is near is wide and dark.
+/// Draws pieces with this nearness. Close pieces are wide and dark.
 fn draw_at(nearness: usize, pieces: &[Vec<Point>], style: &SeriesStyle, scene: &mut PageScene) {
     let pen = style.pen();
     let part = nearness as f64 / (DEPTHS - 1) as f64;
@@ -104,7 +104,8 @@ fn draw(pieces: &[Vec<Point>], pen: &StrokeStyle, style: &SeriesStyle, scene: &m
     }
 }
 
-/// A path's lines by the degree of depth at which they begin: those that follow each other are one piece.
+/// Splits a path's lines by the degree of depth at which they begin. Consecutive lines of the same degree form one
+/// piece.
 fn by_degree(
     path: &[Vec<(Point, f64)>],
     degree: impl Fn(f64) -> usize,
