@@ -1,4 +1,4 @@
-//! The rows and columns of a CSV, and whether one is still what its header says.
+//! The rows and columns of CSVs, and their verification against the run file in their header.
 
 use crate::support::scenarios::{parse, preset};
 use crate::support::words::has;
@@ -36,7 +36,7 @@ fn whole() -> LayoutFile {
     LayoutFile::default()
 }
 
-/// A row for every point.
+/// The layout with a row for every point.
 fn of_points() -> LayoutFile {
     LayoutFile {
         points: true,
@@ -65,7 +65,7 @@ fn refused(bytes: &[u8]) -> String {
     verified(bytes).expect_err("it was verified").to_string()
 }
 
-/// The rows of a CSV, the line of names first.
+/// Returns the rows of a CSV, preceded by the line of column names.
 fn rows(bytes: &[u8]) -> Vec<String> {
     let text = std::str::from_utf8(bytes).unwrap();
     let lines = text.trim_start_matches('\u{feff}').lines();
@@ -86,7 +86,7 @@ fn names(names: &[&str]) -> Option<Vec<String>> {
 }
 
 #[test]
-fn a_cut_csv_has_the_lines_of_the_whole_one() {
+fn a_partial_csv_has_the_lines_of_the_whole_one() {
     let scenario = preset("method-2", &["motion.steps=100"]);
     let all = rows(&csv(&scenario, whole()));
     let cut = |every: u64, from_s, to_s| {
@@ -112,7 +112,7 @@ fn a_cut_csv_has_the_lines_of_the_whole_one() {
 }
 
 #[test]
-fn chosen_columns_are_those_of_the_whole_csv() {
+fn selected_columns_equal_those_of_the_whole_csv() {
     let scenario = edited();
     let whole_rows = rows(&csv(&scenario, whole()));
     let chosen = ["energy_J", "step", "z_m", "segment"];
@@ -170,7 +170,7 @@ fn every_point_has_a_row() {
 }
 
 #[test]
-fn points_of_parts_have_their_parts_names_and_those_of_the_frame_no_spin() {
+fn points_are_named_after_their_parts_and_only_rotor_points_spin() {
     let points = |name: &str| {
         let scenario = preset(name, &["motion.steps=2", "motion.time_step_s=1e-4"]);
         rows(&csv(&scenario, of_points()))
@@ -188,13 +188,13 @@ fn points_of_parts_have_their_parts_names_and_those_of_the_frame_no_spin() {
         })
         .collect()
     };
-    // The wheel's points stand sqrt(3)/2 of its radius off the axle and make 720 turns a minute; the counterweight precesses.
+    // The wheel's points are sqrt(3)/2 of its radius off the axle and turn at 720 rpm; the counterweight only precesses.
     for (point, speed) in [("wheel +x", 7.84), ("counterweight +x", 0.02)] {
         let places = of(point);
         let fast = Vector3::from_column_slice(&places[1][3..]);
         assert!((fast.norm() / speed - 1.0).abs() < 0.05, "{point}: {fast}");
         for axis in 0..3 {
-            // The velocity is that with which the point goes from row to row.
+            // The velocity equals the change of the position between rows.
             let went = (places[2][axis] - places[0][axis]) / 2e-4;
             assert!((went - fast[axis]).abs() < 1e-3 * speed, "{point}: {went}");
         }
@@ -202,7 +202,7 @@ fn points_of_parts_have_their_parts_names_and_those_of_the_frame_no_spin() {
 }
 
 #[test]
-fn what_is_asked_for_stands_above_the_run_file_and_is_read_again() {
+fn the_layout_precedes_the_run_file_and_is_read_back() {
     let file = LayoutFile {
         every: 10.try_into().ok(),
         from_s: Some(1.0),
@@ -228,7 +228,7 @@ fn what_is_asked_for_stands_above_the_run_file_and_is_read_again() {
 }
 
 #[test]
-fn a_layout_that_cannot_be_is_refused_with_what_to_do() {
+fn an_invalid_layout_is_rejected_with_a_remedy() {
     let error = |file: LayoutFile| file.check().unwrap_err().to_string();
     let columns = |list: &[&str], points| LayoutFile {
         columns: names(list),
@@ -262,7 +262,7 @@ fn a_layout_that_cannot_be_is_refused_with_what_to_do() {
 }
 
 #[test]
-fn an_export_of_every_kind_is_the_same() {
+fn exports_of_every_layout_pass_verification() {
     let edited = edited();
     let cut = LayoutFile {
         every: 7.try_into().ok(),
@@ -296,7 +296,7 @@ fn an_export_of_every_kind_is_the_same() {
 
 static GOOD: LazyLock<Vec<u8>> = LazyLock::new(|| csv(&edited(), whole()));
 
-/// Where the rows begin.
+/// Returns the offset of the first row.
 fn first_row(bytes: &[u8]) -> usize {
     let text = std::str::from_utf8(bytes).unwrap();
     text.find("step,t_s").unwrap()
@@ -306,7 +306,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
-    fn one_changed_digit_in_a_row_is_found(place in any::<prop::sample::Index>(), by in 1..10u8) {
+    fn one_changed_digit_in_a_row_is_detected(place in any::<prop::sample::Index>(), by in 1..10u8) {
         let mut bytes = GOOD.clone();
         let begin = first_row(&bytes);
         let digits: Vec<usize> = (begin..bytes.len()).filter(|&at| bytes[at].is_ascii_digit()).collect();
@@ -317,7 +317,7 @@ proptest! {
     }
 
     #[test]
-    fn a_file_that_is_cut_off_is_not_the_same(place in any::<prop::sample::Index>()) {
+    fn a_truncated_file_does_not_verify(place in any::<prop::sample::Index>()) {
         let begin = first_row(&GOOD);
         let end = begin + place.index(GOOD.len() - begin);
         let result = verified(&GOOD[..end]);
@@ -326,7 +326,7 @@ proptest! {
 }
 
 #[test]
-fn lines_that_are_not_the_runs_are_found() {
+fn added_or_missing_lines_are_detected() {
     let text = String::from_utf8(GOOD.clone()).unwrap();
     let lines: Vec<&str> = text.lines().collect();
     let names = lines.iter().position(|line| line.starts_with("step,"));
@@ -348,7 +348,7 @@ fn lines_that_are_not_the_runs_are_found() {
     told(&joined(&lines[..at]), "it is cut off");
     let uneven = text.replace(lines[at], &format!("{},7", lines[at]));
     told(uneven.as_bytes(), " is \"29,");
-    // a byte-order mark belongs to the beginning of a file
+    // a byte-order mark is valid only at the beginning of a file
     difference(text.replace("\n40,", "\n\u{feff}40,").as_bytes());
     let unended = difference(text.trim_end().as_bytes());
     assert!(unended.to_string().contains("is cut off before its end"));
@@ -356,7 +356,7 @@ fn lines_that_are_not_the_runs_are_found() {
 }
 
 #[test]
-fn an_edited_header_is_found_by_what_it_changes() {
+fn an_edited_header_is_detected_by_its_effect() {
     let text = String::from_utf8(GOOD.clone()).unwrap();
     for (old, new) in [
         ("radius_m = 0.8", "radius_m = 0.81"),
@@ -382,7 +382,7 @@ fn an_edited_header_is_found_by_what_it_changes() {
 }
 
 #[test]
-fn what_cannot_be_computed_again_is_refused_with_the_reason() {
+fn files_that_cannot_be_recomputed_are_rejected_with_a_reason() {
     let text = String::from_utf8(GOOD.clone()).unwrap();
     let body = &text[first_row(text.as_bytes())..];
     for (bytes, words) in [
@@ -413,7 +413,7 @@ fn what_cannot_be_computed_again_is_refused_with_the_reason() {
 }
 
 #[test]
-fn a_run_that_ends_early_is_verified_up_to_there() {
+fn a_run_that_ends_early_is_verified_up_to_its_end() {
     let sets = [
         "motion.scheme=rk4",
         "motion.time_step_s=5",
@@ -429,7 +429,7 @@ fn a_run_that_ends_early_is_verified_up_to_there() {
 }
 
 #[test]
-fn who_stops_it_is_obeyed() {
+fn verification_can_be_stopped() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.csv");
     let scenario = preset("method-2", &["motion.steps=20000"]);
@@ -443,7 +443,7 @@ fn who_stops_it_is_obeyed() {
 }
 
 #[test]
-fn the_errors_of_a_comparison_are_computed_again() {
+fn the_errors_of_a_comparison_are_recomputed() {
     let scenario = preset("cusps", &["motion.steps=200"]);
     let schemes = ["report", "rk4"].map(|name| SchemeInfo::find(name).unwrap());
     let table = compare::compare(&scenario, &schemes, &[0.002, 0.001], |_, _| {

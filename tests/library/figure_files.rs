@@ -1,4 +1,4 @@
-//! A page as SVG, PDF and PNG: what the files hold, that hostile words cannot break them, and that the three agree.
+//! Pages as SVG, PDF and PNG: the contents of the files, their agreement, and hostile text.
 
 use crate::support::words::{has, has_all};
 use gyrolab::engine::text::checksum::crc32;
@@ -12,7 +12,7 @@ const HOSTILE: &str =
     "</title><script>x</script> & \"q\" 'a' ]]> \u{0}\u{1b}[2J\u{202e}\u{ffff} 速い \\) (";
 const RED: Color = Color([200, 30, 30]);
 
-/// A page of 100 pt x 60 pt: a red disk, a dashed line that is cut off, a black square, a label.
+/// A page of 100 pt x 60 pt with a red disk, a clipped dashed line, a black square and a label.
 fn page(title: &str, words: &str) -> PageScene {
     let mut scene = PageScene::new(100.0, 60.0, title);
     scene.fill(circle(at(20.0, 20.0), 10.0), RED);
@@ -36,7 +36,7 @@ fn svg(scene: &PageScene) -> String {
     String::from_utf8(write(scene, PageFormat::Svg, None).unwrap()).unwrap()
 }
 
-/// The words of a PDF's drawing, not compressed.
+/// Returns the uncompressed drawing operators of a PDF.
 fn content(pdf: &[u8]) -> String {
     let find = |what: &[u8], from: usize| {
         let mut parts = pdf[from..].windows(what.len());
@@ -51,7 +51,7 @@ fn content(pdf: &[u8]) -> String {
 struct Picture {
     width: usize,
     height: usize,
-    /// Red, green and blue of each dot.
+    /// Red, green and blue of each pixel.
     dots: Vec<[u8; 3]>,
     dots_per_metre: u32,
 }
@@ -76,7 +76,7 @@ impl Picture {
         }
     }
 
-    /// The dot at a place on a page that is 100 pt wide.
+    /// Returns the pixel at a position on a page that is 100 pt wide.
     fn at(&self, x_pt: f64, y_pt: f64) -> [u8; 3] {
         let scale = 600.0 / 72.0;
         self.dots[(y_pt * scale) as usize * self.width + (x_pt * scale) as usize]
@@ -84,7 +84,7 @@ impl Picture {
 }
 
 #[test]
-fn svg_has_a_size_on_paper_a_title_and_the_words_and_nothing_that_it_would_have_to_look_for() {
+fn an_svg_has_a_paper_size_a_title_text_and_no_external_references() {
     let text = svg(&page("A title", "ab"));
     let document = roxmltree::Document::parse(&text).unwrap();
     let root = document.root_element();
@@ -130,7 +130,7 @@ fn svg_has_a_size_on_paper_a_title_and_the_words_and_nothing_that_it_would_have_
     assert!(red.starts_with("M30 20c0 5.52"), "{red}");
 }
 
-/// The places of a path in SVG, as a reader of it computes them.
+/// Returns the points of an SVG path as computed by a reader.
 fn places(data: &str) -> Vec<(f64, f64)> {
     let (mut at, mut start) = ((0.0, 0.0), (0.0, 0.0));
     let mut places = vec![];
@@ -174,7 +174,7 @@ fn places(data: &str) -> Vec<(f64, f64)> {
 }
 
 #[test]
-fn the_places_in_svg_are_those_of_the_page() {
+fn svg_coordinates_equal_those_of_the_page() {
     let corners = [
         at(0.0, 0.0),
         at(10.004, 0.0),
@@ -207,7 +207,7 @@ fn the_places_in_svg_are_those_of_the_page() {
 }
 
 #[test]
-fn pdf_strokes_and_cuts_off_and_has_its_own_font() {
+fn a_pdf_strokes_clips_and_embeds_its_font() {
     let pdf = write(&page("A title", "ab"), PageFormat::Pdf, None).unwrap();
     let text = String::from_utf8_lossy(&pdf);
     assert!(text.starts_with("%PDF-1.4"));
@@ -227,7 +227,7 @@ fn pdf_strokes_and_cuts_off_and_has_its_own_font() {
     );
     has(&drawing, "70 10 m\n80 10 l\n80 20 l\n70 20 l\nh\nf\n");
     has_all(&drawing, ["/Span <<", "/ActualText (ab)"]);
-    // Two letters of a font that is in the file, upright on a page whose y runs down.
+    // Two letters of an embedded font, upright on a page whose y axis points down.
     let shown = "/R 8 Tf\n1 0 0 -1 ";
     assert!(drawing.contains(shown), "{drawing}");
     has_all(&text, ["/CIDFontType2", "/FontFile2", "/ToUnicode"]);
@@ -238,7 +238,7 @@ fn pdf_strokes_and_cuts_off_and_has_its_own_font() {
 }
 
 #[test]
-fn png_has_the_dots_of_the_page() {
+fn a_png_has_the_pixels_of_the_page() {
     let picture = Picture::of(&write(&page("A title", "ab"), PageFormat::Png, None).unwrap());
     // 100 pt x 60 pt at 600 dots an inch.
     assert_eq!((picture.width, picture.height), (834, 500));
@@ -274,7 +274,7 @@ fn png_has_the_dots_of_the_page() {
 }
 
 #[test]
-fn words_cannot_break_a_file() {
+fn hostile_text_cannot_break_a_file() {
     let long = "<".repeat(100_000);
     for hostile in [HOSTILE, &long, "", "\\\\((("] {
         let scene = page(hostile, &hostile.chars().take(500).collect::<String>());
@@ -300,10 +300,10 @@ fn words_cannot_break_a_file() {
     }
 }
 
-/// The sums were computed on one machine; all others must come to them. What packs a PDF's drawing and a PNG's dots may
-/// change with its crate, what they hold may not.
+/// The checksums were computed on one machine; all others must reproduce them. The compression of PDF and PNG may change
+/// with its crate, so only the uncompressed contents count.
 #[test]
-fn a_file_is_the_same_each_time_and_everywhere() {
+fn files_are_identical_on_every_machine() {
     let known = [
         (PageFormat::Svg, 2_219_561_319),
         (PageFormat::Pdf, 1_146_029_640),
@@ -327,7 +327,7 @@ fn a_file_is_the_same_each_time_and_everywhere() {
 }
 
 #[test]
-fn dashes_of_an_odd_number_and_of_no_length_are_drawn() {
+fn dash_patterns_of_odd_length_and_zero_length_are_drawn() {
     for dash_pt in [vec![5.0], vec![5.0, 0.0, 5.0], vec![0.0, 0.0], vec![0.001]] {
         let mut scene = PageScene::new(100.0, 20.0, "");
         let dashed = StrokeStyle {
@@ -344,7 +344,7 @@ fn dashes_of_an_odd_number_and_of_no_length_are_drawn() {
 }
 
 #[test]
-fn empty_paths_and_points_alone_break_nothing() {
+fn empty_paths_and_single_points_are_drawn_without_errors() {
     let mut scene = PageScene::new(10.0, 10.0, "");
     let alone: [Point; 1] = [at(5.0, 5.0)];
     for path in [

@@ -1,4 +1,4 @@
-//! Figures of runs and of tables: what stands on the page, and where.
+//! Figures of runs and tables: the contents of the page and their positions.
 
 use crate::support::scenarios::preset;
 use crate::support::words::has;
@@ -22,9 +22,9 @@ use std::fs;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-/// Of a page of 86 mm, pt.
+/// Width of a page of 86 mm, pt.
 const COLUMN_PT: f64 = 86.0 * 72.0 / 25.4;
-/// So many steps of a preset are enough for its figure in a test.
+/// Number of steps of a preset that is enough for its figure in a test.
 const STEPS: u64 = 250;
 
 fn scenario(name: &str, set: &[&str]) -> Arc<Scenario> {
@@ -45,7 +45,7 @@ fn spec(kind: &str) -> FigureSpec {
     }
 }
 
-/// A figure of this kind with the exact motion.
+/// A figure of the given kind with the exact motion.
 fn with_exact(kind: &str) -> FigureSpec {
     FigureSpec {
         exact: true,
@@ -73,7 +73,7 @@ fn refusal(runs: &[FigureRun], spec: &FigureSpec) -> String {
     source(runs, spec).draw(go_on).unwrap_err()
 }
 
-/// All that is said of a figure.
+/// Returns all remarks on a figure.
 fn told(figure: &DrawnFigure) -> Vec<String> {
     figure.told().map(|told| told.to_string()).collect()
 }
@@ -86,14 +86,14 @@ pub(crate) fn most(numbers: impl Iterator<Item = f64>) -> f64 {
     numbers.fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// Left, upper, right and lower end of all lines in a panel.
+/// Returns the left, upper, right and lower end of all lines in a panel.
 fn extent_of_lines(scene: &PageScene, panel: [Point; 2]) -> [f64; 4] {
     let ends: Vec<_> = lines(scene, panel).into_iter().map(extent).collect();
     let side = |side: usize| ends.iter().map(move |end| end[side]);
     [least(side(0)), least(side(1)), most(side(2)), most(side(3))]
 }
 
-/// The place of the traced point after each step of the run.
+/// Returns the position of the traced point after each step of the run.
 fn places(run: &FigureRun) -> Vec<Vector3<f64>> {
     let mut simulation = Simulation::new(Arc::clone(&run.scenario));
     let mut seen = vec![*simulation.now().position()];
@@ -116,7 +116,7 @@ pub(crate) fn says(scene: &PageScene, wanted: &[&str]) {
     }
 }
 
-/// Left, upper, right and lower end of what an item shows.
+/// Returns the left, upper, right and lower end of the visible part of an item.
 fn extent(item: &SceneItem) -> [f64; 4] {
     let x = || item.path.points().map(|p| p.x);
     let y = || item.path.points().map(|p| p.y);
@@ -132,7 +132,7 @@ fn extent(item: &SceneItem) -> [f64; 4] {
     }
 }
 
-/// Nothing leaves the page, and no two words stand upon each other.
+/// Checks that nothing leaves the page and no labels overlap.
 pub(crate) fn is_tidy(scene: &PageScene) -> Result<(), String> {
     let mut texts: Vec<(&str, [f64; 4])> = Vec::new();
     for item in &scene.items {
@@ -162,7 +162,7 @@ pub(crate) fn is_tidy(scene: &PageScene) -> Result<(), String> {
     Ok(())
 }
 
-/// The frames in which something is cut off: one a panel.
+/// Returns the clip rectangles: one per panel.
 fn panels(scene: &PageScene) -> Vec<[Point; 2]> {
     let mut clips: Vec<[Point; 2]> = Vec::new();
     for clip in scene.items.iter().filter_map(|item| item.clip) {
@@ -173,14 +173,14 @@ fn panels(scene: &PageScene) -> Vec<[Point; 2]> {
     clips
 }
 
-/// The lines in a panel.
+/// Returns the lines in a panel.
 fn lines(scene: &PageScene, panel: [Point; 2]) -> Vec<&SceneItem> {
     let is_line =
         |item: &&SceneItem| item.clip == Some(panel) && matches!(item.paint, Paint::Stroke(_));
     scene.items.iter().filter(is_line).collect()
 }
 
-/// The dashed lines of the exact motion in panels, as places among the items.
+/// Returns the indices of the dashed lines of the exact motion.
 fn exact_lines(scene: &PageScene) -> Vec<usize> {
     let is_exact = |item: &SceneItem| match &item.paint {
         Paint::Stroke(pen) => {
@@ -194,11 +194,11 @@ fn exact_lines(scene: &PageScene) -> Vec<usize> {
 }
 
 #[test]
-fn every_preset_has_a_tidy_figure_of_every_kind() {
+fn every_preset_has_a_figure_of_every_kind_without_overlaps() {
     for name in PRESETS.iter().map(|preset| preset.name) {
         let steps = scenario(name, &[]).steps.min(STEPS);
         let runs = [run(name, &[&format!("motion.steps={steps}")])];
-        // Residuals are of measured data.
+        // Residuals need measured data.
         let kinds = FIGURE_KIND_NAMES
             .into_iter()
             .filter(|kind| *kind != RESIDUALS);
@@ -252,13 +252,13 @@ fn traces_show_x_y_and_z_with_units_and_every_extreme() {
 }
 
 #[test]
-fn a_path_from_above_is_true_to_scale() {
+fn a_path_from_above_has_equal_scales() {
     let runs = [run("cusps", &[])];
     let figure = drawn(&runs, &spec("above"));
     says(&figure.scene, &["x (m)", "y (m)"]);
     let panels = panels(&figure.scene);
     assert_eq!(panels.len(), 1);
-    // The scale has the origin on it.
+    // The axes include the origin.
     let mut seen = places(&runs[0]);
     seen[0] = Vector3::zeros();
     let [wide, high] = [0, 1].map(|axis| {
@@ -287,7 +287,7 @@ fn a_path_in_space_has_three_axes_and_a_shadow() {
 }
 
 #[test]
-fn the_exact_motion_is_dashed_and_on_top_of_every_run() {
+fn the_exact_motion_is_dashed_and_drawn_over_every_run() {
     for (preset, step) in [("wobble-push", "0.1"), ("cusps", "0.01")] {
         let set = format!("motion.time_step_s={step}");
         let runs = [run(preset, &["motion.steps=400", &set])];
@@ -314,7 +314,7 @@ fn the_exact_motion_is_dashed_and_on_top_of_every_run() {
 }
 
 #[test]
-fn runs_that_coincide_are_one_line_with_both_names() {
+fn coinciding_runs_are_one_line_with_both_names() {
     let [rk4, strang] = ["rk4", "strang"].map(|scheme| {
         let set = format!("motion.scheme=\"{scheme}\"");
         run("cusps", &["motion.steps=500", &set])
@@ -328,7 +328,7 @@ fn runs_that_coincide_are_one_line_with_both_names() {
 }
 
 #[test]
-fn runs_of_one_preset_are_named_by_the_settings_that_differ() {
+fn runs_of_one_preset_are_named_after_differing_settings() {
     let tilted = |tilt: &str| {
         run(
             "cusps",
@@ -338,13 +338,13 @@ fn runs_of_one_preset_are_named_by_the_settings_that_differ() {
     let runs = [tilted("20"), tilted("30"), tilted("40")];
     let scene = drawn(&runs, &spec("tilt_deg")).scene;
     says(&scene, &["θ₀ = 20°", "θ₀ = 30°", "θ₀ = 40°"]);
-    // Of runs without any difference the names are those that the user typed.
+    // Runs without any difference have the names that the user typed.
     let same = [tilted("20"), tilted("20")];
     says(&drawn(&same, &spec("tilt_deg")).scene, &["cusps"]);
 }
 
 #[test]
-fn the_time_of_a_push_is_shaded_and_named_once() {
+fn the_duration_of_a_push_is_shaded_and_labeled_once() {
     let push = |preset: &str| {
         let scene = drawn(&[run(preset, &["motion.steps=400"])], &with_exact("traces")).scene;
         words(&scene).iter().filter(|word| **word == "push").count()
@@ -354,7 +354,7 @@ fn the_time_of_a_push_is_shaded_and_named_once() {
 }
 
 #[test]
-fn a_path_of_few_steps_a_turn_is_drawn_as_points() {
+fn a_path_with_few_steps_per_turn_is_drawn_as_points() {
     for kind in ["above", "3d"] {
         let runs = [run("method-1", &["motion.steps=200"])];
         let coarse = drawn(&runs, &with_exact(kind));
@@ -362,7 +362,7 @@ fn a_path_of_few_steps_a_turn_is_drawn_as_points() {
         says(&coarse.scene, &[name, "exact motion"]);
         let words = "about 10 time steps per turn";
         has(told(&coarse).join("; "), words);
-        // Nothing is drawn from one step to the next.
+        // Nothing is drawn between steps.
         let is_dot = |item: &&SceneItem| matches!(&item.paint, Paint::Stroke(pen) if pen.width_pt >= 0.5 && pen.dash_pt.is_empty());
         let dots = coarse
             .scene
@@ -379,7 +379,7 @@ fn a_path_of_few_steps_a_turn_is_drawn_as_points() {
 }
 
 #[test]
-fn the_circles_of_the_exact_motion_have_a_name_that_hides_none_of_them() {
+fn the_label_of_the_limit_circles_covers_none_of_them() {
     for preset in ["method-1", "cusps"] {
         let runs = [run(preset, &["motion.steps=300"])];
         let figure = drawn(&runs, &with_exact("above"));
@@ -428,13 +428,13 @@ fn a_run_of_the_exact_motion_is_not_drawn_twice() {
         panic!("{:?}", told(&figure))
     };
     has(only, "exact motion itself");
-    // Beside another scheme it is the exact motion of both, and has its own curve.
+    // With another scheme, it is the exact motion of both runs and has its own curve.
     let both = drawn(&[run("cusps", &[]), exact], &asked);
     assert_eq!(exact_lines(&both.scene).len(), 1);
 }
 
 #[test]
-fn z_says_in_space_how_far_it_is_stretched() {
+fn the_3d_figure_states_the_stretch_of_z() {
     let stretched = |preset: &str| {
         let figure = drawn(&[run(preset, &[])], &spec("3d"));
         is_tidy(&figure.scene).unwrap();
@@ -447,7 +447,7 @@ fn z_says_in_space_how_far_it_is_stretched() {
 }
 
 #[test]
-fn runs_beside_each_other_are_named_by_what_differs() {
+fn several_runs_are_named_after_their_differences() {
     let figure = |runs: &[FigureRun]| drawn(runs, &spec("z_m")).scene;
     let cusps = |set: &str| run("cusps", &[set, "motion.steps=300"]);
     let schemes = ["report", "rk4"].map(|name| cusps(&format!("motion.scheme={name}")));
@@ -467,7 +467,7 @@ fn runs_beside_each_other_are_named_by_what_differs() {
 }
 
 #[test]
-fn a_stretch_of_time_is_cut_out_and_one_beyond_the_run_is_refused() {
+fn a_time_range_is_drawn_and_one_outside_the_run_is_rejected() {
     let runs = [run("wobble-push", &[])];
     let part = |from_s: f64, to_s: Option<f64>| FigureSpec {
         from_s,
@@ -483,7 +483,7 @@ fn a_stretch_of_time_is_cut_out_and_one_beyond_the_run_is_refused() {
         (230.0, None, "230 s"),
         (20.0, Some(10.0), "--to 10"),
         (10.0, Some(10.0), "--to 10"),
-        // Between two steps there is nothing to draw.
+        // A range between two steps contains nothing to draw.
         (0.01, Some(0.02), "no step"),
     ] {
         has(refusal(&runs, &part(from_s, to_s)), words);
@@ -507,9 +507,9 @@ fn a_constant_curve_has_an_axis_with_room() {
     assert!(words(&figure.scene).len() > 6);
 }
 
-/// The axle of this wheel lies level: of z there is nothing but the rounding of a zero.
+/// The axle of this wheel is level, so z is zero up to rounding.
 #[test]
-fn rounding_is_drawn_as_a_flat_line() {
+fn rounding_noise_is_drawn_as_a_flat_line() {
     let runs = [run("heidelberg", &["motion.steps=2000"])];
     for kind in ["z_m", "traces", "3d"] {
         let figure = drawn(&runs, &spec(kind));
@@ -530,7 +530,7 @@ fn rounding_is_drawn_as_a_flat_line() {
 }
 
 #[test]
-fn a_black_figure_proposes_a_stretch_that_is_not() {
+fn an_unresolved_figure_suggests_a_time_range_that_is_resolved() {
     for (name, kind) in [
         ("method-1", "traces"),
         ("method-2-slow", "3d"),
@@ -567,7 +567,7 @@ fn a_black_figure_proposes_a_stretch_that_is_not() {
 }
 
 #[test]
-fn curves_that_are_not_told_apart_are_bands_beside_a_magnified_stretch() {
+fn indistinguishable_curves_are_bands_next_to_a_magnified_range() {
     let runs = [run("method-1", &[])];
     let scene = drawn(&runs, &with_exact("traces")).scene;
     is_tidy(&scene).unwrap();
@@ -580,7 +580,7 @@ fn curves_that_are_not_told_apart_are_bands_beside_a_magnified_stretch() {
     assert_eq!(panels.len(), 6);
     let seen = places(&runs[0]);
     for (axis, panel) in panels[..3].iter().enumerate() {
-        // The edges of the band are the extremes, however long it is.
+        // The edges of the band are the extremes at any length.
         let bands: Vec<_> = scene
             .items
             .iter()
@@ -593,7 +593,7 @@ fn curves_that_are_not_told_apart_are_bands_beside_a_magnified_stretch() {
         let is_whole = (bottom - top) / (panel[1].y - panel[0].y);
         let share = (most(values()) - least(values())) / (high - low);
         assert!((is_whole / share - 1.0).abs() < 0.01, "{is_whole} {share}");
-        // Those of the stretch have the same axis and more than a few points.
+        // Lines of the magnified range have the same axis and more than a few points.
         let beside = panels[axis + 3];
         assert_eq!((beside[0].y, beside[1].y), (panel[0].y, panel[1].y));
         let points = lines(&scene, beside);
@@ -602,17 +602,17 @@ fn curves_that_are_not_told_apart_are_bands_beside_a_magnified_stretch() {
 }
 
 #[test]
-fn the_exact_motion_between_its_steps_is_drawn_too() {
+fn the_exact_motion_is_drawn_between_its_steps() {
     let set = ["motion.scheme=exact", "motion.steps=2300"];
     let figure = drawn(&[run("method-2", &set)], &spec("tilt_deg"));
-    // Its nutation of 0.0201 s is no swing of 3.85 s.
+    // Its nutation of 0.0201 s must not appear as a swing of 3.85 s.
     let told = told(&figure).join("; ");
     has(told, "about 11");
     assert!(figure.dense.unwrap().to_s <= 0.5);
 }
 
 #[test]
-fn words_and_axes_are_those_that_were_asked_for() {
+fn labels_and_axes_can_be_chosen() {
     let runs = [
         run("cusps", &["motion.steps=300"]),
         run("loops", &["motion.steps=300"]),
@@ -668,7 +668,7 @@ fn words_and_axes_are_those_that_were_asked_for() {
 }
 
 #[test]
-fn a_run_that_is_not_to_be_believed_is_told() {
+fn figures_warn_about_unreliable_runs() {
     let runs = [run("wobble-push", &[]), run("cusps", &[])];
     for asked in [spec("traces"), spec("above"), with_exact("tilt_deg")] {
         let told = told(&drawn(&runs, &asked));
@@ -682,7 +682,7 @@ fn a_run_that_is_not_to_be_believed_is_told() {
 }
 
 #[test]
-fn lines_between_too_few_steps_of_a_nutation_are_told() {
+fn figures_warn_about_too_few_steps_per_nutation() {
     let told = |time_step: &str, kind: &str| {
         let set = [time_step, "motion.steps=500", "motion.scheme=exact"];
         told(&drawn(&[run("fast-top", &set)], &spec(kind)))
@@ -695,12 +695,12 @@ fn lines_between_too_few_steps_of_a_nutation_are_told() {
     let only = few("motion.time_step_s=0.02", "tilt_deg,step").unwrap();
     has(only, "; a time step of 0.002 s would show the nutation");
     assert_eq!(few("motion.time_step_s=0.001", "tilt_deg,step"), None);
-    // The exact motion is known between its steps: but for their number, its lines show the nutation.
+    // The exact motion is known between its steps, so its curves show the nutation, except the curve of `step`.
     assert_eq!(few("motion.time_step_s=0.02", "tilt_deg"), None);
 }
 
 #[test]
-fn twelve_curves_are_told_apart_and_thirteen_refused() {
+fn twelve_curves_are_distinct_and_thirteen_are_rejected() {
     let set = |tilt: usize| {
         run(
             "cusps",
@@ -730,8 +730,8 @@ fn twelve_curves_are_told_apart_and_thirteen_refused() {
 }
 
 #[test]
-fn an_error_in_the_last_digits_is_drawn_flat() {
-    // A steady precession keeps its tilt; the scheme changes it in the tenth digit.
+fn an_error_in_the_last_digits_is_drawn_as_a_flat_line() {
+    // A steady precession keeps its tilt; the scheme changes only its tenth digit.
     let runs = [run("steady-slow", &[])];
     for kind in ["tilt_deg", "3d", "traces"] {
         let figure = drawn(&runs, &spec(kind));
@@ -741,7 +741,7 @@ fn an_error_in_the_last_digits_is_drawn_flat() {
 }
 
 #[test]
-fn the_exact_motion_is_a_smooth_curve_beside_few_steps() {
+fn the_exact_motion_is_smooth_even_with_few_steps() {
     let asked = FigureSpec {
         from_s: 0.5,
         to_s: Some(0.52),
@@ -751,13 +751,13 @@ fn the_exact_motion_is_a_smooth_curve_beside_few_steps() {
     let exact = exact_lines(&figure.scene)
         .into_iter()
         .map(|index| &figure.scene.items[index]);
-    // 0.02 s are two nutations, of 20 steps.
+    // 0.02 s are two nutations with 20 steps in all.
     let points: usize = exact.map(|line| line.path.points().count()).sum();
     assert!(points > 200, "{points}");
 }
 
 #[test]
-fn figures_that_are_drawn_together_are_those_drawn_alone() {
+fn figures_drawn_together_equal_those_drawn_alone() {
     let runs = [run("wobble-push", &[]), run("method-2", &[])];
     let part = FigureSpec {
         to_s: Some(20.0),
@@ -773,7 +773,7 @@ fn figures_that_are_drawn_together_are_those_drawn_alone() {
     })
     .unwrap()
     .unwrap();
-    // Each run once for the whole of it, and once for its beginning.
+    // Each run is played once in full and once for its beginning.
     assert!(ends <= 4, "{ends}");
     assert_eq!(together.len(), sources.len());
     for (figure, spec) in together.iter().zip(&specs) {
@@ -784,13 +784,13 @@ fn figures_that_are_drawn_together_are_those_drawn_alone() {
 }
 
 #[test]
-fn a_run_that_breaks_is_drawn_up_to_there() {
+fn a_run_that_breaks_down_is_drawn_up_to_that_step() {
     let push = "push.0={point=\"top\", force_N=[1e300,0,0], first_step=25, steps=1}";
     let figure = drawn(&[run("method-2", &[push])], &spec("traces"));
     let broke = figure.broke.unwrap();
     assert!(broke.contains("no longer finite at step 25"), "{broke}");
     says(&figure.scene, &["x (m)", "2.0"]);
-    // Where it breaks before the stretch that is asked for, there is no picture.
+    // If it breaks before the requested range, there is no figure.
     let late = FigureSpec {
         from_s: 10.0,
         ..spec("traces")
@@ -799,7 +799,7 @@ fn a_run_that_breaks_is_drawn_up_to_there() {
     assert!(refusal.contains("step 25"), "{refusal}");
 }
 
-/// What a recorder of traces, tilt and path has written down of `run`.
+/// Returns the samples of `run` that a recorder of traces, tilt and path has stored.
 fn recorded(run: &FigureRun) -> SampledRun {
     let kinds = [FigureKind::traces(), FigureKind::named("tilt_deg").unwrap()];
     let wanted = SampleRequest {
@@ -825,7 +825,7 @@ fn recorded(run: &FigureRun) -> SampledRun {
 }
 
 #[test]
-fn what_was_recorded_of_a_run_is_not_played_again() {
+fn recorded_columns_are_not_recomputed() {
     let breaks = "push.0={point=\"top\", force_N=[1e300,0,0], first_step=25, steps=1}";
     for (name, set, end_s) in [
         ("wobble-push", "motion.steps=250", 25.0),
@@ -836,7 +836,7 @@ fn what_was_recorded_of_a_run_is_not_played_again() {
             recorded: Some(recorded(&runs[0])),
             said: None,
         };
-        // In another order than they were recorded, to the end and to the end by its time.
+        // In another order than recorded, to the end and to the time of the end.
         for (kind, to_s) in [
             ("tilt_deg,z_m", None),
             ("above", None),
@@ -854,7 +854,7 @@ fn what_was_recorded_of_a_run_is_not_played_again() {
             assert_eq!(figures.unwrap().unwrap()[0].scene, alone.scene, "{kind}");
             assert_eq!(calls, 0, "{name}: {kind} was played");
         }
-        // What was not recorded is played.
+        // Columns that were not recorded are computed.
         let begins_later = FigureSpec {
             from_s: 1.0,
             ..spec("z_m")
@@ -869,7 +869,7 @@ fn what_was_recorded_of_a_run_is_not_played_again() {
             let alone = drawn(&runs, &asked);
             assert_eq!(figures.unwrap().unwrap()[0].scene, alone.scene, "{name}");
         }
-        // Of two runs nobody knows which of them it was.
+        // With two runs, the recording could belong to either.
         let two = [run("method-2", &["motion.steps=250"]), runs[0].clone()];
         let together = of_runs::figures(&[source(&two, &spec("z_m"))], &known, go_on);
         let alone = drawn(&two, &spec("z_m"));
@@ -878,7 +878,7 @@ fn what_was_recorded_of_a_run_is_not_played_again() {
 }
 
 #[test]
-fn a_watcher_can_stop_it() {
+fn drawing_can_be_stopped() {
     let long = [run("method-2", &["motion.steps=20000"])];
     let figure = source(&long, &spec("traces")).draw(|_, _| ControlFlow::Break(()));
     assert!(figure.is_ok_and(|figure| figure.is_none()));
@@ -905,7 +905,7 @@ exact,0.0125,80,0,1e-1,n/a,1e-16
 ";
 
 #[test]
-fn a_comparison_shows_its_slope() {
+fn the_figure_of_a_comparison_shows_the_slope() {
     let chart =
         of_table::chart(&table(COMPARISON), &TableView::of_columns(&[], COLUMN_PT)).unwrap();
     let scene = chart.scene();
@@ -915,7 +915,7 @@ fn a_comparison_shows_its_slope() {
     says(&scene, &["rk4, slope 4", "exact"]);
     let told = of_table::warning(&table(COMPARISON), &chart).unwrap();
     assert!(told.starts_with("2 of 8 values have no point: "), "{told}");
-    // Each column by itself.
+    // Each column alone.
     let other = of_table::chart(
         &table(COMPARISON),
         &TableView::of_columns(&["energy_drift"], COLUMN_PT),
@@ -923,7 +923,7 @@ fn a_comparison_shows_its_slope() {
     .unwrap();
     assert_eq!(of_table::warning(&table(COMPARISON), &other), None);
     says(&other.scene(), &["relative energy drift"]);
-    // A scheme without any error has no place on a logarithmic axis.
+    // A scheme without any error has no point on a logarithmic axis.
     let none = COMPARISON
         .replace("3e-15", "0")
         .replace("4e-15", "0")
@@ -942,7 +942,7 @@ fn a_comparison_shows_its_slope() {
 }
 
 #[test]
-fn a_run_is_no_table() {
+fn a_run_is_not_read_as_a_table() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("run.csv");
     fs::write(&file, "# title = \"x\"\nstep,t_s,x_m\n0,0,0\n").unwrap();
@@ -968,7 +968,7 @@ fn value() -> impl Strategy<Value = f64> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
     #[test]
-    fn any_numbers_have_a_tidy_page(
+    fn charts_of_any_numbers_have_no_overlaps(
         points in prop::collection::vec([value(), value()], 0..40),
         errors in prop::collection::vec(value(), 0..40),
         logs in any::<(bool, bool)>(),

@@ -1,4 +1,4 @@
-//! Keys, words and values are found by typing: the help, and the filter of the values.
+//! Search in the help, and the filter of the values pane.
 
 use crate::support::stage::{LARGE, SMALL, Stage};
 use gyrolab::lab::{LabRequest, Mode};
@@ -15,7 +15,7 @@ fn open(size: Rect) -> Stage {
 }
 
 #[test]
-fn the_help_does_the_entry_that_is_found() {
+fn enter_in_the_help_executes_the_found_entry() {
     let mut stage = open(SMALL);
     let step = stage.step();
     stage.press("?/one time step forward");
@@ -38,7 +38,7 @@ fn the_help_does_the_entry_that_is_found() {
 }
 
 #[test]
-fn the_help_finds_how_curves_are_drawn_and_the_colors() {
+fn the_help_finds_line_styles_and_colors() {
     for word in ["dashed", "dotted", "light", "dark"] {
         let mut stage = open(SMALL);
         stage.press(&format!("?{word}"));
@@ -47,7 +47,7 @@ fn the_help_finds_how_curves_are_drawn_and_the_colors() {
 }
 
 #[test]
-fn letters_of_the_help_are_typed_and_esc_clears_them_first() {
+fn letters_in_the_help_are_typed_and_esc_first_clears_them() {
     let mut stage = open(SMALL);
     stage.press("?").shows("help: type to search").shows("►");
     stage.press("qkj").shows("help: qkj_ (0)");
@@ -59,7 +59,7 @@ fn letters_of_the_help_are_typed_and_esc_clears_them_first() {
 }
 
 #[test]
-fn ctrl_u_takes_away_what_is_searched_for() {
+fn ctrl_u_clears_the_search() {
     let mut stage = open(SMALL);
     stage.press("?qkj").shows("help: qkj_ (0)");
     stage.key(Key::Ctrl('u'));
@@ -78,7 +78,7 @@ fn ctrl_u_takes_away_what_is_searched_for() {
 }
 
 #[test]
-fn a_word_is_explained_by_its_sentence() {
+fn the_help_explains_terms_in_sentences() {
     for size in [SMALL, LARGE, Rect::new(0, 0, 40, 12)] {
         open(size)
             .press("?under-sampled")
@@ -87,7 +87,7 @@ fn a_word_is_explained_by_its_sentence() {
 }
 
 #[test]
-fn the_keys_of_a_pane_stand_under_its_title_and_turn_to_it() {
+fn the_help_lists_pane_keys_under_its_title_and_focuses_it() {
     let mut stage = Stage::open("method-2", &[], Rect::new(0, 0, 100, 150));
     stage.press("?");
     for pane in panes::rows().filter(|pane| !pane.keys.is_empty()) {
@@ -101,7 +101,7 @@ fn the_keys_of_a_pane_stand_under_its_title_and_turn_to_it() {
 }
 
 #[test]
-fn a_key_of_another_place_is_not_done_but_says_where_it_works() {
+fn a_key_that_works_elsewhere_is_explained_and_not_executed() {
     let mut stage = open(SMALL);
     stage.press("?apply; in the settings\n");
     stage.shows("this key works elsewhere: in a dialog");
@@ -125,7 +125,7 @@ fn values_are_found_by_their_names() {
     stage.press("/grav").shows("/grav_").shows("1 of 1");
     stage.shows("gravity").shows_no("|L| J s");
     assert_eq!(stage.focus(), "parameters");
-    // What is found is nudged at once, and typed.
+    // A found value can be nudged and typed at once.
     stage.press("→").shows("9.9");
     stage.press("\n").shows("gravity = 9.9 m/s2  Enter:");
     stage.press("1.6\n");
@@ -138,7 +138,7 @@ fn values_are_found_by_their_names() {
 }
 
 #[test]
-fn numbers_that_are_read_off_are_found_too() {
+fn readouts_are_found_by_their_names() {
     let mut stage = open(SMALL);
     stage.press("/turns").shows("no editable value");
     stage.shows("turns/dt").shows_no("E error");
@@ -149,7 +149,7 @@ fn numbers_that_are_read_off_are_found_too() {
 }
 
 #[test]
-fn a_name_that_no_value_has_is_said_and_cleared() {
+fn a_filter_without_matches_is_reported_and_cleared() {
     let mut stage = open(SMALL);
     stage.press("e/qz").shows("/qz_");
     stage.shows("no editable value");
@@ -164,17 +164,17 @@ fn a_name_that_no_value_has_is_said_and_cleared() {
         (stage.focus(), stage.lab.popups().mode),
         ("parameters", Mode::Lab)
     );
-    // The push to come is found whatever was searched for.
+    // The next push is found whatever the filter was.
     stage.press("/dt").press("\u{1b}").press("/dt\n\u{1b}");
     stage.press("P").shows("next push");
 }
 
 #[test]
-fn a_value_shows_all_the_digits_it_has() {
+fn values_show_all_their_digits() {
     let mut stage = open(SMALL);
     stage.press("/rim height");
     stage.shows("body.rim.height_m=0.565685424949238");
-    // A number that was given is not rounded where there is room.
+    // A given number is not rounded if there is room.
     let set = [
         "start.tilt_deg=0.000123456",
         "motion.gravity_m_per_s2=9.80665",
@@ -187,7 +187,7 @@ fn a_value_shows_all_the_digits_it_has() {
 }
 
 #[test]
-fn the_frame_of_l_stands_beside_it_and_is_kept() {
+fn the_frame_of_l_is_shown_and_kept_when_edited() {
     let mut stage = open(SMALL);
     stage.press("/lz").shows("Lz body").press("→\n");
     stage.shows("Lz body = ").press("500\n");
@@ -203,7 +203,7 @@ fn the_frame_of_l_stands_beside_it_and_is_kept() {
 }
 
 #[test]
-fn the_words_that_begin_with_what_is_searched_for_come_first() {
+fn prefix_matches_come_first() {
     let mut stage = open(SMALL);
     stage.press("/L");
     let selected = stage.lab.values().list.selected().unwrap();

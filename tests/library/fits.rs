@@ -1,4 +1,4 @@
-//! Fits: the laws of least squares, the measured set of Heidelberg, and what is said where nothing can be found.
+//! Fits: the statistics of least squares, the Heidelberg data, and messages about undetermined keys.
 
 use crate::support::dice::Dice;
 use crate::support::words::{has, has_all, has_no};
@@ -10,7 +10,7 @@ use gyrolab::studies::fit::{Fit, Free, Model, NoFit, fit};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// The model of the preset `name` with these settings, under `exact`, with these keys free.
+/// The model of the preset `name` with the settings `set`, under `exact`, with the keys `free`.
 #[track_caller]
 fn model(name: &str, set: &[&str], free: &[&str], measured: MeasuredData) -> Model {
     let mut document = Document::open(name).unwrap();
@@ -63,13 +63,13 @@ fn is_near(what: &str, value: f64, wanted: f64, within: f64) {
     );
 }
 
-/// A normal deviate (Box and Muller).
+/// Returns a standard normal deviate (Box-Muller).
 fn normal(dice: &mut Dice) -> f64 {
     let (radius, angle) = (dice.between(1e-300, 1.0), dice.unit());
     (-2.0 * radius.ln()).sqrt() * (std::f64::consts::TAU * angle).cos()
 }
 
-/// A top whose motion is in closed form, quick to make and to run.
+/// A top with a closed-form motion that is cheap to compute.
 const TOP: &str = r#"
 title = "A top"
 trace = "wheel"
@@ -88,7 +88,7 @@ time_step_s = 0.01
 steps = 100
 "#;
 
-/// Tilt and azimuth of the top at a dozen times, with noise of one and two tenths of a degree.
+/// Tilt and azimuth of the top at twelve times, with noise of 0.1 and 0.2 degrees.
 fn noisy(seed: u64) -> String {
     const TIMES: [f64; 12] = [
         0.0, 0.03, 0.07, 0.1, 0.14, 0.21, 0.3, 0.33, 0.41, 0.52, 0.6, 0.77,
@@ -131,13 +131,13 @@ const FREE: [&str; 2] = ["start.tilt_deg", "start.spin_rpm"];
 const TRUE: [f64; 2] = [30.0, 3000.0];
 
 fn fit_of_noise(seed: u64) -> Fit {
-    // The search begins some uncertainties off.
+    // The search starts a few uncertainties off.
     let set = ["start.tilt_deg=30.4", "start.spin_rpm=2950"];
     fitted(&top(&set, &FREE, &noisy(seed)))
 }
 
 #[test]
-fn the_truth_lies_within_two_sigma_as_often_as_it_should() {
+fn two_sigma_intervals_cover_the_truth_at_the_expected_rate() {
     const TRIALS: u64 = 1000;
     let fits: Vec<Fit> = (1..=TRIALS)
         .into_par_iter()
@@ -155,7 +155,7 @@ fn the_truth_lies_within_two_sigma_as_often_as_it_should() {
         assert!(is_so, "{}: {within_one}", FREE[index]);
     }
     let mean = |of: &dyn Fn(&Fit) -> f64| fits.iter().map(of).sum::<f64>() / TRIALS as f64;
-    // 24 data less 2 keys; the mean of a thousand chi^2/22 scatters by 0.0095.
+    // 24 data minus 2 keys; the mean of a thousand chi^2/22 has a standard deviation of 0.0095.
     let each = mean(&|fit| fit.quality.chi_squared.unwrap() / 22.0);
     assert!(fits.iter().all(|fit| fit.quality.degrees_of_freedom == 22));
     is_near("chi^2 per degree of freedom", each, 1.0, 0.03);
@@ -169,7 +169,7 @@ fn the_truth_lies_within_two_sigma_as_often_as_it_should() {
 }
 
 #[test]
-fn the_scatter_of_fits_is_the_covariance_that_they_state() {
+fn the_scatter_of_fits_matches_their_stated_covariance() {
     let fits: Vec<Fit> = (1..=60_u64)
         .map(|seed| fit_of_noise(seed * 77_777))
         .collect();
@@ -181,7 +181,7 @@ fn the_scatter_of_fits_is_the_covariance_that_they_state() {
     };
     let correlation = covariance(0, 1) / (covariance(0, 0) * covariance(1, 1)).sqrt();
     let stated = fits[0].solution.correlation(0, 1).unwrap();
-    // Of sixty pairs the correlation scatters by (1 - r^2)/sqrt(60) = 0.13 at most.
+    // With sixty pairs, the correlation has a standard deviation of (1 - r^2)/sqrt(60) = 0.13 at most.
     is_near("correlation", correlation, stated, 0.4);
     for (index, name) in FREE.into_iter().enumerate() {
         let ratio = covariance(index, index).sqrt() / fits[0].keys[index].sigma.unwrap();
@@ -190,7 +190,7 @@ fn the_scatter_of_fits_is_the_covariance_that_they_state() {
 }
 
 #[test]
-fn data_without_noise_give_the_keys_back() {
+fn data_without_noise_recover_the_keys() {
     let text = noisy(1);
     let mut exact = "t_s,tilt_deg,x_m\n".to_owned();
     for (index, line) in text.lines().skip(1).enumerate() {
@@ -207,7 +207,7 @@ fn data_without_noise_give_the_keys_back() {
 
 const MOMENT: &str = "body.part.0.moments_kg_m2.2";
 
-/// Shipped data, in which the weights are off the rod unless a column sets them.
+/// Fits shipped data; the weights are off the rod unless a column sets them.
 fn heidelberg(name: &str, free: &[&str], rows: &dyn Fn(usize) -> bool) -> (Model, Fit) {
     let mut measured = open(name).unwrap();
     measured.keep_rows(rows);
@@ -217,13 +217,13 @@ fn heidelberg(name: &str, free: &[&str], rows: &dyn Fn(usize) -> bool) -> (Model
 }
 
 #[test]
-fn heidelberg_the_same_ratio_of_moments_by_two_roads() {
+fn heidelberg_two_methods_give_the_same_ratio_of_moments() {
     for (name, ratio, sigma) in [
         ("heidelberg-body-cone", 1.0666, 0.0010),
         ("heidelberg-nutation", 1.0663, 0.0077),
     ] {
         let (_, fit) = heidelberg(name, &[MOMENT], &|_| true);
-        // I1 is held at 0.004 kg m^2: only the ratio counts.
+        // I1 is fixed at 0.004 kg m^2: only the ratio matters.
         let found = 4.0e-3 / fit.keys[0].value;
         is_near(name, found, ratio, 5e-5);
         let relative = fit.keys[0].sigma.unwrap() / fit.keys[0].value;
@@ -235,7 +235,7 @@ fn heidelberg_the_same_ratio_of_moments_by_two_roads() {
 fn heidelberg_the_spin_decays_in_24_minutes() {
     let measured = open("heidelberg-spin-decay").unwrap();
     let free = ["start.spin_rpm", "friction.spin_viscous_Nms"];
-    // L along the axle decays so whatever the axle does: a splitting scheme with long steps shows it as well.
+    // The decay of L along the axle does not depend on the motion of the axle, so long steps of a splitting scheme suffice.
     let set = [
         "body.point.0.at_m.2=0",
         "motion.scheme=strang",
@@ -249,14 +249,14 @@ fn heidelberg_the_spin_decays_in_24_minutes() {
     is_near("its uncertainty", sigma, 0.70, 0.01);
 }
 
-/// The rows with one weight or two at 15 or 20 cm, which stand in turn.
+/// Selects the rows with one or two weights at 15 or 20 cm; the four cases alternate.
 fn torque(which: usize) -> impl Fn(usize) -> bool {
     move |row| row % 4 == which
 }
 
 #[test]
-fn heidelberg_one_weight_and_two_differ() {
-    // The spins without their uncertainties: the published ones are those of the period alone.
+fn heidelberg_one_weight_and_two_give_different_moments() {
+    // Without the uncertainties of the spin: the published ones include only those of the period.
     let text = gyrolab::engine::data::find_shipped("heidelberg-precession")
         .unwrap()
         .text;
@@ -283,7 +283,7 @@ fn heidelberg_one_weight_and_two_differ() {
         is_near("I3, g m^2", 1e3 * fit.keys[0].value, moment, 0.001);
         let found = 1e3 * fit.keys[0].sigma.unwrap();
         is_near("its uncertainty", found, sigma, 0.001);
-        // With those of the spin nothing moves by more than a fraction of its uncertainty.
+        // With them, no value moves by more than a fraction of its uncertainty.
         let (_, with_spin) = heidelberg("heidelberg-precession", &[MOMENT], &torque(which));
         is_near(
             "I3, g m^2",
@@ -296,7 +296,7 @@ fn heidelberg_one_weight_and_two_differ() {
 }
 
 #[test]
-fn heidelberg_the_joint_fit_is_said_to_be_poor() {
+fn heidelberg_the_joint_fit_is_reported_as_poor() {
     let (model, fit) = heidelberg("heidelberg-precession", &[MOMENT], &|_| true);
     is_near("chi^2", fit.quality.chi_squared.unwrap(), 33.5, 0.5);
     assert_eq!(fit.quality.degrees_of_freedom, 15);
@@ -307,8 +307,8 @@ fn heidelberg_the_joint_fit_is_said_to_be_poor() {
 }
 
 #[test]
-fn heidelberg_what_would_explain_it_can_be_tried() {
-    // An extra torque, by a ball whose centre is off the pivot; M g = 41.2 N.
+fn heidelberg_explanations_of_the_poor_fit_can_be_tested() {
+    // An extra torque from a ball whose center is off the pivot; M g = 41.2 N.
     let free = [MOMENT, "body.part.0.at_m.2"];
     let (_, fit) = heidelberg("heidelberg-precession", &free, &|_| true);
     is_near("chi^2", fit.quality.chi_squared.unwrap(), 3.4, 0.4);
@@ -317,7 +317,7 @@ fn heidelberg_what_would_explain_it_can_be_tried() {
     is_near("torque, mN m", torque(fit.keys[1].value), 4.2, 0.2);
     let sigma = fit.keys[1].sigma.unwrap();
     is_near("its uncertainty", torque(sigma), 0.9, 0.15);
-    // Two weights that count as less than two.
+    // Two weights that together are lighter than twice one.
     let weights = [MOMENT, "body.point.1.mass_kg"];
     let (_, heavier) = heidelberg("heidelberg-precession", &weights, &|_| true);
     is_near("chi^2", heavier.quality.chi_squared.unwrap(), 3.0, 0.4);
@@ -326,7 +326,7 @@ fn heidelberg_what_would_explain_it_can_be_tried() {
 }
 
 #[test]
-fn what_cannot_be_told_apart_is_named_and_has_no_uncertainty() {
+fn degenerate_keys_are_named_and_have_no_uncertainty() {
     let free = [MOMENT, "motion.gravity_m_per_s2"];
     let (_, fit) = heidelberg("heidelberg-precession", &free, &|_| true);
     assert!(fit.keys.iter().all(|key| key.sigma.is_none()));
@@ -346,7 +346,7 @@ fn what_cannot_be_told_apart_is_named_and_has_no_uncertainty() {
 }
 
 #[test]
-fn a_key_at_its_bound_is_said_to_be() {
+fn a_key_at_its_bound_is_reported() {
     let bounded = format!("{MOMENT}=0.003..0.0038");
     let (model, fit) = heidelberg("heidelberg-precession", &[&bounded], &|_| true);
     let key = &fit.keys[0];
@@ -357,7 +357,7 @@ fn a_key_at_its_bound_is_said_to_be() {
         instead_of: Some("rk4"),
     };
     let told = report.to_string();
-    // The CSV, the JSON and the text are quoted each by itself: each says by which scheme.
+    // CSV, JSON and text may be quoted separately, so each names the scheme.
     let json = serde_json::to_value(report).unwrap();
     let remark = "The fitted runs use the scheme exact; the scenario's scheme is rk4 (use --scheme rk4 to fit with it).";
     assert_eq!(json["remarks"][0], remark);
@@ -366,21 +366,21 @@ fn a_key_at_its_bound_is_said_to_be() {
         &told,
         "body.part.0.moments_kg_m2.2 is at its bound 0.0038: the fit would be better beyond it, and it has no uncertainty. With another start value (--set), the search may find a better fit within the bounds.",
     );
-    // One that is inside of its bounds is not said to be at one.
+    // A value inside its bounds is not reported as held.
     let inside = format!("{MOMENT}=0.003..0.005");
     let (_, inside_fit) = heidelberg("heidelberg-precession", &[&inside], &|_| true);
     assert!(inside_fit.keys[0].sigma.is_some() && !inside_fit.remarks().concat().contains("bound"));
 }
 
-/// The data tell the ratio of moment and gravity alone, 0.00392 to 9.81.
+/// The data determine only the ratio of moment and gravity, 0.00392 to 9.81.
 #[test]
-fn bounds_of_what_cannot_be_told_apart_hold_it_where_the_best_ratio_is_outside() {
+fn bounds_hold_degenerate_keys_only_if_they_exclude_the_best_ratio() {
     let moment = format!("{MOMENT}=0.003..0.0038");
     let fit_within = |gravity: &str| {
         let gravity = format!("motion.gravity_m_per_s2={gravity}");
         heidelberg("heidelberg-precession", &[&moment, &gravity], &|_| true).1
     };
-    // Many pairs inside the bounds have the best ratio: no bound makes the fit worse, and neither value is known.
+    // Many pairs inside the bounds have the best ratio, so no bound worsens the fit and neither value is determined.
     let fit = fit_within("9.0..9.82");
     is_near(
         "ratio",
@@ -398,7 +398,7 @@ fn bounds_of_what_cannot_be_told_apart_hold_it_where_the_best_ratio_is_outside()
         "{:?}",
         fit.remarks()
     );
-    // None has it: both bounds make the fit worse.
+    // No pair has the best ratio: both bounds worsen the fit.
     let at_both = fit_within("9.7..9.82");
     assert_eq!([0, 1].map(|key| at_both.keys[key].value), [0.0038, 9.7]);
     assert!(
@@ -410,7 +410,7 @@ fn bounds_of_what_cannot_be_told_apart_hold_it_where_the_best_ratio_is_outside()
 }
 
 #[test]
-fn data_without_uncertainties_are_weighed_by_their_scatter() {
+fn data_without_uncertainties_are_weighted_by_their_scatter() {
     let noisy = noisy(5);
     let text: String = noisy
         .lines()
@@ -421,7 +421,7 @@ fn data_without_uncertainties_are_weighed_by_their_scatter() {
         .collect();
     let model = top(&["start.spin_rpm=2950"], &FREE, &text);
     let fit = fitted(&model);
-    // A dozen deviates of 0.1 degrees, of which two are taken up: their scatter is known to 22 %.
+    // Twelve deviates of 0.1 degrees minus two fitted keys: the scatter is known to 22 %.
     is_near("scatter", fit.quality.scatter.unwrap(), 0.1, 0.06);
     assert_eq!((fit.quality.chi_squared, fit.quality.fits()), (None, None));
     assert!(
@@ -433,7 +433,7 @@ fn data_without_uncertainties_are_weighed_by_their_scatter() {
 }
 
 #[test]
-fn few_data_without_uncertainties_have_students_factor() {
+fn few_data_without_uncertainties_use_students_factor() {
     const KEYS: [(&str, f64); 2] = [("start.tilt_deg", 30.0), ("start.turn_deg", 20.0)];
     for (data, words) in [(5, "1.65 (Student's factor for 3 degrees"), (6, "1.43 (")] {
         let off = |seed: u64| {
@@ -464,7 +464,7 @@ fn few_data_without_uncertainties_have_students_factor() {
 }
 
 #[test]
-fn another_valley_of_an_azimuth_at_even_times_is_named() {
+fn an_aliased_minimum_of_evenly_sampled_azimuths_is_reported() {
     let remarks = |times_s: [f64; 4]| {
         let rows = times_s.map(|time_s| format!("{time_s},{}\n", (-90.0 + 60.0 * time_s) % 360.0));
         let text = format!("t_s,azimuth_deg\n{}", rows.concat());
@@ -484,8 +484,8 @@ fn another_valley_of_an_azimuth_at_even_times_is_named() {
 }
 
 #[test]
-fn two_keys_can_have_one_value() {
-    // Both moments across the axle, which must stay alike for the body to be symmetric.
+fn two_keys_can_share_one_value() {
+    // Both moments across the axle, which must stay equal for the body to be symmetric.
     let across = "body.part.0.moments_kg_m2.0+body.part.0.moments_kg_m2.1";
     let (_, fit) = heidelberg("heidelberg-body-cone", &[across], &|_| true);
     is_near("I1/I3", fit.keys[0].value / 3.75e-3, 1.0666, 5e-5);
@@ -504,7 +504,7 @@ fn two_keys_can_have_one_value() {
 }
 
 #[test]
-fn a_key_that_moves_nothing_leads_nowhere() {
+fn a_key_without_effect_stays_and_has_no_uncertainty() {
     let free = [MOMENT, "body.part.0.mass_kg"];
     let (_, fit) = heidelberg("heidelberg-precession", &free, &|_| true);
     assert_eq!((fit.keys[1].value, fit.keys[1].sigma), (4.2, None));
@@ -512,7 +512,7 @@ fn a_key_that_moves_nothing_leads_nowhere() {
 }
 
 #[test]
-fn the_csv_of_a_fit_opens_as_the_run_that_was_fitted() {
+fn the_csv_of_a_fit_opens_as_the_fitted_run() {
     use gyrolab::studies::fit::report::{self, FitCommand};
     let (model, fit) = heidelberg("heidelberg-precession", &[MOMENT], &|_| true);
     let report = FitReport {
@@ -546,7 +546,7 @@ fn the_csv_of_a_fit_opens_as_the_run_that_was_fitted() {
     let header: report::Header = toml::from_str(&header).unwrap();
     assert_eq!(header.key[0].uncertainty, fit.keys[0].sigma);
     assert_eq!(header.fit.chi_squared, fit.quality.chi_squared);
-    // Its figure has the values with their errors on the model, and below what is left of them.
+    // Its figure has the values with error bars on the model, and the residuals below.
     let table = gyrolab::studies::table::TableSource::read(&path)
         .unwrap()
         .unwrap();
@@ -558,13 +558,13 @@ fn the_csv_of_a_fit_opens_as_the_run_that_was_fitted() {
     assert_eq!(values.series[1].name, "scheme: exact");
     let drawn = values.series.iter().filter(|it| !it.points.is_empty());
     assert_eq!(drawn.count(), 8, "four settings, each with its model");
-    // Every value has the name of its key.
+    // Every value is labeled with its key.
     let stated = fit.keys[0].stated();
     let model_name = format!("model: moments *z* of ball = {stated} kg m^{{2}}");
     assert_eq!(values.series[0].name, model_name);
     let place = "*z* of weight = 0.1555 m, *z* of second weight = 0 m";
     assert_eq!(values.series[2].name, place);
-    // Where the page is too narrow for that, the values stand alone.
+    // On a narrow page, the values appear alone.
     let narrow = of_table::chart(&table, &TableView::of_columns(&[], 120.0)).unwrap();
     assert_eq!(narrow.panels[0].series[2].name, "0.1555, 0");
     let points = |panel: &gyrolab::plot::chart::Panel| -> usize {
@@ -578,7 +578,7 @@ fn the_csv_of_a_fit_opens_as_the_run_that_was_fitted() {
     assert!(residuals.y.unit.contains('σ'));
 }
 
-/// The number of steps with which a fit of these times to [`TOP`] is written.
+/// Returns the number of steps in the CSV of a fit of [`TOP`] to data up to `last_s`.
 fn steps_written(last_s: f64) -> u64 {
     let text = format!("t_s,tilt_deg\n0,30\n{last_s},30\n");
     let model = top(&[], &["start.spin_rpm"], &text);
@@ -586,7 +586,7 @@ fn steps_written(last_s: f64) -> u64 {
 }
 
 #[test]
-fn the_run_of_a_fit_is_as_long_as_it_was_measured() {
+fn the_run_of_a_fit_covers_the_measured_time() {
     let own = top_with(&[]).scenario().unwrap();
     let end_s = own.steps as f64 * own.motion.time_step_s;
     assert_eq!(steps_written(0.5 * end_s), own.steps);
@@ -594,14 +594,14 @@ fn the_run_of_a_fit_is_as_long_as_it_was_measured() {
 }
 
 #[test]
-fn few_data_without_uncertainties_give_no_uncertainties() {
+fn two_data_without_uncertainties_give_no_uncertainties() {
     let fit_of = |text: &str| {
         let model = top(&[], &["start.tilt_deg"], text);
         let fit = fitted(&model);
         let sentence = fit.sentence(&model);
         (fit, sentence)
     };
-    // Two data that agree by chance are no reason to be sure.
+    // Two data that agree by chance give no uncertainty.
     let (fit, sentence) = fit_of("t_s,tilt_deg\n0,30\n0,30.0001\n");
     assert_eq!(fit.quality.degrees_of_freedom, 1);
     assert_eq!((fit.keys[0].sigma, fit.variance), (None, None));
@@ -617,7 +617,7 @@ fn few_data_without_uncertainties_give_no_uncertainties() {
 }
 
 #[test]
-fn a_very_poor_fit_says_that_it_may_be_a_local_minimum() {
+fn a_very_poor_fit_warns_of_a_local_minimum() {
     let sentence = |sigma: f64| {
         let text = format!("t_s,tilt_deg,tilt_uncertainty_deg\n0,30,{sigma}\n0,31,{sigma}\n");
         let model = top(&[], &["start.tilt_deg"], &text);
@@ -631,7 +631,7 @@ fn a_very_poor_fit_says_that_it_may_be_a_local_minimum() {
 }
 
 #[test]
-fn where_the_data_depend_on_no_key_no_other_start_is_proposed() {
+fn no_other_start_is_suggested_if_no_key_affects_the_data() {
     let text = "t_s,spin_rpm,spin_uncertainty_rpm\n1,10,1\n2,10,1\n3,10,1\n";
     let model = top(&[], &["start.turn_deg"], text);
     let fit = fitted(&model);
@@ -642,7 +642,7 @@ fn where_the_data_depend_on_no_key_no_other_start_is_proposed() {
 }
 
 #[test]
-fn what_cannot_be_fitted_is_refused_with_the_remedy() {
+fn impossible_fits_are_rejected_with_a_remedy() {
     let mut told = String::new();
     for (free, data) in [
         (&FREE[..], "t_s,tilt_deg\n0,30\n"),
@@ -685,8 +685,8 @@ fn what_cannot_be_fitted_is_refused_with_the_remedy() {
 }
 
 #[test]
-fn a_single_datum_that_is_off_is_told_by_its_row() {
-    // No datum depends on the key, so that the one datum is one more than there are fitted values.
+fn a_single_outlier_is_named_by_its_row() {
+    // The datum does not depend on the key, so there is one degree of freedom.
     let text = "t_s,spin_rpm,spin_uncertainty_rpm\n1,3028,10\n";
     let model = top(&[], &["start.turn_deg"], text);
     let told = fitted(&model).sentence(&model);
@@ -694,9 +694,9 @@ fn a_single_datum_that_is_off_is_told_by_its_row() {
 }
 
 #[test]
-fn a_key_between_its_bound_and_what_is_possible_cannot_be_changed() {
+fn a_key_between_its_bound_and_the_possible_range_is_rejected() {
     let measured = open("heidelberg-body-cone").unwrap();
-    // The third moment is the sum of the others: it can be no larger.
+    // The third moment equals the sum of the others and cannot be larger.
     let set = [
         "body.point.0.at_m.2=0",
         "body.part.0.moments_kg_m2=[0.002, 0.002, 0.004]",
@@ -710,9 +710,9 @@ fn a_key_between_its_bound_and_what_is_possible_cannot_be_changed() {
     );
 }
 
-/// A setting of 0 that can be no less moves the data by what it moves them upwards.
+/// The effect of a setting of 0 that cannot be negative is computed from above.
 #[test]
-fn an_uncertain_setting_may_stand_at_the_edge_of_its_range() {
+fn an_uncertain_setting_may_be_at_the_edge_of_its_range() {
     let fit = |friction: f64| {
         let text = format!(
             "friction.spin_viscous_Nms,friction.spin_viscous_uncertainty_Nms,spin_rpm,spin_uncertainty_rpm\n\
@@ -728,7 +728,7 @@ fn an_uncertain_setting_may_stand_at_the_edge_of_its_range() {
 }
 
 #[test]
-fn data_that_no_run_comes_to_are_refused_with_the_limit() {
+fn data_later_than_any_run_are_rejected_with_the_limit() {
     let document = Document::open("cusps").unwrap();
     let far = read("far.csv", "t_s,tilt_deg\n0,20\n1e300,20\n").unwrap();
     let told = try_model(&document, &["start.tilt_deg"], far)

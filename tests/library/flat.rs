@@ -1,4 +1,4 @@
-//! Bodies at the edge of what can exist: flat ones and rods are fitted like any other, with uncertainties to the inside.
+//! Fits of bodies at the limit of possible moments: flat bodies and rods, with one-sided uncertainties.
 
 use crate::support::dice::Dice;
 use crate::support::scenarios::preset;
@@ -14,10 +14,10 @@ const A: &str = "body.part.0.moments_kg_m2.0";
 const B: &str = "body.part.0.moments_kg_m2.1";
 const C: &str = "body.part.0.moments_kg_m2.2";
 const RATES: &str = "start.omega_rad_per_s.0,start.omega_rad_per_s.1,start.omega_rad_per_s.2";
-/// The moment that is held.
+/// The fixed moment, kg m^2.
 const HELD: f64 = 3.7957e-4;
 
-/// The moments of a body with these second moments of mass; the third moment is that of the preset.
+/// Returns the moments of a body from its second moments of mass, scaled to the third moment of the preset.
 fn moments(second: [f64; 3]) -> [f64; 3] {
     let [x, y, z] = second.map(|it| it * HELD / (second[0] + second[1]));
     [y + z, z + x, x + y]
@@ -28,7 +28,7 @@ fn truth_of_keys([a, b, _]: [f64; 3], [w1, w2, w3]: [f64; 3]) -> [f64; 5] {
     [a, b, w1, w2, w3]
 }
 
-/// The recorded rates of a throw, with normal noise.
+/// Simulates the recorded rates of a throw, with normal noise.
 fn thrown(
     moments: [f64; 3],
     omega: [f64; 3],
@@ -86,7 +86,7 @@ fn told(model: &Model, fit: &Fit) -> (String, serde_json::Value) {
 }
 
 #[test]
-fn a_flat_body_is_found_at_the_bound_whichever_way_it_lies() {
+fn a_flat_body_is_fitted_at_the_bound_in_every_orientation() {
     let mut at_bound = 0;
     for (second, words) in [
         ([1.0, 4.0, 0.0], "flat: A + B = C, at the bound"),
@@ -116,12 +116,12 @@ fn a_flat_body_is_found_at_the_bound_whichever_way_it_lies() {
             assert!(sides.below > 0.0 && sides.above > 0.0, "{sides:?}");
         }
     }
-    // Noise asks for less than flat in half of the throws.
+    // In half of the throws, the noise favors an impossible body beyond flat.
     assert!((3..=15).contains(&at_bound), "{at_bound} of 18");
 }
 
 #[test]
-fn a_flat_body_without_noise_is_found_to_all_its_digits() {
+fn a_flat_body_without_noise_is_recovered_exactly() {
     let (moments, omega) = (moments([72.53, 307.04, 0.0]), [8.0, 0.8, 0.6]);
     let measured = thrown(moments, omega, (30, 50.0), 5e-7, 1);
     let (_, fit) = fitted(measured, &[A, B, RATES]);
@@ -130,7 +130,7 @@ fn a_flat_body_without_noise_is_found_to_all_its_digits() {
     }
 }
 
-/// The second moments of mass of a body from flat to cubic, and its throw.
+/// Returns the second moments of mass of a random body from flat to cubic, its angular velocity and its data.
 fn any_throw(seed: u64) -> ([f64; 3], [f64; 3], MeasuredData) {
     let mut dice = Dice(seed.wrapping_mul(0xD134_2543_DE82_EF95) | 1);
     (0..20).for_each(|_| {
@@ -156,7 +156,7 @@ fn any_throw(seed: u64) -> ([f64; 3], [f64; 3], MeasuredData) {
 }
 
 #[test]
-fn throws_of_bodies_from_flat_to_cubic_end_with_numbers_that_cover() {
+fn one_sided_uncertainties_cover_bodies_from_flat_to_cubic() {
     const THROWS: u64 = 60;
     let off = |seed: u64| {
         let (truth, omega, measured) = any_throw(seed);
@@ -175,13 +175,13 @@ fn throws_of_bodies_from_flat_to_cubic_end_with_numbers_that_cover() {
     let all: Vec<f64> = seeds.map(off).collect::<Vec<Vec<f64>>>().concat();
     let within = |sigmas: f64| all.iter().filter(|distance| **distance <= sigmas).count();
     println!("{} and {} of {}", within(1.0), within(2.0), all.len());
-    // Of 300 values 205 and 286 are expected, and a few more of flat bodies; four deviations less are 173 and 272.
+    // Of 300 values, 205 and 286 are expected, slightly more for flat bodies; minus four standard deviations: 173 and 272.
     assert!((173..=250).contains(&within(1.0)), "{}", within(1.0));
     assert!((272..=299).contains(&within(2.0)), "{}", within(2.0));
 }
 
 #[test]
-fn a_rod_ends_with_numbers() {
+fn a_rod_can_be_fitted() {
     for seed in 1..=4 {
         let truth = moments([1.0, 2e-5, 1e-5]);
         let measured = thrown(truth, [6.0, 5.0, 3.0], (100, 200.0), 0.02, seed);
@@ -193,7 +193,7 @@ fn a_rod_ends_with_numbers() {
 }
 
 #[test]
-fn the_scale_of_three_free_moments_is_still_unknown_for_a_flat_body() {
+fn three_free_moments_of_a_flat_body_have_no_scale() {
     let truth = moments([1.0, 4.0, 0.0]);
     for seed in 1..=3 {
         let measured = thrown(truth, [8.0, 0.8, 4.6], (60, 100.0), 0.02, seed);
@@ -208,7 +208,7 @@ fn the_scale_of_three_free_moments_is_still_unknown_for_a_flat_body() {
 }
 
 #[test]
-fn bounds_that_the_user_draws_across_the_edge_are_kept() {
+fn user_bounds_beyond_the_flat_limit_are_respected() {
     let truth = moments([69.0, 311.0, 0.0]);
     let upper = 3.09e-4;
     for seed in 1..=3 {
@@ -220,9 +220,9 @@ fn bounds_that_the_user_draws_across_the_edge_are_kept() {
     }
 }
 
-/// Friction of 0 is a bound of nature too: what it may be at most is stated.
+/// Friction of 0 is a natural bound too: an upper limit is stated.
 #[test]
-fn a_key_at_the_least_value_it_can_have_has_an_upper_limit() {
+fn a_key_at_its_minimum_possible_value_has_an_upper_limit() {
     let mut document = Document::open("heidelberg").unwrap();
     for set in [
         "body.point.0.at_m.2=0",
@@ -232,7 +232,7 @@ fn a_key_at_the_least_value_it_can_have_has_an_upper_limit() {
     ] {
         document.set(set).unwrap();
     }
-    // A spin that grows a little, as no friction makes it.
+    // A spin that grows slightly, which friction cannot cause.
     let text =
         "t_s,spin_rpm,spin_uncertainty_rpm\n0,1000,1\n100,1000.4,1\n200,1000.9,1\n300,1001.5,1\n";
     let measured = read("spin.csv", text).unwrap();

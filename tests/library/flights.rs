@@ -1,4 +1,4 @@
-//! Free flights are found in the recording of a gyroscope that a hand throws and catches.
+//! Detection of free flights in recordings of a thrown and caught gyroscope sensor.
 
 use crate::support::dice::Dice;
 use crate::support::scenarios::preset;
@@ -17,7 +17,7 @@ fn series(text: &str) -> TimeSeries {
     }
 }
 
-/// The rates of the preset's phone in free flight from `omega` on.
+/// Returns the rates of the preset's phone in free flight with the initial angular velocity `omega`.
 fn flight(omega: [f64; 3], seconds: f64) -> Vec<[f64; 3]> {
     let rows = (seconds * RATE) as u32;
     let lines = (0..rows).map(|row| format!("{},0,0,0\n", f64::from(row) / RATE));
@@ -35,7 +35,7 @@ fn flight(omega: [f64; 3], seconds: f64) -> Vec<[f64; 3]> {
         .collect()
 }
 
-/// Rates that a hand brings from `from` to `to`.
+/// Returns rates of a hand motion from `from` to `to`.
 fn by_hand(from: [f64; 3], to: [f64; 3], seconds: f64) -> Vec<[f64; 3]> {
     let rows = (seconds * RATE) as u32;
     (0..rows)
@@ -47,7 +47,7 @@ fn by_hand(from: [f64; 3], to: [f64; 3], seconds: f64) -> Vec<[f64; 3]> {
         .collect()
 }
 
-/// A recording of throws by these rates, each with where its flight begins and ends, s. Before each the hand waves.
+/// Returns a recording of throws with the given rates, and the start and end of each flight, s. The hand waves before each.
 fn recording(throws: &[[f64; 3]], seed: u64) -> (String, Vec<(f64, f64)>) {
     const REST: [f64; 3] = [0.0; 3];
     let (mut rates, mut flights) = (by_hand(REST, REST, 0.5), Vec::new());
@@ -79,7 +79,7 @@ fn found(text: &str) -> Found {
 }
 
 #[test]
-fn each_flight_of_a_recording_is_found_without_the_hand() {
+fn flights_are_found_without_the_hand_motion() {
     let throws = [[8.0, 0.8, 0.6], [1.0, -7.0, 2.0], [-0.5, 1.0, 12.0]];
     for seed in 1..=5 {
         for count in 1..=throws.len() {
@@ -89,7 +89,7 @@ fn each_flight_of_a_recording_is_found_without_the_hand() {
             };
             assert_eq!(flights.len(), count, "seed {seed}: {flights:?}");
             for (Flight { from_s, to_s, .. }, (begin, end)) in flights.iter().zip(flown) {
-                // A push of the last 5 ms of a throw is hidden by the noise.
+                // The noise hides the push of the last 5 ms of a throw.
                 let is_inside = *from_s >= begin - 0.005 && *to_s <= end + 0.005;
                 let is_most = to_s - from_s > 0.85 * (end - begin);
                 assert!(
@@ -102,7 +102,7 @@ fn each_flight_of_a_recording_is_found_without_the_hand() {
 }
 
 #[test]
-fn a_hand_that_waves_is_no_flight() {
+fn a_waving_hand_is_not_a_flight() {
     for seed in 1..=5 {
         let (text, flown) = recording(&[[8.0, 0.8, 0.6]], seed);
         let until = (flown[0].0 - 0.25) * RATE;
@@ -116,7 +116,7 @@ fn a_hand_that_waves_is_no_flight() {
 }
 
 #[test]
-fn a_recording_that_is_one_flight_is_fitted_whole_and_other_data_are_not_searched() {
+fn a_recording_of_one_flight_is_used_whole_and_other_data_are_skipped() {
     let rows = flight([8.0, 0.8, 0.6], 0.6);
     let mut text = "t_s,w1_rad_per_s,w2_rad_per_s,w3_rad_per_s\n".to_owned();
     for (row, [a, b, c]) in rows.iter().enumerate() {
@@ -129,7 +129,7 @@ fn a_recording_that_is_one_flight_is_fitted_whole_and_other_data_are_not_searche
 }
 
 #[test]
-fn odd_recordings_end_without_a_flight_or_whole() {
+fn malformed_recordings_have_no_flights() {
     let head = "t_s,w1_rad_per_s,w2_rad_per_s,w3_rad_per_s\n";
     for rows in [
         "0,1,2,3\n",

@@ -1,4 +1,4 @@
-//! The laws of friction: how spin and swing die, where the spin stops, what the work is, and that no time step explodes.
+//! The laws of friction: decay of spin and swing, stopping of the spin, work, and stability at every time step.
 
 use crate::support::words::has;
 use gyrolab::engine::analysis::readouts::{ReadoutValue, find};
@@ -13,12 +13,12 @@ use nalgebra::Vector3;
 use std::f64::consts::FRAC_PI_3;
 use std::sync::Arc;
 
-/// The report's wheel of 5 kg, with a point on the axle and one off it, both without mass.
+/// The report's wheel of 5 kg, with a massless point on the axle and one off it.
 fn wheel() -> Body {
     body(0.5)
 }
 
-/// The wheel, the mass of whose first point is `first` kg: 0.5 is symmetric.
+/// The wheel with a first point of `first` kg: 0.5 is symmetric.
 fn body(first: f64) -> Body {
     let ring = (0..10).map(|j| {
         let (sin, cos) = libm::sincos(std::f64::consts::TAU * f64::from(j) / 10.0);
@@ -39,7 +39,7 @@ fn moments(body: &Body) -> (f64, f64) {
     (inertia[(0, 0)], inertia[(2, 2)])
 }
 
-/// Tilted by 60 degrees, with this angular velocity in the body frame.
+/// A state tilted by 60 degrees, with the angular velocity `omega` in the body frame.
 fn start(body: &Body, omega: [f64; 3]) -> State {
     let orientation = rotation::about(&Vector3::x(), FRAC_PI_3);
     State {
@@ -49,7 +49,7 @@ fn start(body: &Body, omega: [f64; 3]) -> State {
     }
 }
 
-/// Friction of the spin, dry, viscous and quadratic, and of the swing.
+/// Friction from the dry, viscous and quadratic coefficients of the spin and the coefficient of the swing.
 fn rubbing([spin_dry, spin_viscous, spin_quadratic, swing_viscous]: [f64; 4]) -> Friction {
     Friction {
         spin_dry,
@@ -79,7 +79,7 @@ fn is_near(found: f64, expected: f64, within: f64, case: &str) {
     assert!(off < within, "{case}: {found} for {expected}");
 }
 
-/// A run under one scheme: the state, and the work of friction so far, J.
+/// A run under one scheme, with its state and the work done by friction, J.
 struct Run {
     scheme: Box<dyn Scheme>,
     state: State,
@@ -121,14 +121,14 @@ fn omega_across(body: &Body, state: &State) -> f64 {
     (omega - axle * axle.dot(&omega)).norm()
 }
 
-/// The schemes under which the spin obeys its law to rounding: nothing else changes L along the axle.
+/// The schemes that follow the law of the spin to rounding, since nothing else changes L along the axle.
 const TRUE_TO_SPIN: [&str; 2] = ["strang", "exact"];
 
-/// L along the axle after `t` seconds, of the spin's law alone, from `start` (J s).
+/// L along the axle after `t` seconds by the law of the spin: arguments are the initial L (J s), the moment and `t`.
 type Law = fn(f64, f64, f64) -> f64;
 
 #[test]
-fn the_spin_dies_by_its_law_whatever_the_axle_does() {
+fn the_spin_decays_by_its_law_for_any_motion_of_the_axle() {
     let body = wheel();
     let (_, along) = moments(&body);
     let cases: [(Friction, Law); 3] = [
@@ -165,7 +165,7 @@ fn the_spin_dies_by_its_law_whatever_the_axle_does() {
 }
 
 #[test]
-fn dry_viscous_and_quadratic_friction_together_solve_their_equation() {
+fn combined_dry_viscous_and_quadratic_friction_solves_its_equation() {
     let body = wheel();
     let (_, along) = moments(&body);
     // The three signs of the discriminant k1^2 - 4 k0 k2.
@@ -182,7 +182,7 @@ fn dry_viscous_and_quadratic_friction_together_solve_their_equation() {
             let mut spin = 5.0;
             for step in 1..=2000 {
                 run.step(0.01, 1);
-                // Runge and Kutta's scheme, the steps so short that their error is rounding.
+                // Runge-Kutta steps so short that their error is rounding.
                 for _ in 0..20 {
                     let h = 0.0005;
                     let k1 = slope(spin);
@@ -208,7 +208,7 @@ fn dry_viscous_and_quadratic_friction_together_solve_their_equation() {
 }
 
 #[test]
-fn the_swing_of_a_free_body_dies_and_its_spin_does_not() {
+fn friction_of_the_swing_does_not_slow_the_spin() {
     let body = wheel();
     let (across, _) = moments(&body);
     let friction = rubbing([0.0, 0.0, 0.0, 0.9]);
@@ -230,7 +230,7 @@ fn the_swing_of_a_free_body_dies_and_its_spin_does_not() {
 }
 
 #[test]
-fn what_friction_does_is_the_energy_that_goes() {
+fn the_work_of_friction_equals_the_energy_loss() {
     let all = rubbing([0.4, 0.05, 0.01, 0.3]);
     let smooth = Friction {
         spin_dry: 0.0,
@@ -257,7 +257,7 @@ fn what_friction_does_is_the_energy_that_goes() {
 }
 
 #[test]
-fn the_schemes_converge_on_the_exact_motion_in_their_orders() {
+fn schemes_with_friction_converge_to_the_exact_motion() {
     let smooth = rubbing([0.0, 0.2, 0.01, 0.4]);
     let dry = rubbing([0.5, 0.2, 0.01, 0.4]);
     for body in [body(0.5), body(0.9)] {
@@ -281,15 +281,15 @@ fn the_schemes_converge_on_the_exact_motion_in_their_orders() {
     }
 }
 
-/// The free motion of a lopsided body turns it about its axle even where dry friction holds that at rest, and friction on
-/// the swing slows the held body.
+/// The free motion of a lopsided body turns it about its axle even while dry friction holds the spin at zero, and friction
+/// of the swing slows the held body.
 #[test]
-fn the_splitting_keeps_its_order_while_dry_friction_holds_a_lopsided_body() {
+fn splitting_keeps_its_order_while_dry_friction_holds_the_spin() {
     let body = body(0.9);
     for (friction, omega) in [
         (rubbing([8.0, 0.0, 0.0, 0.0]), [1.4, -1.3, 0.0]),
         (rubbing([8.0, 0.0, 0.0, 1.0]), [1.4, -1.3, 0.0]),
-        // The spin dies on the way.
+        // The spin stops during the run.
         (rubbing([8.0, 0.1, 0.02, 1.0]), [1.4, -1.3, 2.0]),
     ] {
         let begin = start(&body, omega);
@@ -314,7 +314,7 @@ fn the_splitting_keeps_its_order_while_dry_friction_holds_a_lopsided_body() {
 }
 
 #[test]
-fn the_report_stops_the_spin_where_dry_friction_does_and_keeps_it_stopped() {
+fn the_report_scheme_stops_the_spin_at_the_right_time() {
     let body = wheel();
     let friction = rubbing([2.0, 0.0, 0.0, 0.0]);
     for spin in [3.0, -3.0] {
@@ -334,7 +334,7 @@ fn the_report_stops_the_spin_where_dry_friction_does_and_keeps_it_stopped() {
 }
 
 #[test]
-fn strong_friction_in_a_long_step_stops_and_does_not_explode() {
+fn strong_friction_in_long_steps_is_stable() {
     let body = wheel();
     for friction in [
         rubbing([0.0, 1e4, 0.0, 0.0]),
@@ -359,9 +359,9 @@ fn strong_friction_in_a_long_step_stops_and_does_not_explode() {
     }
 }
 
-/// A body at rest, hanging straight down, that a push off the axle would turn about it by 0.4 m times its force.
+/// A hanging body at rest, on which a push off the axle exerts a torque of 0.4 m times its force about the axle.
 #[test]
-fn dry_friction_holds_what_does_not_spin_up_to_its_strength() {
+fn dry_friction_holds_a_resting_spin_up_to_its_torque() {
     let body = wheel();
     let hanging = State {
         time_s: 0.0,
@@ -374,7 +374,7 @@ fn dry_friction_holds_what_does_not_spin_up_to_its_strength() {
             point: OFF_AXLE,
             force: Vector3::new(0.0, force, 0.0),
         }],
-        gravity: 1e6, // so heavy that the push does not swing it
+        gravity: 1e6, // so strong that the push does not swing the body
     };
     for name in ["report", "strang", "exact"] {
         let mut held = Run::new(name, &body, &loads(4.9), hanging);
@@ -382,7 +382,7 @@ fn dry_friction_holds_what_does_not_spin_up_to_its_strength() {
         is_near(spin_momentum(&held.state), 0.0, 1e-9, name);
         let mut turned = Run::new(name, &body, &loads(5.1), hanging);
         turned.step(0.0001, 2000);
-        // 5.1 N at 0.4 m, seen from the body that hangs upside down, less 2 N m, for 0.2 s.
+        // 5.1 N at 0.4 m, in the frame of the hanging body, minus 2 N m, for 0.2 s.
         let expected = -(5.1 * 0.4 - 2.0) * 0.2;
         let found = spin_momentum(&turned.state);
         is_near(found, expected, 1e-3 * expected.abs(), name);
@@ -390,7 +390,7 @@ fn dry_friction_holds_what_does_not_spin_up_to_its_strength() {
 }
 
 #[test]
-fn the_exact_motion_with_friction_is_the_same_in_whatever_order_it_is_asked_for() {
+fn the_exact_motion_with_friction_does_not_depend_on_query_order() {
     let body = body(0.9);
     let friction = rubbing([1.5, 0.1, 0.0, 0.2]);
     let begin = start(&body, [0.4, -0.3, 9.0]);
@@ -406,7 +406,7 @@ fn the_exact_motion_with_friction_is_the_same_in_whatever_order_it_is_asked_for(
 }
 
 #[test]
-fn a_fast_top_with_friction_on_its_swing_loses_its_nutation_and_then_sinks() {
+fn friction_of_the_swing_damps_nutation_and_makes_a_fast_top_sink() {
     let body = wheel();
     let (across, _) = moments(&body);
     let swing = 0.5;
@@ -414,7 +414,7 @@ fn a_fast_top_with_friction_on_its_swing_loses_its_nutation_and_then_sinks() {
     let begin = start(&body, [0.0, 0.0, 200.0]);
     let mut run = Run::new("exact", &body, &loads, begin);
     let load = 9.8 * body.first_moment().z;
-    run.step(0.01, 10_000); // nutation is e^-15 of what it was
+    run.step(0.01, 10_000); // the nutation has decayed by e^-15
     let (first, spin) = (
         observables::tilt_deg(&run.state).to_radians(),
         spin_momentum(&run.state),
@@ -431,7 +431,7 @@ fn a_fast_top_with_friction_on_its_swing_loses_its_nutation_and_then_sinks() {
 }
 
 #[test]
-fn an_almost_upright_top_wakes_as_its_spin_falls_below_the_limit_and_falls() {
+fn a_sleeping_top_falls_when_its_spin_drops_below_the_limit() {
     let body = wheel();
     let (across, along) = moments(&body);
     let load = 9.8 * body.first_moment().z;
@@ -443,7 +443,7 @@ fn an_almost_upright_top_wakes_as_its_spin_falls_below_the_limit_and_falls() {
         orientation,
         momentum: orientation * Vector3::new(0.0, 0.0, 1.1 * limit),
     };
-    // Seconds in which the spin falls to 1/e.
+    // Time in which the spin falls to 1/e, s.
     for decay_s in [300.0, 30.0] {
         let loads = weight(rubbing([0.0, along / decay_s, 0.0, 0.0]));
         let mut run = Run::new("exact", &body, &loads, begin);
@@ -464,8 +464,8 @@ fn an_almost_upright_top_wakes_as_its_spin_falls_below_the_limit_and_falls() {
     }
 }
 
-/// L along the axle at which the tilt of an almost upright top is ten times its start's. The axle's horizontal part, as a
-/// complex number, obeys I1 z'' - i L3(t) z' - M g c z = 0 while it is small.
+/// Returns L along the axle at which the tilt of an almost upright top is ten times its initial tilt. The horizontal part
+/// of the axle, as a complex number, obeys I1 z'' - i L3(t) z' - M g c z = 0 while it is small.
 fn waking(across: f64, load: f64, spin: f64, decay_s: f64) -> f64 {
     type Complex = nalgebra::Complex<f64>;
     let slope = |t: f64, [z, v]: [Complex; 2]| {
@@ -488,7 +488,7 @@ fn waking(across: f64, load: f64, spin: f64, decay_s: f64) -> f64 {
     spin * (-t / decay_s).exp()
 }
 
-/// A preset with these settings: its scenario, or what is wrong with it, in one line.
+/// Opens a preset with settings. Returns its scenario, or its problems in one line.
 fn preset(name: &str, sets: &[&str]) -> Result<Arc<Scenario>, String> {
     let mut document = Document::open(name).unwrap();
     for set in sets {
@@ -501,7 +501,7 @@ fn preset(name: &str, sets: &[&str]) -> Result<Arc<Scenario>, String> {
 }
 
 #[test]
-fn a_scheme_that_cannot_be_true_to_the_friction_is_refused_with_the_reason() {
+fn schemes_that_cannot_model_friction_are_rejected_with_a_reason() {
     let refused = |name: &str, sets: &[&str]| preset(name, sets).unwrap_err();
     let names = |friction| {
         let names: Vec<_> = true_to(friction).map(|scheme| scheme.name).collect();
@@ -530,13 +530,13 @@ fn a_scheme_that_cannot_be_true_to_the_friction_is_refused_with_the_reason() {
         refused("first-dip", &[edit]).split(" cannot").next(),
         Some("edit.0.set.motion.scheme (\"srkn11b\")")
     );
-    // Without friction, or with coefficients of zero, there is nothing against it.
+    // Without friction, or with coefficients of zero, the scheme is allowed.
     let none = ["motion.scheme=srkn11b", "friction.spin_dry_Nm=0"];
     assert!(preset("cusps", &none).is_ok());
 }
 
 #[test]
-fn theory_under_friction_is_of_the_moment_and_predicts_no_motion() {
+fn theory_with_friction_is_instantaneous_and_predicts_no_motion() {
     let readouts = |name: &str, sets: &[&str], steps: u64| {
         let scenario = preset(name, sets).unwrap();
         let mut simulation = Simulation::new(scenario);
@@ -563,7 +563,7 @@ fn theory_under_friction_is_of_the_moment_and_predicts_no_motion() {
         assert_eq!(of(&rubbed), ReadoutValue::Nothing, "{name}");
         assert_ne!(of(&spared), ReadoutValue::Nothing, "{name}");
     }
-    // M g c/L3 at this moment, whatever follows.
+    // M g c/L3 at the current time.
     let fast_top = rubbed.number("fast_top_precession_rad_per_s").unwrap();
     assert!((fast_top - 49.0 / 100.0).abs() < 1e-12);
     assert!(rubbed.number("friction_work_J").unwrap() < -1.0);
@@ -572,15 +572,15 @@ fn theory_under_friction_is_of_the_moment_and_predicts_no_motion() {
     let slowing = rubbed.health.slowing.unwrap();
     assert!((slowing.swing_decay_s.unwrap() - 3.3).abs() < 1e-9);
     assert_eq!((slowing.spin_decay_s, slowing.spin_stop_s), (None, None));
-    // A spin that is rounding has been stopped.
+    // A spin of the size of rounding counts as stopped.
     let stopped = readouts("first-dip", &["friction.spin_dry_Nm=100"], 3000);
     let told = stopped.health.slowing.unwrap().to_string();
     has(&told, "; dry: it has stopped the spin; on");
 }
 
-/// The wheel's bearing and the air take the spin of the wheel alone: its moment counts, and not that of all that turns.
+/// Friction of the bearing and the air acts on the wheel alone, so only the wheel's moment counts.
 #[test]
-fn friction_sees_the_spin_of_the_rotor() {
+fn friction_acts_on_the_spin_of_the_rotor() {
     let wheel: f64 = 0.5 * 1.8 * 0.12 * 0.12;
     for name in TRUE_TO_SPIN {
         let scheme = format!("motion.scheme={name}");
@@ -600,8 +600,8 @@ fn friction_sees_the_spin_of_the_rotor() {
 }
 
 #[test]
-fn energy_and_work_of_friction_are_the_rotors() {
-    // Of the wheel its own energy of spin, and of all of it that of the tilting: by the parts' moments.
+fn energy_and_friction_work_use_the_rotor_moment() {
+    // The spin energy of the wheel plus the tilting energy of the whole body, from the moments of the parts.
     let (wheel, mass_moment) = (0.5 * 1.8 * 0.12 * 0.12, 1.8 * 0.15 - 1.3 * 0.2);
     let disk = |kg: f64, r: f64, h: f64, z: f64| kg * ((3.0 * r * r + h * h) / 12.0 + z * z);
     let across =
@@ -626,7 +626,7 @@ fn energy_and_work_of_friction_are_the_rotors() {
 }
 
 #[test]
-fn the_report_explains_its_friction_to_the_last_bit() {
+fn explaining_steps_with_friction_changes_no_bits() {
     for name in ["report", "strang"] {
         let scheme = format!("motion.scheme={name}");
         let scenario = preset("lab-gyroscope", &[&scheme, "motion.time_step_s=0.01"]).unwrap();

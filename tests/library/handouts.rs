@@ -1,4 +1,4 @@
-//! Lessons on paper: worksheets, results and teacher's sheets, as Markdown and as HTML.
+//! Lessons on paper: worksheets, results and teacher's sheets, in Markdown and HTML.
 
 use crate::lessons::{WHOLE, lab, lessons, on, read};
 use crate::support::words::{has, has_all};
@@ -50,7 +50,7 @@ fn text_of(node: Node<'_, '_>) -> String {
         .collect()
 }
 
-/// The words of the longest text between numbers in each outcome of `lesson`, without blanks and emphasis.
+/// Returns, for each outcome of `lesson`, the longest text between numbers, without blanks and emphasis.
 fn outcomes(lesson: &Lesson) -> Vec<String> {
     let compares = lesson.pages.iter().flat_map(LessonPage::compares);
     let texts = compares.map(|compare| compare.text.filled(|_, _| "@".to_owned()));
@@ -63,7 +63,7 @@ fn outcomes(lesson: &Lesson) -> Vec<String> {
 }
 
 #[test]
-fn a_worksheet_asks_everything_and_answers_nothing() {
+fn a_worksheet_contains_all_questions_and_no_answers() {
     for lesson in lessons() {
         let sheet = written(&lesson, Paper::Worksheet, PaperFormat::Markdown);
         for page in &lesson.pages {
@@ -135,7 +135,7 @@ fn results_have_pictures_and_outcomes_and_no_notes() {
     assert!(paper[end..].contains("NOT RELIABLE"));
 }
 
-/// Checks what holds for every HTML file: it needs no other file, its headings are in order, and its pictures have titles.
+/// Checks that an HTML file needs no other file, that its headings are in order and its pictures have titles.
 fn check_page(html: &str, lesson: &Lesson) {
     for outside in [
         "http://", "https://", "src=", "href=", "url(http", "@import",
@@ -203,7 +203,7 @@ fn a_worksheet_in_html_has_a_frame_for_each_prediction_and_no_outcome() {
         for outcome in outcomes(&lesson) {
             assert!(!words.contains(&outcome), "{}: {outcome}", lesson.name);
         }
-        // A picture stands on pages before the first question and on those that ask.
+        // Pages before the first question and pages with questions have pictures.
         let mut has_asked = false;
         for section in elements(root, "section") {
             let asks = of_class(section, "question").next().is_some();
@@ -240,7 +240,7 @@ fn results_in_html_have_a_figure_for_each_run() {
 }
 
 #[test]
-fn html_in_a_lesson_is_text_and_its_links_are_words() {
+fn html_and_links_in_a_lesson_become_plain_text() {
     let html = html::from_markdown(
         "a < b",
         "# a\n\n<script>alert(1)</script> and [a link](https://example.org) ![a picture](x.png)\n\n<b>\n",
@@ -255,7 +255,7 @@ fn html_in_a_lesson_is_text_and_its_links_are_words() {
 }
 
 #[test]
-fn a_teachers_sheet_has_goals_minutes_answers_and_what_to_expect() {
+fn a_teachers_sheet_has_goals_minutes_answers_and_expectations() {
     for lesson in lessons() {
         let sheet = teacher::sheet(&lesson, lab(), &mut on).unwrap();
         let guide = &lesson.guide;
@@ -291,7 +291,7 @@ fn a_teachers_sheet_has_goals_minutes_answers_and_what_to_expect() {
 }
 
 #[test]
-fn every_shipped_lesson_tells_a_teacher_what_is_needed() {
+fn every_shipped_lesson_has_a_complete_guide_for_teachers() {
     let all: Vec<Lesson> = lessons();
     let shipped = &all[..shipped::LESSONS.len()];
     for (index, lesson) in shipped.iter().enumerate() {
@@ -304,7 +304,7 @@ fn every_shipped_lesson_tells_a_teacher_what_is_needed() {
             let texts = [&predict.expected, &predict.explain];
             assert!(texts.iter().all(|text| !text.is_empty()), "{name}");
         }
-        // The list is an order in which to take them.
+        // The list is a recommended order.
         let earlier: Vec<_> = shipped[..index].iter().map(|other| &other.name).collect();
         for need in &guide.needs {
             let is_lesson = all.iter().any(|other| other.name == *need);
@@ -315,7 +315,7 @@ fn every_shipped_lesson_tells_a_teacher_what_is_needed() {
 }
 
 #[test]
-fn keys_for_the_teacher_are_checked() {
+fn teacher_keys_of_a_lesson_are_validated() {
     let head = "minutes = 10\n";
     let question = "name = \"finer\"\n";
     for (at, added, words) in [

@@ -1,4 +1,4 @@
-//! The health of a run: when it warns, whether what it advises is right, and whether its numbers are those of the run.
+//! The verdict on a run: its warnings, the correctness of its advice and of its numbers.
 
 use crate::support::dice::Dice;
 use crate::support::scenarios::{find_scheme, parse, preset};
@@ -35,12 +35,12 @@ fn begins(sentence: &str, words: &str) {
     assert!(sentence.starts_with(words), "{sentence}");
 }
 
-/// How many of the pieces of advice are of a kind.
+/// Counts the pieces of advice of one kind.
 fn count(advice: &[Advice], is: fn(&Advice) -> bool) -> usize {
     advice.iter().filter(|advice| is(advice)).count()
 }
 
-/// Asserts that more than these are `Holds`, another time step or another scheme, and that none is `Nothing`.
+/// Asserts that more than these numbers are `Holds`, a time step and a scheme, and that none is `Nothing`.
 #[track_caller]
 fn has_kinds(advice: &[Advice], [holds, steps, schemes]: [usize; 3]) {
     assert!(count(advice, |advice| *advice == Advice::Holds) > holds);
@@ -49,7 +49,7 @@ fn has_kinds(advice: &[Advice], [holds, steps, schemes]: [usize; 3]) {
     assert_eq!(count(advice, |advice| *advice == Advice::Nothing), 0);
 }
 
-/// The health of the whole run, as `gyrolab run` has it.
+/// Returns the verdict on the whole run, like `gyrolab run`.
 fn health(scenario: Scenario) -> Health {
     let steps = scenario.steps;
     health_at(scenario, steps)
@@ -65,7 +65,7 @@ fn health_at(scenario: Scenario, step: u64) -> Health {
 }
 
 #[test]
-fn it_warns_of_the_runs_that_the_time_step_has_made() {
+fn runs_spoiled_by_the_time_step_get_warnings() {
     for (name, set, words) in [
         (
             "method-2",
@@ -83,7 +83,7 @@ fn it_warns_of_the_runs_that_the_time_step_has_made() {
         begins(&sentence, "Do not believe this run");
         has(&sentence, words);
         let advised = match name {
-            // At another time step, which --time-step refuses, its push would be another.
+            // At another time step, which --time-step rejects, its push would differ.
             "wobble-push-accumulating" => "; no other scheme corrects it",
             _ => "; --time-step 0.0",
         };
@@ -93,7 +93,7 @@ fn it_warns_of_the_runs_that_the_time_step_has_made() {
 }
 
 #[test]
-fn it_does_not_warn_of_the_runs_that_hold() {
+fn reliable_presets_get_no_warnings() {
     for preset in PRESETS {
         let scenario = self::preset(preset.name, &[]);
         let doubtful = [
@@ -117,7 +117,7 @@ fn it_does_not_warn_of_the_runs_that_hold() {
     }
 }
 
-/// Largest distance from the exact motion, looked at on every step, as a part of the arm; infinite where a run breaks.
+/// Returns the largest distance from the exact motion over all steps, relative to the arm; infinite if the run breaks down.
 fn strays(scenario: Scenario) -> f64 {
     let scenario = Arc::new(scenario);
     let mut truth = Truth::new(Arc::clone(&scenario));
@@ -136,8 +136,8 @@ fn strays(scenario: Scenario) -> f64 {
 }
 
 #[test]
-fn the_largest_distance_is_that_of_every_step() {
-    // Runs whose swing falls between any thousand looks at them.
+fn the_largest_distance_covers_every_step() {
+    // Runs whose swing falls between a thousand equally spaced samples.
     let [scheme, time_step, _] = COARSE;
     let steps = "motion.steps=20000";
     for (name, set) in [
@@ -162,7 +162,7 @@ fn compared(scenario: &Scenario, time_step_s: f64, scheme: &'static SchemeInfo) 
     rows.unwrap().remove(0)
 }
 
-/// Asks for advice and takes it.
+/// Requests advice, applies it, and asserts that the advised run is reliable.
 fn advice_is_right(name: &str, scenario: &Scenario) -> Advice {
     let advice = advise(scenario);
     let (step, scheme) = (scenario.motion.time_step_s, scenario.motion.scheme);
@@ -210,7 +210,7 @@ fn advice_is_right(name: &str, scenario: &Scenario) -> Advice {
 
 #[test]
 #[ignore = "tries some 400 runs at many time steps: half a minute"]
-fn the_advice_is_right_for_every_preset_under_every_scheme() {
+fn advice_is_right_for_every_preset_and_scheme() {
     let cases: Vec<_> = PRESETS
         .iter()
         .flat_map(|preset| {
@@ -231,8 +231,8 @@ fn the_advice_is_right_for_every_preset_under_every_scheme() {
 }
 
 #[test]
-fn a_scheme_is_advised_at_a_time_step_at_which_it_holds() {
-    // Where the report's scheme cannot be mended, and at the run's own time step the better one does not hold either.
+fn an_advised_scheme_comes_with_a_sufficient_time_step() {
+    // No time step helps the report's scheme, and the better scheme fails at the run's own time step.
     for name in ["falling", "sleeping-unstable"] {
         let scenario = resampled(&preset(name, &[]), 2.0, find_scheme("report"));
         assert!(strays(resampled(&scenario, 2.0, find_scheme("srkn11b"))) > BELIEVED_WITHIN);
@@ -242,7 +242,7 @@ fn a_scheme_is_advised_at_a_time_step_at_which_it_holds() {
     }
 }
 
-/// A wheel or a few points anywhere, spinning, with a push or none.
+/// A spinning wheel or a few points in space, with or without a push.
 fn random(dice: &mut Dice) -> Scenario {
     let body = if dice.unit() < 0.6 {
         format!(
@@ -290,7 +290,7 @@ const SCHEMES_TRIED: &[&str] = &["report", "report", "rk4", "strang", "srkn11b",
 
 #[test]
 #[ignore = "tries 150 runs at many time steps: ten seconds"]
-fn the_advice_is_right_for_random_bodies() {
+fn advice_is_right_for_random_bodies() {
     let mut dice = Dice(0x5851_F42D_4C95_7F2D);
     let scenarios: Vec<_> = (0..150).map(|_| random(&mut dice)).collect();
     let advice: Vec<_> = scenarios
@@ -303,7 +303,7 @@ fn the_advice_is_right_for_random_bodies() {
     has_kinds(&advice, [20, 20, 5]);
 }
 
-/// The monitor looks at some steps only: it may miss a little of the largest distance.
+/// Compares the verdict with the true largest distance; the monitor samples only some steps and may miss a little.
 fn is_believed_rightly(scenario: &Scenario) {
     let health = health(scenario.clone());
     let seen = health.most_distance_m.unwrap() / scenario.arm_m();
@@ -324,7 +324,7 @@ fn is_believed_rightly(scenario: &Scenario) {
     }
 }
 
-/// A wheel of 5 kg at 0.8 m whose hub is at `height` (m), with 0.5 kg at each of four points of its axle or none there.
+/// A wheel of 5 kg with a radius of 0.8 m and its hub at `height` (m), with `axle_kg` at each of four points of its axle.
 fn wheel(height: f64, axle_kg: f64, rest: &str) -> Scenario {
     let axle: String = [("hub", 1.0), ("top", 1.5), ("foot", 0.0), ("middle", 0.5)]
         .map(|(name, part)| {
@@ -337,7 +337,7 @@ fn wheel(height: f64, axle_kg: f64, rest: &str) -> Scenario {
     ))
 }
 
-/// The wheel standing upright without gravity, turning by `psi` (rad) a step, some of it aside.
+/// The upright wheel without gravity, turning by `psi` (rad) per step, with the part `aside` of its spin sideways.
 fn turning(height: f64, psi: f64, aside: f64, steps: u64) -> Scenario {
     // I3 = 3.2 kg m^2, and dt = 1 s.
     let momentum = [3.2 * psi * aside, 3.2 * psi];
@@ -349,7 +349,7 @@ fn turning(height: f64, psi: f64, aside: f64, steps: u64) -> Scenario {
 }
 
 #[test]
-fn the_picture_changes_at_its_thresholds() {
+fn the_picture_of_the_wheel_changes_at_its_thresholds() {
     let picture = |psi: f64| health_at(turning(1.0, psi, 0.0, 1), 0).picture;
     for (at, below, above) in [
         (PI / 10.0, WheelPicture::Right, WheelPicture::Strobed),
@@ -369,7 +369,7 @@ fn the_picture_changes_at_its_thresholds() {
 }
 
 #[test]
-fn the_picture_is_what_one_step_shows() {
+fn the_picture_of_the_wheel_describes_one_step() {
     let mut dice = Dice(31);
     for _ in 0..200 {
         let psi = dice.between(0.01, 40.0);
@@ -390,7 +390,7 @@ fn the_picture_is_what_one_step_shows() {
 }
 
 #[test]
-fn the_multiplier_is_that_of_a_measured_run() {
+fn the_nutation_multiplier_equals_that_of_a_run() {
     let steps = 8;
     for (height, psi) in [
         (1.0, 0.3),
@@ -412,11 +412,11 @@ fn the_multiplier_is_that_of_a_measured_run() {
     let isotropic = turning(0.8 / 2_f64.sqrt(), 31.25, 1e-6, 1);
     assert!((health(isotropic).nutation.unwrap().multiplier - 1.0).abs() < 1e-12);
     let other = resampled(&turning(1.0, 1.0, 0.0, 1), 1.0, find_scheme("rk4"));
-    // It is the report's scheme alone.
+    // Only the report's scheme has a multiplier.
     assert_eq!(health(other).nutation, None);
 }
 
-/// Largest angle between axle and L over the run, degrees.
+/// Returns the largest angle between axle and L over the run, degrees.
 fn largest_lag(scenario: &Scenario) -> f64 {
     let mut simulation = Simulation::new(Arc::new(scenario.clone()));
     let mut most = 0.0_f64;
@@ -428,9 +428,9 @@ fn largest_lag(scenario: &Scenario) -> f64 {
     most.to_degrees()
 }
 
-/// A top that begins in steady precession goes on with the angle between axle and L that it began with.
+/// A top that starts in steady precession keeps its angle between axle and L.
 #[test]
-fn the_true_lag_is_that_of_a_top_in_steady_precession() {
+fn the_true_lag_equals_that_of_steady_precession() {
     let nutation = |name: &str| {
         let scenario = preset(name, &["motion.scheme=report"]);
         health_at(scenario, 0).nutation.unwrap()
@@ -439,7 +439,7 @@ fn the_true_lag_is_that_of_a_top_in_steady_precession() {
     let lag_deg = nutation("steady-slow").true_lag_deg.unwrap();
     assert!((lag_deg / health.lag_deg - 1.0).abs() < 1e-12, "{lag_deg}");
     assert_eq!(health.nutation, None);
-    // Too slow a top has no such angle, and one without a torque none but zero.
+    // A top that is too slow has no such angle, and without torque it is zero.
     assert_eq!(nutation("sleeping-unstable").true_lag_deg, None);
     let free = nutation("torque-free");
     assert_eq!((free.true_lag_deg, free.lag_ratio), (Some(0.0), None));
@@ -455,14 +455,14 @@ fn the_lag_of_method_2_is_188_times_the_true_one() {
     let kick = torque * 0.1 / 1000.0;
     let expected = (kick / (2.0 * (psi / 2.0).sin().abs())).to_degrees();
     let scheme_lag_deg = nutation.scheme_lag_deg().unwrap();
-    // The formula is that of small angles: the fast precession is 35 000 times as fast.
+    // The formula holds for small angles: the fast precession is 35 000 times as fast.
     let off = (scheme_lag_deg / expected - 1.0).abs();
     assert!(off < 1e-4, "{nutation:?}");
     let true_lag_deg = nutation.true_lag_deg.unwrap();
     assert!((true_lag_deg / (kick / psi).to_degrees() - 1.0).abs() < 1e-4);
     let ratio = nutation.lag_ratio.unwrap();
     assert!((ratio - 188.0).abs() < 1.0, "{nutation:?}");
-    // It swings about the lag, from none to twice as much.
+    // The angle swings about the lag, between zero and twice the lag.
     let measured = largest_lag(&scenario) / 2.0;
     assert!((measured / scheme_lag_deg - 1.0).abs() < 0.02, "{measured}");
     let short = preset("method-2", &["motion.steps=10"]);
@@ -474,7 +474,7 @@ fn the_lag_of_method_2_is_188_times_the_true_one() {
     );
 }
 
-/// The body of kappa = 0.38 for ten seconds under the report's scheme at 1e-3 s.
+/// The body with kappa = 0.38 for ten seconds under the report's scheme at 1e-3 s.
 fn reference_top(momentum: &str) -> Scenario {
     let start = format!("tilt_deg = 45\nmomentum_Js = {momentum}\nmomentum_frame = 'body'");
     let motion = "[motion]\ntime_step_s = 1e-3\nsteps = 10000\n";
@@ -482,7 +482,7 @@ fn reference_top(momentum: &str) -> Scenario {
 }
 
 #[test]
-fn drifts_and_deviation_are_those_of_known_cases() {
+fn drifts_and_deviations_match_known_cases() {
     let cusped = health(reference_top("[0, 0, 100]"));
     assert!((cusped.energy_drift.unwrap() - 0.116).abs() < 5e-4);
     let looping = health(reference_top("[0, -20, 30]"));
@@ -500,7 +500,7 @@ fn drifts_and_deviation_are_those_of_known_cases() {
 }
 
 #[test]
-fn distances_are_those_from_the_reference_motions() {
+fn distances_match_the_reference_motions() {
     // Rows: t (s), axle, ...; the traced point is 1.5 m up the axle.
     let cusped = include_str!("../reference/exact/cusped.csv");
     let looping = include_str!("../reference/exact/looping.csv");
@@ -528,7 +528,7 @@ fn distances_are_those_from_the_reference_motions() {
 }
 
 #[test]
-fn lz_drifts_where_a_push_from_the_side_meets_the_wrong_axle() {
+fn lz_drifts_if_a_sideways_push_acts_on_a_wrong_axle() {
     let push = "push.0={point='top',force_N=[30,0,0],from_s=0.5,for_s=2}";
     let scenario = preset("cusps", &[push]);
     let drift = |step, scheme| {
@@ -541,8 +541,8 @@ fn lz_drifts_where_a_push_from_the_side_meets_the_wrong_axle() {
 }
 
 #[test]
-fn where_nothing_can_be_said_it_says_so() {
-    // The closed form leaves the range of numbers long before the report's scheme does.
+fn runs_without_a_verdict_say_why() {
+    // The closed form overflows long before the report's scheme does.
     let huge = ["motion.scheme=report", "start.momentum_Js=[0,0,1e100]"];
     for (name, set, words) in [
         (
@@ -564,7 +564,7 @@ fn where_nothing_can_be_said_it_says_so() {
 }
 
 #[test]
-fn a_body_at_rest_counts_as_one_that_will_swing() {
+fn the_cost_of_a_body_at_rest_assumes_that_it_will_swing() {
     let motion = "[motion]\ntime_step_s = 0.1\nsteps = 100000000\n";
     let push = "[[push]]\npoint = 'top'\nforce_N = [1, 0, 0]\nsteps = 3\n";
     let start = "[start]\ntilt_deg = 45\nmomentum_Js = [0, 0, 0]\n";
@@ -577,7 +577,7 @@ fn a_body_at_rest_counts_as_one_that_will_swing() {
 }
 
 #[test]
-fn edits_that_spoil_a_run_are_advised_away() {
+fn advice_undoes_edits_that_spoil_a_run() {
     let edit = "edit=[{step=1000, set={'motion.scheme'='report', 'motion.time_step_s'=0.05}}]";
     let spoilt = preset("cusps", &[edit]);
     assert_eq!(health(spoilt.clone()).is_believed(), Some(false));
@@ -591,16 +591,16 @@ fn the_sentence_names_the_right_cause() {
         health(scenario.clone()).sentence(Some(&advise(&scenario)))
     };
     let added_up = "the errors of the scheme report have added up";
-    // A steady precession has no nutation that could be damped.
+    // A steady precession has no nutation to damp.
     let sentence = told("steady-slow", &COARSE);
     has(&sentence, added_up);
     has_no(&sentence, "nutation");
-    // One that is a hair off steady has a nutation, too small to put the traced point off.
+    // Slightly off steady, there is a nutation, but it is too small to move the traced point.
     let hair_off = [&COARSE[..], &["start.tilt_deg=30.01"]].concat();
     has(told("steady-slow", &hair_off), added_up);
     let damps = "the nutation is damped by";
     has(told("cusps", &COARSE), damps);
-    // The traced point holds, the nutation does not.
+    // The traced point is right, but not the nutation.
     let report = "motion.scheme=report";
     let fine = ["motion.time_step_s=0.001", "motion.steps=20000", report];
     let of_fast = told("fast-top", &fine);
@@ -615,7 +615,7 @@ fn the_sentence_names_the_right_cause() {
             "% per step; --scheme srkn11b --time-step",
         ],
     );
-    // Nor is there one in a steady precession whose traced point holds.
+    // A steady precession with a correct traced point has no nutation either.
     let fewer = ["motion.time_step_s=0.0001", "motion.steps=5000", report];
     let of_steady = told("steady-slow", &fewer);
     begins(&of_steady, "The numbers are reliable");
@@ -629,7 +629,7 @@ fn the_sentence_names_the_right_cause() {
 }
 
 #[test]
-fn a_time_step_that_would_be_refused_is_not_advised() {
+fn a_time_step_that_would_be_rejected_is_not_advised() {
     let scenario = preset("wobble-push-accumulating", &[]);
     assert!(rescale::at_time_step(&scenario.file, 0.01).is_err());
     let advice = advise(&scenario);
@@ -651,7 +651,7 @@ fn a_missing_energy_error_is_explained() {
 }
 
 #[test]
-fn a_search_for_advice_that_nobody_waits_for_any_more_ends() {
+fn an_unneeded_search_for_advice_ends() {
     let scenario = preset("method-2", &[]);
     let asked = Cell::new(0);
     let wanted_for = |times: u32| {
@@ -668,13 +668,13 @@ fn a_search_for_advice_that_nobody_waits_for_any_more_ends() {
     assert_eq!(advice, Some(advise(&scenario)));
     let (cut_short, looks) = wanted_for(2);
     assert_eq!(cut_short, None);
-    // Each trial that is left is given up at its first look.
+    // Every remaining trial stops at its first check.
     assert!(looks < 40 && looks < whole / 4, "{looks} of {whole}");
 }
 
-/// At a tenth of its time step the traced point of wobble-push holds; its nutation swings by 0.029 degrees, and should by 0.019.
+/// At a tenth of its time step, the traced point of wobble-push is right; its nutation is 0.029 degrees instead of 0.019.
 #[test]
-fn a_nutation_that_the_time_step_makes_larger_is_told() {
+fn an_enlarged_nutation_is_reported() {
     let sentence = |time_step_s: f64| {
         let scenario = preset("wobble-push", &["push.0.steps=1"]);
         let scenario = resampled(&scenario, time_step_s, find_scheme("report"));
@@ -687,10 +687,10 @@ fn a_nutation_that_the_time_step_makes_larger_is_told() {
     begins(&sentence(0.002), "The numbers are reliable: ");
 }
 
-/// Runs whose traced point is right. The swing of each is another's: made by the scheme, larger or smaller than it should
-/// be, about another tilt, or gone.
+/// Runs with a correct traced point and a wrong swing: produced by the scheme, too large or too small, about another tilt,
+/// or missing.
 #[test]
-fn a_swing_that_is_not_the_bodys_is_told_under_every_scheme() {
+fn a_wrong_swing_is_reported_under_every_scheme() {
     for (name, scheme, time_step_s, end_s, words) in [
         ("fast-top", "strang", 0.3, 20.0, "from 29.690 to 30.000"),
         ("fast-top", "strang", 0.1, 20.0, "from 30.000 to 30.380"),
@@ -712,9 +712,9 @@ fn a_swing_that_is_not_the_bodys_is_told_under_every_scheme() {
     }
 }
 
-/// What is said at the end of a run and what is advised beside it in the lab are one verdict.
+/// The verdict at the end of a run and the advice in the lab agree.
 #[test]
-fn the_lab_advises_where_the_nutation_does_not_hold() {
+fn the_lab_gives_advice_if_the_nutation_is_wrong() {
     let set = [
         "motion.time_step_s=0.01",
         "push.0.steps=2000",

@@ -1,4 +1,4 @@
-//! A run is a scenario and its journal: what an edit at a step changes, from which step on, and what it does not change.
+//! A run is a scenario and its journal: the effect of an edit, the step from which it acts, and what it leaves unchanged.
 
 use crate::support::scenarios::{parse, preset};
 use gyrolab::engine::export::{CsvLayout, CsvWriter, stream};
@@ -9,7 +9,7 @@ use std::num::NonZeroU64;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-/// The textbook's wheel, tilted, with no load but its weight.
+/// The textbook's tilted wheel, loaded only by its weight.
 const WHEEL: &str = r#"
 title = "Wheel"
 [body.rim]
@@ -27,7 +27,7 @@ momentum_frame = "body"
 [motion]
 "#;
 
-/// The wheel with `motion` as the text from `[motion]` on, and with edits, each as a step and the TOML of its `set`.
+/// Starts the wheel with `motion` as the text after `[motion]`, and with edits: a step and the TOML of its `set` each.
 fn simulation(motion: &str, edits: &[(u64, &str)]) -> Simulation {
     let mut text = format!("{WHEEL}{motion}\n");
     for (step, set) in edits {
@@ -36,7 +36,7 @@ fn simulation(motion: &str, edits: &[(u64, &str)]) -> Simulation {
     Simulation::new(Arc::new(parse(&text)))
 }
 
-/// The samples of step 0 to the last.
+/// Returns the samples from step 0 to the last.
 fn samples(mut simulation: Simulation) -> Vec<Sample> {
     let mut samples = vec![simulation.sample()];
     while simulation.step_number() < simulation.scenario().steps {
@@ -46,7 +46,7 @@ fn samples(mut simulation: Simulation) -> Vec<Sample> {
     samples
 }
 
-/// Whether two samples have the same bits, apart from their segments.
+/// True if two samples have the same bits, apart from their segments.
 fn same(a: &Sample, b: &Sample) -> bool {
     Sample { segment: 0, ..*a } == Sample { segment: 0, ..*b }
 }
@@ -74,7 +74,7 @@ fn time_counts_from_the_last_edit_of_the_time_step() {
 }
 
 #[test]
-fn segments_count_edits_of_time_step_scheme_and_gravity_from_the_next_row_on() {
+fn segments_count_edits_of_time_step_scheme_and_gravity() {
     let edits = [
         (0, "'motion.gravity_m_per_s2' = 9"),
         (3, "'motion.scheme' = 'rk4'"),
@@ -102,7 +102,7 @@ fn segments_count_edits_of_time_step_scheme_and_gravity_from_the_next_row_on() {
 }
 
 #[test]
-fn an_edit_changes_nothing_up_to_its_own_row_and_something_from_the_next_on() {
+fn an_edit_takes_effect_from_the_row_after_its_step() {
     let pushed = format!("{COARSE}\n[[push]]\npoint = 'top'\nforce_N = [0, 50, 0]\nsteps = 90\n");
     let plain = samples(simulation(&pushed, &[]));
     for set in [
@@ -124,7 +124,7 @@ fn an_edit_changes_nothing_up_to_its_own_row_and_something_from_the_next_on() {
 }
 
 #[test]
-fn edits_at_the_end_and_beyond_do_nothing() {
+fn edits_at_or_after_the_end_have_no_effect() {
     let plain = samples(simulation(COARSE, &[]));
     let edits = [
         (100, "'motion.gravity_m_per_s2' = 1"),
@@ -135,7 +135,7 @@ fn edits_at_the_end_and_beyond_do_nothing() {
 }
 
 #[test]
-fn an_edit_at_step_0_is_a_scenario_of_its_own() {
+fn an_edit_at_step_0_equals_an_edited_scenario() {
     for (set, motion) in [
         (
             "'motion.time_step_s' = 0.002",
@@ -157,8 +157,7 @@ fn an_edit_at_step_0_is_a_scenario_of_its_own() {
     }
 }
 
-/// The steps on which a torque acts, with its multiple of the torque of one push. `motion` has no gravity, so that only
-/// pushes cause a torque.
+/// Returns the steps with a torque, and the torque in units of one push. Gravity is off, so only pushes cause a torque.
 fn pushed_steps(motion: &str, edits: &[(u64, &str)]) -> Vec<(u64, f64)> {
     let mut simulation = simulation(&format!("gravity_m_per_s2 = 0\n{motion}\n"), edits);
     simulation.keep_workings(true);
@@ -182,7 +181,7 @@ fn pushed_steps(motion: &str, edits: &[(u64, &str)]) -> Vec<(u64, f64)> {
 }
 
 #[test]
-fn pushes_counted_in_steps_hold_their_seconds_after_an_edit_of_the_time_step() {
+fn pushes_counted_in_steps_keep_their_seconds_after_time_step_edits() {
     let push = |first, steps| {
         format!(
             "scheme = 'report'\ntime_step_s = 0.1\nsteps = 500\n[[push]]\npoint = 'top'\nforce_N = [0, -2, 0]\nfirst_step = {first}\nsteps = {steps}\n"
@@ -196,9 +195,9 @@ fn pushes_counted_in_steps_hold_their_seconds_after_an_edit_of_the_time_step() {
         (1, 200, once, 1..=360),
         // From 5 s to 7 s, both after the edit.
         (51, 20, once, 61..=100),
-        // Over before the edit.
+        // The push ends before the edit.
         (11, 20, once, 11..=30),
-        // A second edit counts in the seconds of the scenario's own time step too: 12 steps more to 4.6 s, the rest at 0.2 s.
+        // A second edit also keeps the seconds: 12 more steps to 4.6 s, the rest at 0.2 s.
         (1, 200, &twice, 1..=129),
     ] {
         let seen = pushed_steps(&push(first, steps), edits);
@@ -208,9 +207,9 @@ fn pushes_counted_in_steps_hold_their_seconds_after_an_edit_of_the_time_step() {
 }
 
 #[test]
-fn an_accumulating_push_grows_by_the_clock_after_an_edit_of_the_time_step() {
+fn accumulating_pushes_grow_by_time_after_time_step_edits() {
     let push = "scheme = 'report'\ntime_step_s = 0.1\nsteps = 20\n[[push]]\npoint = 'top'\nforce_N = [0, -2, 0]\nfirst_step = 2\nsteps = 8\naccumulates = true\n";
-    // From step 4 on every 0.1 s is two steps.
+    // From step 4 on, 0.1 s is two steps.
     let edit = [(4, "'motion.time_step_s' = 0.05")];
     for (edits, expected) in [
         (&[][..], "1234567888888888888"),
@@ -223,7 +222,7 @@ fn an_accumulating_push_grows_by_the_clock_after_an_edit_of_the_time_step() {
 }
 
 #[test]
-fn a_push_in_steps_is_the_push_in_its_seconds() {
+fn a_push_in_steps_equals_the_push_in_seconds() {
     let run = |window: &str, edits: &[(u64, &str)]| {
         let push = format!("[[push]]\npoint = 'top'\nforce_N = [3, 2, 1]\n{window}");
         samples(simulation(&format!("{FINE}\n{push}\n"), edits))
@@ -242,9 +241,9 @@ fn a_push_in_steps_is_the_push_in_its_seconds() {
     }
 }
 
-/// Energy drift is the scheme's error alone: neither a push nor an edit of gravity contributes to it.
+/// Energy drift measures only the error of the scheme: neither pushes nor edits of gravity contribute.
 #[test]
-fn the_energy_drift_leaves_out_the_work_of_pushes_and_of_edits_of_gravity() {
+fn energy_drift_excludes_the_work_of_pushes_and_gravity_edits() {
     let motion = "scheme = 'rk4'\ntime_step_s = 0.0005\nsteps = 8000\n\
         [[push]]\npoint = 'top'\nforce_N = [0, 30, -20]\nfirst_step = 100\nsteps = 900\n\
         [[push]]\npoint = 'top'\nforce_N = [25, 0, 10]\nfrom_s = 1.00017\nfor_s = 0.70031\n\
@@ -272,7 +271,7 @@ fn the_energy_drift_leaves_out_the_work_of_pushes_and_of_edits_of_gravity() {
 }
 
 #[test]
-fn the_azimuth_counts_every_turn_however_few_rows_there_are() {
+fn the_azimuth_counts_every_turn_for_any_row_spacing() {
     let azimuths = |every: u64| -> Vec<(u64, f64)> {
         let mut simulation = Simulation::new(Arc::new(preset("torque-free", &[])));
         let layout = CsvLayout::every(NonZeroU64::new(every).unwrap());

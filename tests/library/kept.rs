@@ -1,4 +1,4 @@
-//! The lab as a session keeps it: what was done comes back, however much it was.
+//! The lab saved in a session and resumed from it.
 
 use crate::support::desk::Desk;
 use crate::support::scenarios::{self, preset};
@@ -7,7 +7,7 @@ use gyrolab::lab::storage::session::SessionContent;
 use gyrolab::tui::keymap::Key;
 use gyrolab::tui::screen;
 
-/// The lab as `content` has it, arrived where it was left.
+/// Resumes the lab of `content` and waits until it has reached its step.
 #[track_caller]
 fn resumed(content: &SessionContent) -> Desk {
     let mut desk = Desk::of(scenarios::resumed(content));
@@ -15,7 +15,7 @@ fn resumed(content: &SessionContent) -> Desk {
     desk
 }
 
-/// Goes to a step and then gives `count` pushes, each one step earlier than the one before.
+/// Jumps to a step and then adds `count` pushes, each one step earlier than the previous one.
 fn pushed_backwards(count: usize) -> Desk {
     let mut desk = Desk::open("method-2");
     desk.commands("go_to = 600");
@@ -24,7 +24,7 @@ fn pushed_backwards(count: usize) -> Desk {
 }
 
 #[test]
-fn any_number_of_acts_each_earlier_than_the_one_before_comes_back() {
+fn undo_restores_backdated_edits_after_resume() {
     let mut desk = pushed_backwards(200);
     let content = desk.lab.content(&Default::default());
     let mut back = resumed(&content);
@@ -41,7 +41,7 @@ fn any_number_of_acts_each_earlier_than_the_one_before_comes_back() {
 }
 
 #[test]
-fn what_is_kept_grows_with_the_number_of_acts() {
+fn the_size_of_a_session_is_linear_in_the_number_of_actions() {
     let length = |count| {
         pushed_backwards(count)
             .lab
@@ -56,7 +56,7 @@ fn what_is_kept_grows_with_the_number_of_acts() {
 }
 
 #[test]
-fn what_is_shown_and_hidden_comes_back() {
+fn shown_and_hidden_items_are_restored() {
     fn picture(desk: &mut Desk) -> String {
         desk.wait(100);
         screen::text(&desk.lab, true, (120, 40))
@@ -67,14 +67,14 @@ fn what_is_shown_and_hidden_comes_back() {
     for fill in ["none", "3d"] {
         desk.commands(&format!("fill = '{fill}'"));
         let mut back = resumed(&desk.lab.content(&Default::default()));
-        desk.press(&[Key::Esc]); // no message hides the line
+        desk.press(&[Key::Esc]); // clears the message that covers the line
         back.press(&[Key::Esc]);
         desk.commands(&format!("fill = '{fill}'"));
         back.commands(&format!("fill = '{fill}'"));
         assert_eq!(picture(&mut back), picture(&mut desk));
         assert_eq!(back.lab.view().focus, desk.lab.view().focus);
     }
-    // What the file hides, and the lab has shown again.
+    // An item that the file hides and the lab has shown again.
     let hiding = preset("loops", &["view.hide=['traces']"]);
     let mut hides = Desk::with("loops", hiding);
     hides.commands("hide = []");
@@ -82,7 +82,7 @@ fn what_is_shown_and_hidden_comes_back() {
     assert_eq!(back.lab.view().look.hide, []);
 }
 
-/// Waits until the pictures of the pinned run are there.
+/// Waits until the pinned run has been recomputed.
 #[track_caller]
 fn await_pinned(desk: &mut Desk) {
     for _ in 0..4000 {
@@ -96,7 +96,7 @@ fn await_pinned(desk: &mut Desk) {
 }
 
 #[test]
-fn the_pinned_run_comes_back_with_what_was_done_to_it() {
+fn the_pinned_run_is_restored_with_its_edits() {
     let mut desk = Desk::open("method-2");
     desk.commands("go_to = '20 s'\npush = true\ngo_to = '40 s'\npin = true");
     desk.commands("set = { 'start.tilt_deg' = 30 }\ngo_to = '10 s'");
@@ -122,7 +122,7 @@ fn the_pinned_run_comes_back_with_what_was_done_to_it() {
 }
 
 #[test]
-fn the_present_run_comes_back_pinned() {
+fn the_current_run_is_restored_as_pinned() {
     let mut desk = Desk::open("method-2");
     desk.commands("go_to = '40 s'\npin = true");
     let mut back = resumed(&desk.lab.content(&Default::default()));

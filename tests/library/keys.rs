@@ -1,4 +1,4 @@
-//! The keys: the footer, the settings behind one key, the search of the help, and every key that a text names.
+//! Keys: the footer, the settings dialog, the search in the help, and keys named in texts.
 
 use crate::support::stage::{LARGE, SMALL, Stage};
 use crate::support::words::has_all;
@@ -20,7 +20,7 @@ fn footer_begins(stage: &Stage, words: &str) {
 }
 
 #[test]
-fn the_footer_has_the_keys_of_a_pane_once_that_was_touched() {
+fn the_footer_shows_the_keys_of_a_pane_after_its_first_use() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.commands("pause = true");
     let first = " space run  . , step  p push  t exact  e edit  o open  L lessons  x CSV  ? help";
@@ -29,7 +29,7 @@ fn the_footer_has_the_keys_of_a_pane_once_that_was_touched() {
     stage.wait(6.0);
     footer_begins(&stage, " Left cursor");
     has_all(&footer(&stage), ["space run", "L lessons", "? help"]);
-    // From the values, back to the run.
+    // From the values pane back to the run.
     let mut fresh = Stage::open("method-2", &[], SMALL);
     fresh.press("e");
     footer_begins(&fresh, " / find");
@@ -38,7 +38,7 @@ fn the_footer_has_the_keys_of_a_pane_once_that_was_touched() {
 }
 
 #[test]
-fn one_dialog_holds_the_settings_with_their_values() {
+fn one_dialog_shows_all_settings_with_their_values() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.commands("pause = true").press("c");
     for words in [
@@ -66,7 +66,7 @@ fn one_dialog_holds_the_settings_with_their_values() {
 }
 
 #[test]
-fn keys_of_lessons_are_where_a_lesson_is() {
+fn lesson_keys_work_only_with_an_open_lesson() {
     for key in ["n", "N", "b", "h", "\u{e}"] {
         Stage::open("method-2", &[], SMALL)
             .press(key)
@@ -78,11 +78,11 @@ fn keys_of_lessons_are_where_a_lesson_is() {
     }
 }
 
-/// The letters that are no key of the lab in any pane, for whoever adds a key.
+/// The letters that are not keys of the lab in any pane: candidates for a new key.
 const FREE_LETTERS: &str = "lABCDEFGHIJKOQRTVY";
 
 #[test]
-fn the_free_letters_are_these() {
+fn the_list_of_free_letters_is_complete() {
     let keys = keys();
     let letters = ('a'..='z').chain('A'..='Z');
     let free: String = letters
@@ -94,9 +94,9 @@ fn the_free_letters_are_these() {
     );
 }
 
-/// A letter and its capital are two sides of one thing, or one of them is no key.
+/// A letter and its capital are counterparts, or only one of them is a key.
 #[test]
-fn no_capital_does_something_else_than_its_letter() {
+fn capitals_are_counterparts_of_their_letters() {
     const PAIRS: [char; 8] = ['m', 'n', 'p', 's', 'u', 'w', 'x', 'z'];
     let keys = keys();
     for letter in 'a'..='z' {
@@ -111,7 +111,7 @@ fn no_capital_does_something_else_than_its_letter() {
 }
 
 #[test]
-fn the_keys_of_the_lab_mean_something_wherever_the_focus_is() {
+fn lab_keys_work_in_every_pane() {
     const EVERYWHERE: &str = "space . , + - g r t i j d f Tab v y w [ ] z W Z Left Right < > ( ) | Enter \
         e / p P a u U o s S x X c L k ? q";
     let rows = BINDINGS.iter().filter(|row| row.modes.contains(&Mode::Lab));
@@ -125,7 +125,7 @@ fn the_keys_of_the_lab_mean_something_wherever_the_focus_is() {
 }
 
 #[test]
-fn a_key_that_means_nothing_here_says_where_it_does() {
+fn an_unbound_key_says_where_it_works() {
     for (keys, said) in [
         ("n", "L lists the lessons"),
         ("!", "! does nothing here; ? lists the keys"),
@@ -139,7 +139,7 @@ fn a_key_that_means_nothing_here_says_where_it_does() {
 }
 
 #[test]
-fn lists_filter_as_one_types_and_move_by_the_same_keys() {
+fn all_lists_filter_by_typing_and_share_their_keys() {
     let selected = |stage: &Stage| {
         let picture = stage.picture();
         let line = picture.lines().find(|line| line.contains("> "));
@@ -163,7 +163,7 @@ fn lists_filter_as_one_types_and_move_by_the_same_keys() {
             stage.wait(0.0);
             assert_eq!(selected(&stage), first, "{open} {back}");
         }
-        // Letters that are keys of the lab, and the space, are typed.
+        // Letters that are keys of the lab are typed, and so is the space.
         stage.press("s t").shows("s t_").press("\u{1b}");
         stage.shows_no("s t_");
         stage.press("\u{1b}");
@@ -180,7 +180,7 @@ fn lists_filter_as_one_types_and_move_by_the_same_keys() {
 }
 
 #[test]
-fn the_help_finds_keys_by_words_that_are_not_theirs() {
+fn the_help_finds_keys_by_synonyms() {
     for (search, key) in [
         ("speed", "+"),
         ("dt", "e"),
@@ -197,7 +197,7 @@ fn the_help_finds_keys_by_words_that_are_not_theirs() {
     }
 }
 
-/// The names of all keys there are in the lab.
+/// Returns the names of all keys of the lab.
 fn keys() -> Vec<String> {
     let of_panes = panes::rows().flat_map(|pane| pane.keys);
     let rows = BINDINGS
@@ -209,17 +209,17 @@ fn keys() -> Vec<String> {
         .collect()
 }
 
-/// What follows the name of a key: "m shows both again".
+/// Verbs that follow the name of a key, as in "m shows both again".
 #[rustfmt::skip]
 const VERBS: [&str; 26] = [
     "begins", "brings", "changes", "chooses", "counts", "does", "draws", "explains", "exports", "fills", "gives", "goes",
     "hides", "leaves", "lists", "makes", "moves", "opens", "pauses", "plays", "returns", "saves", "searches", "shows",
     "takes", "turns",
 ];
-/// Letters of physics before such a verb.
+/// Phrases in which a letter of physics precedes such a verb.
 const SYMBOLS: [&str; 2] = ["the arrow F shows", "R turns every"];
 
-/// The keys that `text` names: in backticks or parentheses, before a verb or a colon, or in the first column of a list.
+/// Returns the keys named in `text`: in backticks or parentheses, before a verb or colon, or in the first column of a list.
 fn named(text: &str) -> Vec<String> {
     let text = SYMBOLS
         .iter()
@@ -269,7 +269,7 @@ fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
 }
 
 #[test]
-fn every_key_that_a_text_names_is_a_key() {
+fn every_key_named_in_a_text_exists() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let read = |path: &PathBuf| fs::read_to_string(path).unwrap();
     let mut texts = vec![("README.md".to_owned(), read(&root.join("README.md")))];

@@ -1,11 +1,11 @@
-//! Laws that the schemes keep, or break in a way that is known.
+//! Laws that the schemes obey, or violate in a known way.
 
 use gyrolab::physics::report::ReportScheme;
 use gyrolab::physics::{Body, Loads, PointMass, Scheme, SchemeInfo, State, rotation};
 use nalgebra::{Complex, Matrix3, Vector3};
 use std::f64::consts::TAU;
 
-/// The report's wheel, 5 kg on ten points at R = 0.8 m, its hub at `height` (m), with the axle's four points.
+/// The report's wheel: 5 kg on ten points at R = 0.8 m, the hub at `height` (m), and the four points of the axle.
 fn wheel(height: f64) -> Body {
     let rim = (0..10).map(|j| {
         let angle = TAU * f64::from(j) / 10.0;
@@ -21,7 +21,7 @@ fn wheel(height: f64) -> Body {
     Body::new(rim.chain(axle).collect()).unwrap()
 }
 
-/// Tilted by `tilt` (radians) about +x, L given in the body frame.
+/// A state tilted by `tilt` (radians) about +x, with L in the body frame.
 fn tilted(tilt: f64, momentum: [f64; 3]) -> State {
     let orientation = rotation::about(&Vector3::x(), tilt);
     State {
@@ -63,7 +63,7 @@ fn the_body_stays_rigid_over_a_million_steps() {
     let points = body.points();
     let mut worst = 0.0f64;
     for i in 0..points.len() {
-        // the carried points and the orientation turn alike ...
+        // the stored points turn like the orientation ...
         let apart = (report.position(i) - state.orientation * points[i].at).norm();
         assert!(
             apart < 1e-9,
@@ -79,7 +79,7 @@ fn the_body_stays_rigid_over_a_million_steps() {
     assert!(worst < 1e-10, "distances are off by {worst:e} m");
 }
 
-/// What one step without torque multiplies the axle's small offset from L by, as a complex number across L.
+/// Returns the factor by which a step without torque multiplies a small offset of the axle from L, as a complex number.
 fn measured_multiplier(height: f64, momentum: f64, dt: f64) -> Complex<f64> {
     let body = wheel(height);
     let offset = 1e-5;
@@ -108,8 +108,8 @@ fn measured_multiplier(height: f64, momentum: f64, dt: f64) -> Complex<f64> {
 }
 
 #[test]
-fn the_scheme_multiplies_nutation_as_theory_says() {
-    // A = 1 − κ + κ e^{iψ}, κ = I3/I1, ψ = |Ω| dt; the truth is e^{iκψ}. Heights give κ below, at and above 1.
+fn the_report_scheme_multiplies_nutation_by_the_predicted_factor() {
+    // A = 1 − κ + κ e^{iψ}, κ = I3/I1, ψ = |Ω| dt; the exact factor is e^{iκψ}. The heights give κ below, at and above 1.
     for (height, side) in [(1.0, "below"), (0.8 / 2f64.sqrt(), "at"), (0.2, "above")] {
         let moments = wheel(height).inertia();
         let kappa = moments[(2, 2)] / moments[(0, 0)];

@@ -1,4 +1,4 @@
-//! Lessons: what is read, what is refused, with file and line, and how they are played without a screen.
+//! Lessons: parsing, error messages with file and line, and playing without a screen.
 
 use crate::support::desk::Desk;
 use crate::support::scenarios::{preset, view};
@@ -90,7 +90,7 @@ pub fn read(text: &str) -> Lesson {
     reading::read("a.md", text).unwrap_or_else(|problems| panic!("{problems}"))
 }
 
-/// The refusal of a lesson of this text.
+/// Returns the error message for a lesson with this text.
 #[track_caller]
 fn unreadable(text: &str) -> String {
     match reading::read("a.md", text) {
@@ -106,13 +106,13 @@ fn with(from: &str, to: &str) -> String {
     WHOLE.replace(from, to)
 }
 
-/// The line of [`WHOLE`] that is `text`.
+/// Returns the number of the line of [`WHOLE`] that equals `text`.
 fn line_of(text: &str) -> usize {
     1 + WHOLE.lines().position(|line| line == text).unwrap()
 }
 
 #[test]
-fn a_whole_lesson_is_read() {
+fn a_lesson_with_every_kind_of_block_is_parsed() {
     let lesson = read(WHOLE);
     assert_eq!(lesson.title, "The push");
     assert_eq!(lesson.minutes, Some(10));
@@ -150,7 +150,7 @@ fn kind(block: &LessonBlock) -> &'static str {
     }
 }
 
-/// What stands in [`WHOLE`], and what is put in its place: each a mistake.
+/// Texts in [`WHOLE`], each with replacements that are mistakes.
 const MISTAKES: &[(&str, &[&str])] = &[
     (
         "open = \"wobble-push\"\ndetail_s = 8",
@@ -251,7 +251,7 @@ const MISTAKES: &[(&str, &[&str])] = &[
 ];
 
 #[test]
-fn what_is_broken_is_told_with_its_line_and_the_nearest_right_name() {
+fn mistakes_in_a_lesson_are_reported_with_line_and_nearest_name() {
     let mistakes = MISTAKES
         .iter()
         .flat_map(|(from, all)| all.iter().map(move |to| (from, to)));
@@ -264,7 +264,7 @@ fn what_is_broken_is_told_with_its_line_and_the_nearest_right_name() {
 }
 
 #[test]
-fn a_prediction_is_compared_after_it_was_asked_for() {
+fn a_prediction_must_be_asked_before_it_is_compared() {
     let late = "```predict\nname = \"late\"\nask = \"?\"\nunit = \"\"\n```";
     let text = WHOLE
         .replace("Stop the push.", late)
@@ -280,7 +280,7 @@ fn a_prediction_is_compared_after_it_was_asked_for() {
 }
 
 #[test]
-fn no_lesson_without_a_page_or_a_title() {
+fn a_lesson_needs_a_title_and_a_page() {
     for (text, words) in [
         ("", "a.md:1: has no title"),
         ("# A title\n\nText.\n", "a.md:1: has no page"),
@@ -291,7 +291,7 @@ fn no_lesson_without_a_page_or_a_title() {
 }
 
 #[test]
-fn line_ends_a_byte_order_mark_and_comments_change_nothing() {
+fn line_ends_byte_order_marks_and_longer_fences_are_handled() {
     let lesson = read(WHOLE);
     let of_windows = format!("\u{feff}{}", WHOLE.replace('\n', "\r\n"));
     assert_eq!(read(&of_windows), lesson);
@@ -319,7 +319,7 @@ fn line_ends_a_byte_order_mark_and_comments_change_nothing() {
 }
 
 #[test]
-fn a_file_that_is_too_long_is_refused_with_its_length() {
+fn a_lesson_that_is_too_long_is_rejected_with_the_limit() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("long.md");
     let pages = |count: usize| "# A\n\n## B\n\n".repeat(count).into_bytes();
@@ -344,7 +344,7 @@ fn a_file_that_is_too_long_is_refused_with_its_length() {
 
 proptest! {
     #[test]
-    fn no_text_breaks_the_reader(cut in 0..2000usize, length in 0..60usize, put in 0..NASTY.len(), again in 0..2000usize) {
+    fn mangled_lessons_never_panic(cut in 0..2000usize, length in 0..60usize, put in 0..NASTY.len(), again in 0..2000usize) {
         let characters: Vec<char> = WHOLE.chars().collect();
         let at = cut.min(characters.len());
         let end = (at + length).min(characters.len());
@@ -366,7 +366,7 @@ const NASTY: [&str; 16] = [
     "{z_m:.3}",
 ];
 
-/// A lab as the program makes one to play lessons.
+/// A lab like the one in which the program plays lessons.
 pub fn lab() -> Lab {
     let scenario = Arc::new(preset("method-2", &[]));
     let view = view(&scenario, Marker::Ascii, false);
@@ -388,7 +388,7 @@ fn not_good(from: &str, to: &str) -> String {
 }
 
 #[test]
-fn a_lesson_is_played_to_its_end() {
+fn a_lesson_can_be_played_to_its_end() {
     let played = checked(&read(WHOLE)).unwrap_or_else(|problems| panic!("{problems}"));
     assert_eq!(played, []);
     let told = [
@@ -403,7 +403,7 @@ fn a_lesson_is_played_to_its_end() {
 
 #[test]
 #[ignore = "takes ten million steps: seconds"]
-fn a_condition_of_a_task_that_never_holds_is_told_at_its_line() {
+fn a_task_condition_that_never_holds_is_reported_with_its_line() {
     let told = not_good("go_to = 10", "run_until = \"t_s < 0\"");
     let task = line_of("go_to = 10");
     let begin = format!("a.md:{task}: run_until: did not hold on any of 10,000,000 steps");
@@ -411,7 +411,7 @@ fn a_condition_of_a_task_that_never_holds_is_told_at_its_line() {
 }
 
 #[test]
-fn a_check_without_a_task_is_about_the_lab_block() {
+fn a_check_without_a_task_applies_to_the_lab_block() {
     let task = "```task\nopen = \"method-2\"\ngo_to = 10\n```";
     let told = not_good(task, "");
     has(
@@ -429,7 +429,7 @@ fn a_check_without_a_task_is_about_the_lab_block() {
 }
 
 #[test]
-fn set_beside_open_holds_the_seconds_of_the_run_and_its_pushes() {
+fn set_with_open_keeps_the_seconds_of_run_and_pushes() {
     let text = "# A\n\n## B\n\n```lab\nopen = \"wobble-push\"\nset = { \"motion.time_step_s\" = 0.02 }\ngo_to = \"end\"\n```\n";
     let lesson = read(text);
     let mut walk = LessonWalk::new(&lesson, lab());
@@ -450,7 +450,7 @@ fn set_beside_open_holds_the_seconds_of_the_run_and_its_pushes() {
 }
 
 #[test]
-fn start_and_time_step_set_together_hold_the_seconds_too() {
+fn setting_start_and_time_step_together_keeps_the_seconds() {
     let mut desk = Desk::open("method-2");
     let end_s = desk.lab.player().end_s;
     desk.commands("set = { 'start.tilt_deg' = 30, 'motion.time_step_s' = 0.01 }");
@@ -466,7 +466,7 @@ fn start_and_time_step_set_together_hold_the_seconds_too() {
 }
 
 #[test]
-fn a_file_that_a_lesson_opens_is_looked_for_beside_the_lesson() {
+fn paths_in_a_lesson_are_relative_to_its_folder() {
     let folder = tempfile::tempdir().unwrap();
     let scenario = preset("cusps", &["title=Mine"]).file;
     let scenario = toml::to_string(&scenario).unwrap();
@@ -483,7 +483,7 @@ fn a_file_that_a_lesson_opens_is_looked_for_beside_the_lesson() {
     }
 }
 
-/// The lessons that are shipped, the template, and [`WHOLE`].
+/// The shipped lessons, the template and [`WHOLE`].
 pub fn lessons() -> Vec<Lesson> {
     let shipped = shipped::LESSONS
         .iter()
@@ -496,7 +496,7 @@ pub fn lessons() -> Vec<Lesson> {
 }
 
 #[test]
-fn every_lesson_of_the_folder_is_in_the_table() {
+fn every_lesson_in_the_folder_is_in_the_table() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("presets/lessons");
     let files: BTreeSet<_> = fs::read_dir(folder)
         .unwrap()
@@ -524,7 +524,7 @@ fn every_lesson_plays_and_its_checks_fail_without_their_blocks() {
 }
 
 #[test]
-fn a_jump_carries_out_what_the_page_stands_on_and_no_more() {
+fn a_jump_executes_only_the_blocks_that_the_page_needs() {
     let lesson = read(WHOLE);
     let lines = |page: usize, kept: &KeptNumbers| -> Vec<usize> {
         let stages = lesson.stages_to(page, kept, &Predictions::default());
@@ -548,7 +548,7 @@ fn a_jump_carries_out_what_the_page_stands_on_and_no_more() {
 }
 
 #[test]
-fn a_locked_prediction_stays_and_shows_what_the_page_hides() {
+fn a_locked_prediction_is_final_and_reveals_hidden_items() {
     let lesson = read(WHOLE);
     let page = &lesson.pages[0];
     let finer = lesson.predict("finer").unwrap();
@@ -572,13 +572,13 @@ fn a_locked_prediction_stays_and_shows_what_the_page_hides() {
     predictions.lock(finer, choice(1, "is gone")).unwrap();
     assert!(predictions.lock(finer, choice(1, "is gone")).is_err());
     assert_eq!(Predictions::hidden_after_lock(page, &hidden), []);
-    // The session keeps them as TOML.
+    // The session stores predictions as TOML.
     let text = toml::to_string(&predictions).unwrap();
     assert_eq!(toml::from_str::<Predictions>(&text).unwrap(), predictions);
-    // An answer that the question no longer offers does not count.
+    // An answer that is no longer offered does not count.
     let changed = read(&WHOLE.replace("\"is gone\"", "\"has gone\""));
     assert_eq!(predictions.open_on(&changed.pages[0]).count(), 1);
-    // A round of a class has an answer of its own, and all are told.
+    // Each round of a class has its own answer, and all are listed.
     assert_eq!(predictions.in_words(finer).as_deref(), Some("is gone"));
     predictions
         .lock(finer, choice(2, "stays as it is"))

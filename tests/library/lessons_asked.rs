@@ -1,11 +1,11 @@
-//! Pages with a question: nothing answers it before it is answered.
+//! Pages with a question: nothing on the screen reveals the answer early.
 
 use crate::support::stage::{SMALL, Stage};
 use gyrolab::lab::view::Pane;
 use gyrolab::lessons::page::ClassOverlay;
 use gyrolab::lessons::{AnswerKind, PredictionAnswer, opening, shipped};
 
-/// What the lab says of the exact motion, of reliability and of theory.
+/// Words of the lab about the exact motion, reliability and theory.
 const ANSWERS: [&str; 6] = [
     "reliable",
     "exact under run",
@@ -15,7 +15,7 @@ const ANSWERS: [&str; 6] = [
     "a: rerun",
 ];
 
-/// A lesson on this page, whose run has arrived.
+/// Opens a lesson on `page` and waits until its run is ready.
 fn on_page(lesson: &str, page: usize) -> Stage {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.lesson(lesson, page).arrive();
@@ -31,7 +31,7 @@ fn answers_nothing(stage: &Stage, place: &str) {
 }
 
 #[test]
-fn a_question_of_a_lesson_stays_unanswered_until_the_reader_answers() {
+fn questions_are_not_revealed_before_the_reader_answers() {
     let mut questions = 0;
     for lesson in shipped::LESSONS {
         let pages = opening::open(lesson.name).unwrap().pages;
@@ -39,7 +39,7 @@ fn a_question_of_a_lesson_stays_unanswered_until_the_reader_answers() {
             let place = format!("{} {}", lesson.name, page.number);
             let mut stage = on_page(lesson.name, page.number);
             assert!(stage.lab.view().asked().is_some(), "{place}");
-            // The run has not gone beyond what is shown.
+            // The run was not played beyond the shown step.
             assert_eq!(stage.lab.player().run().furthest(), stage.step(), "{place}");
             answers_nothing(&stage, &place);
             let before = stage.lab.player().run().scenario().clone();
@@ -65,7 +65,7 @@ fn a_question_of_a_lesson_stays_unanswered_until_the_reader_answers() {
     assert!(questions >= 50, "{questions}");
 }
 
-/// The page of a lesson that asks for a force in N.
+/// Opens the page of a lesson that asks for a force in N.
 fn asked_for_newtons() -> Stage {
     on_page("what-holds-the-weight-up", 5)
 }
@@ -79,7 +79,7 @@ fn locked(stage: &Stage) -> Vec<PredictionAnswer> {
 }
 
 #[test]
-fn a_number_takes_its_unit_and_another_of_its_kind() {
+fn number_answers_accept_compatible_units() {
     for (typed, newtons) in [
         ("99", 99.0),
         ("99 N", 99.0),
@@ -110,18 +110,18 @@ fn a_number_takes_its_unit_and_another_of_its_kind() {
 }
 
 #[test]
-fn letters_at_a_number_question_are_no_keys_of_the_lab() {
+fn letters_at_a_number_question_are_not_lab_keys() {
     let mut stage = asked_for_newtons();
     stage.press("p").shows("type a number, then press Enter");
     stage.press("about");
     assert!(stage.lab.player().run().scenario().pushes.is_empty());
     assert_eq!(stage.class.open_lesson().unwrap().place.page, 5);
-    // In the lab they are.
+    // In the lab, the letters act as keys.
     stage.press("\t").press("p");
     assert_eq!(stage.lab.player().run().scenario().pushes.len(), 1);
 }
 
-/// Makes the stage one of a class that is at this round of the question.
+/// Makes the stage a follower of a class at `round` of the question.
 fn of_class(stage: &mut Stage, round: u32, is_closed: bool) {
     let overlay = ClassOverlay {
         rounds: [("mean".to_owned(), (round, is_closed))].into(),
@@ -132,7 +132,7 @@ fn of_class(stage: &mut Stage, round: u32, is_closed: bool) {
 }
 
 #[test]
-fn what_answers_a_question_stays_hidden_while_a_round_is_open() {
+fn answers_stay_hidden_while_a_round_is_open() {
     let mut stage = on_page("what-holds-the-weight-up", 1);
     stage.commands("step = 50");
     of_class(&mut stage, 1, false);
@@ -150,7 +150,7 @@ fn what_answers_a_question_stays_hidden_while_a_round_is_open() {
 }
 
 #[test]
-fn a_follower_reads_sentences_with_keys_in_them() {
+fn followers_see_sentences_that_name_keys() {
     let mut stage = on_page("cusps-loops-and-waves", 1);
     let overlay = ClassOverlay {
         is_followed: true,

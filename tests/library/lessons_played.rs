@@ -1,5 +1,5 @@
-//! Tasks of lessons done with the keys that their pages name, on a screen of 80x24, with the run in view all the time: in the
-//! right way, and in wrong ways, after which the page is still there and has a hint.
+//! Tasks of lessons, done with the keys named on their pages on a screen of 80x24, always with the run in view. Right keys
+//! complete the task; after wrong keys, the page is still open and offers a hint.
 
 use crate::support::stage::{SMALL, Stage};
 use gyrolab::lab::sheet::{Paragraph, SheetLineKind};
@@ -7,7 +7,7 @@ use gyrolab::lab::view::Pane;
 use gyrolab::lessons::{opening, shipped};
 use gyrolab::tui::screen;
 
-/// A task, the keys that do it, and keys that do not; a space runs it where it does not run by itself.
+/// A task, the keys that complete it, and keys that do not. A space starts the run if it does not start by itself.
 struct PlayedTask {
     lesson: &'static str,
     page: usize,
@@ -29,7 +29,7 @@ const fn played(
     }
 }
 
-/// ⎋ is the key Esc.
+/// ⎋ stands for Esc.
 #[rustfmt::skip]
 const TASKS: [PlayedTask; 18] = [
     played("a-real-gyroscope", 3, &["/moments↓↓\n0.0037516\n⎋"], ["/moments↓↓\n0.0039\n⎋", "/moments\n0.0037516\n⎋"]),
@@ -52,7 +52,7 @@ const TASKS: [PlayedTask; 18] = [
     played("why-it-seems-to-stand-still", 7, &["g57 s\n"], ["g10 s\n", "/dt\n0.1\n⎋g57 s\n"]),
 ];
 
-/// The task on this page of a lesson.
+/// Opens the task on `page` of a lesson.
 fn task(lesson: &str, page: usize) -> Stage {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.lesson(lesson, page).arrive();
@@ -60,7 +60,7 @@ fn task(lesson: &str, page: usize) -> Stage {
     stage
 }
 
-/// Presses `keys`, each of which leaves page and run in view.
+/// Presses `keys` and asserts after each key that page and run are visible.
 #[track_caller]
 fn press(stage: &mut Stage, keys: &str) {
     for key in keys.chars() {
@@ -68,7 +68,7 @@ fn press(stage: &mut Stage, keys: &str) {
         let layout = screen::layout(&stage.lab, true, stage.size);
         let runs = [Pane::Traces, Pane::Above, Pane::ThreeD, Pane::Step];
         let has = |pane| layout.place_of(pane).is_some();
-        // The values take the place of a step.
+        // The values pane replaces the step pane.
         let is_seen = runs.into_iter().any(has) || stage.lab.view().look.show.contains(&Pane::Step);
         assert!(
             has(Pane::Lesson) && is_seen,
@@ -78,7 +78,7 @@ fn press(stage: &mut Stage, keys: &str) {
     }
 }
 
-/// Whether every goal of the page is reached.
+/// True if every goal of the page is reached.
 fn is_reached(stage: &Stage) -> bool {
     let sheet = stage.lab.view().sheet.as_ref().unwrap();
     let mut goals = sheet
@@ -90,7 +90,7 @@ fn is_reached(stage: &Stage) -> bool {
         && goals.all(|goal| goal.kind == SheetLineKind::Goal { is_reached: true })
 }
 
-/// The run goes on for up to 15 seconds of the clock, and seeks to their ends. Returns whether the task is done.
+/// Continues the run for up to 15 seconds of wall time, and lets seeks finish. Returns true if the task is done.
 fn goes_on(stage: &mut Stage) -> bool {
     for _ in 0..150 {
         stage.wait(0.1);
@@ -109,7 +109,7 @@ fn goes_on(stage: &mut Stage) -> bool {
 }
 
 #[test]
-fn every_task_is_played() {
+fn every_task_of_a_lesson_is_tested() {
     let mut on_pages = Vec::new();
     for lesson in shipped::LESSONS {
         let pages = opening::open(lesson.name).unwrap().pages;
@@ -122,7 +122,7 @@ fn every_task_is_played() {
 }
 
 #[test]
-fn the_keys_that_a_page_names_do_its_task() {
+fn the_keys_named_on_a_page_complete_its_task() {
     for played in &TASKS {
         for keys in played.right {
             let mut stage = task(played.lesson, played.page);
@@ -135,7 +135,7 @@ fn the_keys_that_a_page_names_do_its_task() {
 }
 
 #[test]
-fn a_wrong_way_leaves_the_task_open_and_a_hint_to_ask_for() {
+fn wrong_keys_leave_the_task_open_with_a_hint() {
     for played in &TASKS {
         for keys in played.wrong {
             let mut stage = task(played.lesson, played.page);
@@ -154,7 +154,7 @@ fn a_wrong_way_leaves_the_task_open_and_a_hint_to_ask_for() {
 }
 
 #[test]
-fn what_was_done_stays_said_while_the_list_shows_the_present_run() {
+fn a_completed_task_stays_completed_while_its_list_shows_the_current_run() {
     let mut stage = task("method-1-and-its-z", 8);
     press(&mut stage, "/Lx\n175\n⎋");
     assert!(goes_on(&mut stage));
@@ -166,7 +166,7 @@ fn what_was_done_stays_said_while_the_list_shows_the_present_run() {
 }
 
 #[test]
-fn an_edit_needs_no_restart_and_no_page_asks_for_one() {
+fn no_page_asks_for_a_restart_after_an_edit() {
     for lesson in shipped::LESSONS {
         let words = lesson.text.split_whitespace().collect::<Vec<_>>().join(" ");
         for asked in ["`r` first", "press `r`", "then `r`", "`r`, then"] {
