@@ -33,14 +33,14 @@ pub(super) fn write_all(
     let mut code = unread(&seats);
     let mut files = 0;
     for seat in &seats {
-        let told = told(seat, look, &interruption)?;
-        if told.is_partial {
+        let seat_answers = seat_answers(seat, look, &interruption)?;
+        if seat_answers.is_partial {
             code = ExitCode::FAILURE;
         }
-        if !told.text.is_empty() {
+        if !seat_answers.text.is_empty() {
             let path = output.join(format!("{}.md", seat.seat.word));
             let file = Destination::open_file(&path, force)?;
-            file.write_and_keep(told.text.as_bytes())?;
+            file.write_and_keep(seat_answers.text.as_bytes())?;
             files += 1;
         }
     }
@@ -76,15 +76,15 @@ pub(super) fn fetch(
     );
     let status = SeatStatus::read(seat);
     let code = unread(std::slice::from_ref(&status));
-    let told = told(&status, look, &progress::interruption()?)?;
-    if told.text.is_empty() {
+    let seat_answers = seat_answers(&status, look, &progress::interruption()?)?;
+    if seat_answers.text.is_empty() {
         bail!(
             "{}: this seat has not answered a question yet",
             status.seat.word
         );
     }
-    print(&told.text)?;
-    Ok(if told.is_partial {
+    print(&seat_answers.text)?;
+    Ok(if seat_answers.is_partial {
         ExitCode::FAILURE
     } else {
         code
@@ -92,20 +92,20 @@ pub(super) fn fetch(
 }
 
 /// Predictions of a seat next to the results.
-struct Told {
+struct SeatAnswers {
     /// Markdown; empty without predictions.
     text: String,
     /// True if a lesson is missing because it cannot be opened any more.
     is_partial: bool,
 }
 
-fn told(
+fn seat_answers(
     status: &SeatStatus,
     look: DisplayArgs,
     interruption: &Interruption,
-) -> anyhow::Result<Told> {
+) -> anyhow::Result<SeatAnswers> {
     let word = &status.seat.word;
-    let mut told = Told {
+    let mut seat_answers = SeatAnswers {
         text: String::new(),
         is_partial: false,
     };
@@ -120,17 +120,17 @@ fn told(
                     "gyrolab: {word}: answers are missing: {}",
                     printable(&problems.in_one_line())
                 ));
-                told.is_partial = true;
+                seat_answers.is_partial = true;
                 continue;
             }
         };
         let mut meter = interruption.meter();
-        if told.text.is_empty() {
-            told.text = format!("<!-- seat {word} -->\n");
+        if seat_answers.text.is_empty() {
+            seat_answers.text = format!("<!-- seat {word} -->\n");
         }
-        told.text += &handout::answers(&lesson, place, new_lab(look)?, &mut meter)
+        seat_answers.text += &handout::answers(&lesson, place, new_lab(look)?, &mut meter)
             .map_err(|problem| refused(&lesson, problem))?;
         interruption.may_act_at_once()?;
     }
-    Ok(told)
+    Ok(seat_answers)
 }

@@ -31,7 +31,7 @@ const LONGEST_RECORDING: Duration = Duration::from_secs(3600);
 const CAST_EXPORT_POLL: Duration = Duration::from_millis(2);
 
 #[derive(Debug, Args)]
-#[command(after_help = WHAT_PASSES)]
+#[command(after_help = CAST_HELP)]
 pub(super) struct CastArgs {
     /// The file of commands: [[do]] tables, or - for stdin; gyrolab man lists them
     #[arg(value_name = "FILE")]
@@ -54,7 +54,7 @@ pub(super) struct CastArgs {
     pub(super) force: bool,
 }
 
-const WHAT_PASSES: &str = "\
+const CAST_HELP: &str = "\
 Time passes only at run, run_until and wait_s. A recording ends with its last command, so end it with wait_s to show \
 the last picture for some time. chapter adds a marker. The same commands give the same bytes on every machine.
 

@@ -32,7 +32,7 @@ const BOARD_WIDTH: usize = 80;
 /// Maximum length of a line typed for a seat, bytes.
 const LONGEST_SEAT_LINE: u64 = 200;
 /// Delay after a wrong word.
-const PENALTY: Duration = Duration::from_secs(1);
+const WRONG_WORD_DELAY: Duration = Duration::from_secs(1);
 
 pub(super) fn class(args: &ClassArgs) -> anyhow::Result<ExitCode> {
     if let Some(players) = args.rehearse {
@@ -57,7 +57,7 @@ pub(super) fn class(args: &ClassArgs) -> anyhow::Result<ExitCode> {
         return project(at()?, args.look);
     }
     if args.new {
-        begin_anew(dir)?;
+        start_new_group(dir)?;
     }
     match &args.lesson {
         None if args.new => Ok(ExitCode::SUCCESS),
@@ -86,7 +86,7 @@ fn lock_class(folder: &ClassFolder) -> anyhow::Result<File> {
 }
 
 /// Archives the seats and votes in `dir`, so that a new group starts without any.
-fn begin_anew(dir: &Path) -> anyhow::Result<()> {
+fn start_new_group(dir: &Path) -> anyhow::Result<()> {
     let folder = ClassFolder::open(dir).map_err(anyhow::Error::msg)?;
     let _turn = lock_class(&folder)?;
     let name = Local::now().format("%Y-%m-%d_%H-%M-%S").to_string();
@@ -106,7 +106,7 @@ fn begin_anew(dir: &Path) -> anyhow::Result<()> {
 
 /// Returns an error if the class, whose state was `before`, already has votes in the lesson `name`. After a crash,
 /// starting it again would return everyone to page 1.
-fn refuse_begun(folder: &ClassFolder, before: &ClassState, name: &str) -> anyhow::Result<()> {
+fn refuse_restart(folder: &ClassFolder, before: &ClassState, name: &str) -> anyhow::Result<()> {
     let seats = seat_statuses(folder).map_err(anyhow::Error::msg)?;
     let has_voted = |seat: &SeatStatus| {
         let place = seat.lessons.get(name);
@@ -147,7 +147,7 @@ pub(super) fn teach(
         None => (before.lesson.clone(), before.page.max(1)),
     };
     if lesson.is_some() && rehearsal.is_none() {
-        refuse_begun(&folder, &before, &name)?;
+        refuse_restart(&folder, &before, &name)?;
     }
     admit(&name, &confined).context("the lesson of a class must be in its folder")?;
     let opened = opening::open(&name)?;
@@ -242,7 +242,7 @@ pub(super) fn seat(args: &WorkbenchArgs, dir: &Path) -> anyhow::Result<ExitCode>
     limit.current = Some(now.min(MOST_OF_SEAT));
     rustix::process::setrlimit(Resource::Fsize, limit)?;
     let folder = ClassFolder::open(dir).map_err(anyhow::Error::msg)?;
-    let Some(seat) = asked(&folder)? else {
+    let Some(seat) = ask_for_seat(&folder)? else {
         return Ok(ExitCode::SUCCESS);
     };
     let lock_token = seat.hold().map_err(anyhow::Error::msg)?;
@@ -265,7 +265,7 @@ pub(super) fn seat(args: &WorkbenchArgs, dir: &Path) -> anyhow::Result<ExitCode>
 }
 
 /// Asks for a name or the word of a seat until one is accepted. Returns `None` at the end of the input.
-fn asked(folder: &ClassFolder) -> anyhow::Result<Option<Seat>> {
+fn ask_for_seat(folder: &ClassFolder) -> anyhow::Result<Option<Seat>> {
     loop {
         let mut stdout = io::stdout();
         write!(stdout, "{}", login::ASKS)?;
@@ -285,7 +285,7 @@ fn asked(folder: &ClassFolder) -> anyhow::Result<Option<Seat>> {
                 return Ok(self::line()?.map(|_| seat));
             }
             Err(reason) => {
-                sleep(PENALTY);
+                sleep(WRONG_WORD_DELAY);
                 writeln!(stdout, "{reason}")?;
             }
         }

@@ -77,9 +77,9 @@ pub(super) fn verify(args: &VerifyArgs) -> anyhow::Result<ExitCode> {
         let result = match &scenario {
             Some(scenario) => own(file, args, scenario, &interruption),
             None if file.is_dir() => folder(file, &interruption),
-            None => made_again(file, &interruption),
+            None => verify_file(file, &interruption),
         };
-        is_good &= judged(file, result)?;
+        is_good &= report_result(file, result)?;
     }
     Ok(if is_good {
         ExitCode::SUCCESS
@@ -89,7 +89,7 @@ pub(super) fn verify(args: &VerifyArgs) -> anyhow::Result<ExitCode> {
 }
 
 /// Returns true if the file is verified. Prints the reason if it cannot be verified.
-fn judged(file: &Path, result: anyhow::Result<bool>) -> anyhow::Result<bool> {
+fn report_result(file: &Path, result: anyhow::Result<bool>) -> anyhow::Result<bool> {
     result.or_else(|error| match error.downcast()? {
         Unverified::Stopped => bail!(Interrupted),
         Unverified::Refused(mut problems) => {
@@ -118,8 +118,8 @@ fn reproduction(folder: &Path, interruption: &Interruption) -> anyhow::Result<bo
     let mut is_good = true;
     for (name, made) in &files {
         let file = folder.join(name);
-        let difference = differs(&file, made, &version, interruption)?;
-        is_good &= say(&file, RECREATED, difference.as_ref(), &[])?;
+        let difference = file_difference(&file, made, &version, interruption)?;
+        is_good &= print_file_result(&file, RECREATED, difference.as_ref(), &[])?;
     }
     if let Some(note) = other_version(&version) {
         print(&format!("    {note}\n"))?;
@@ -155,8 +155,8 @@ fn writeup_again(folder: &Path, interruption: &Interruption) -> anyhow::Result<b
     let (again, compared) = writeup::again(scenario, data.as_deref(), &csv, interruption)?;
     let notes = Vec::from_iter(other_version(version).into_iter().chain([again.verdict()]));
     let mut is_good = match compared.map(FileComparison::end).transpose()? {
-        Some((rows, difference)) => say_of_rows(&csv, rows, difference.as_ref(), &notes)?,
-        None => say(&csv, "", Some(&MISSING), &notes)?,
+        Some((rows, difference)) => print_rows_result(&csv, rows, difference.as_ref(), &notes)?,
+        None => print_file_result(&csv, "", Some(&MISSING), &notes)?,
     };
     let files = again.files()?;
     for (name, made) in &files {
@@ -166,15 +166,15 @@ fn writeup_again(folder: &Path, interruption: &Interruption) -> anyhow::Result<b
         } else {
             RECREATED
         };
-        let difference = differs(&file, made, version, interruption)?;
-        is_good &= say(&file, same, difference.as_ref(), &[])?;
+        let difference = file_difference(&file, made, version, interruption)?;
+        is_good &= print_file_result(&file, same, difference.as_ref(), &[])?;
     }
-    say_of_others(folder, files.iter().map(|(name, _)| name.into()))?;
+    print_other_files(folder, files.iter().map(|(name, _)| name.into()))?;
     Ok(is_good)
 }
 
 /// Prints the names of files in `folder` that do not belong to the write-up's `own` files.
-fn say_of_others(folder: &Path, own: impl Iterator<Item = OsString>) -> anyhow::Result<()> {
+fn print_other_files(folder: &Path, own: impl Iterator<Item = OsString>) -> anyhow::Result<()> {
     let of_writeup: Vec<_> = own.chain([CSV.into()]).collect();
     let others = OutputFolder::others(folder, &of_writeup)?;
     if !others.is_empty() {
@@ -189,7 +189,7 @@ fn say_of_others(folder: &Path, own: impl Iterator<Item = OsString>) -> anyhow::
 
 /// Describes the difference between the file of a write-up and its recreated content `made`. For a write-up by another
 /// version, only the pixels of a figure count, and texts may name that version.
-fn differs(
+fn file_difference(
     file: &Path,
     made: &[u8],
     version: &str,
@@ -240,17 +240,17 @@ fn measured_in(folder: &Path) -> Option<String> {
 }
 
 /// Recomputes or redraws `file` and prints the result. Returns true if it is the same.
-fn made_again(file: &Path, interruption: &Interruption) -> anyhow::Result<bool> {
+fn verify_file(file: &Path, interruption: &Interruption) -> anyhow::Result<bool> {
     if let Some((difference, notes)) = redraw(file, interruption.meter())? {
         let same = "the same: redrawn from the data in the file";
-        return say(file, same, difference.as_ref(), &notes);
+        return print_file_result(file, same, difference.as_ref(), &notes);
     }
     let result = verified(
         file,
         |command| fit::again(command, interruption),
         interruption.meter(),
     )?;
-    say_of_rows(file, result.rows, result.difference.as_ref(), &result.notes)
+    print_rows_result(file, result.rows, result.difference.as_ref(), &result.notes)
 }
 
 fn scenario(name: &str, set: &[String]) -> Result<Arc<Scenario>, Problems> {
@@ -311,8 +311,8 @@ fn compare_rows(
     })
 }
 
-/// Prints the result for a file whose rows were recomputed; see [`say`].
-fn say_of_rows(
+/// Prints the result for a file whose rows were recomputed; see [`print_file_result`].
+fn print_rows_result(
     file: &Path,
     rows: u64,
     difference: Option<&impl Display>,
@@ -322,12 +322,12 @@ fn say_of_rows(
         1 => "the same: its row, recomputed".to_owned(),
         rows => format!("the same: all {rows} rows, recomputed"),
     };
-    say(file, &same, difference, notes)
+    print_file_result(file, &same, difference, notes)
 }
 
 /// Prints the result for `file`: the text `same` or the difference, then one line per note. Returns true if there is no
 /// difference.
-fn say(
+fn print_file_result(
     file: &Path,
     same: &str,
     difference: Option<&impl Display>,

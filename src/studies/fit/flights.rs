@@ -37,22 +37,22 @@ pub enum Found {
 const SHORTEST_S: f64 = 0.2;
 const FEWEST_ROWS: usize = 12;
 /// Minimum fraction of the shortest duration that must remain after the ends are trimmed.
-const LEFT: f64 = 0.75;
+const MIN_REMAINING_SHARE: f64 = 0.75;
 /// Minimum mean of |omega| in a flight, rad/s: slower rotation cannot be distinguished from rest.
-const LEAST_RATE: f64 = 2.0;
+const MIN_RATE: f64 = 2.0;
 /// Allowed deviation of the rates in addition to the noise, as a fraction of |omega|: sensors are slightly misaligned.
-const SHARE: f64 = 0.01;
+const MISALIGNMENT: f64 = 0.01;
 /// Allowed excess of the noise's mean square over its expected value, in standard deviations.
-const SCATTERS: f64 = 4.0;
-/// Duration at each end, s, whose rows are trimmed if their mean deviates by more than `OFF` standard deviations. For a
-/// whole recording the limit is `FAR_OFF`.
+const NOISE_TOLERANCE: f64 = 4.0;
+/// Duration at each end, s, whose rows are trimmed if their mean deviates by more than `END_DEVIATION` standard deviations. For a
+/// whole recording the limit is `END_DEVIATION_OF_WHOLE`.
 const END_S: f64 = 0.02;
-const OFF: f64 = 3.0;
-const FAR_OFF: f64 = 6.0;
+const END_DEVIATION: f64 = 3.0;
+const END_DEVIATION_OF_WHOLE: f64 = 6.0;
 /// Additional margin trimmed at each end, s, at least one row, because a hand may still push a little.
 const MARGIN_S: f64 = 0.015;
 /// A pause longer than this multiple of the usual time between rows ends a flight.
-const PAUSE: f64 = 4.5;
+const MAX_PAUSE: f64 = 4.5;
 
 /// Finds the free flights of `series`, in order of time.
 pub fn find(series: &TimeSeries, scenario: &Scenario) -> Found {
@@ -89,7 +89,7 @@ struct Recording {
     /// Standard deviation of the noise of a rate, rad/s.
     noise: f64,
     /// Median time between rows, s.
-    apart_s: f64,
+    interval_s: f64,
 }
 
 /// Sums over rows, relative to the first row. For each axis they give the least-squares line w = offset + growth . sum,
@@ -165,7 +165,7 @@ impl Recording {
             }
             sums.push(sum);
         }
-        let apart_s = median(times_s.windows(2).map(|pair| pair[1] - pair[0]).collect());
+        let interval_s = median(times_s.windows(2).map(|pair| pair[1] - pair[0]).collect());
         // The variance of the third differences is 20 times the variance of white noise. Smooth motion contributes
         // almost nothing.
         let thirds = rates
@@ -177,7 +177,7 @@ impl Recording {
             times_s,
             rates,
             sums,
-            apart_s,
+            interval_s,
         }
     }
 
@@ -200,9 +200,9 @@ impl Recording {
     }
 
     fn is_explained(&self, squares: &Squares) -> bool {
-        let askew = SHARE * squares.speed / squares.count;
-        let scatter = 1.0 + SCATTERS * (2.0 / squares.count).sqrt();
-        squares.mean_square() <= self.noise * self.noise * scatter + askew * askew
+        let misalignment = MISALIGNMENT * squares.speed / squares.count;
+        let scatter = 1.0 + NOISE_TOLERANCE * (2.0 / squares.count).sqrt();
+        squares.mean_square() <= self.noise * self.noise * scatter + misalignment * misalignment
     }
 
     /// Returns true if free flight explains all rows, including the ends, however slowly the body turns.
@@ -211,9 +211,9 @@ impl Recording {
         let pairs = self.times_s.windows(2);
         pairs
             .map(|pair| pair[1] - pair[0])
-            .all(|it| it <= PAUSE * self.apart_s)
+            .all(|it| it <= MAX_PAUSE * self.interval_s)
             && self.is_explained(&self.squares(all.clone()))
-            && self.without_ends(all.clone(), FAR_OFF) == all
+            && self.without_ends(all.clone(), END_DEVIATION_OF_WHOLE) == all
     }
 
     /// Returns the longest flight that begins at row `first` or soon after. Its ends are not yet trimmed.
@@ -238,7 +238,7 @@ impl Recording {
         let mut found = None;
         for row in first..self.times_s.len() {
             let before = row.max(first + 1) - 1;
-            if self.times_s[row] - self.times_s[before] > PAUSE * self.apart_s {
+            if self.times_s[row] - self.times_s[before] > MAX_PAUSE * self.interval_s {
                 break;
             }
             self.add(&mut squares, first, row);
@@ -251,13 +251,13 @@ impl Recording {
             }
             found = Some(rows);
         }
-        found.filter(|rows| self.speed(rows) >= LEAST_RATE)
+        found.filter(|rows| self.speed(rows) >= MIN_RATE)
     }
 
     /// Trims deviating rows at the ends of `rows`, and a margin. Returns `None` if the rest is too short.
     fn trimmed(&self, rows: Range<usize>) -> Option<Range<usize>> {
-        let rows = self.without_ends(rows, OFF);
-        let margin = (MARGIN_S / self.apart_s).ceil().max(1.0) as usize;
+        let rows = self.without_ends(rows, END_DEVIATION);
+        let margin = (MARGIN_S / self.interval_s).ceil().max(1.0) as usize;
         let last = self.times_s.len();
         // If the recording itself begins or ends in flight, there is no hand.
         let start = if rows.start == 0 {
@@ -271,18 +271,19 @@ impl Recording {
             rows.end.saturating_sub(margin)
         };
         let kept = start..end.max(start);
-        let is_long = kept.len() >= FEWEST_ROWS && self.seconds(&kept) >= LEFT * SHORTEST_S;
+        let is_long =
+            kept.len() >= FEWEST_ROWS && self.seconds(&kept) >= MIN_REMAINING_SHARE * SHORTEST_S;
         is_long.then_some(kept)
     }
 
     /// Trims rows at the ends that deviate from the lines of all rows by more than `most` standard deviations.
     fn without_ends(&self, mut rows: Range<usize>, most: f64) -> Range<usize> {
-        let block = (END_S / self.apart_s).clamp(1.0, FEWEST_ROWS as f64 / 2.0) as usize;
+        let block = (END_S / self.interval_s).clamp(1.0, FEWEST_ROWS as f64 / 2.0) as usize;
         while rows.len() > FEWEST_ROWS {
             let squares = self.squares(rows.clone());
             let growth = squares.growth();
             let offset = (squares.rates - growth.component_mul(&squares.sums)) / squares.count;
-            let askew = SHARE * squares.speed / squares.count;
+            let misalignment = MISALIGNMENT * squares.speed / squares.count;
             let first = rows.start;
             let both_ends = [first..first + block, rows.end - block..rows.end];
             let [starts, ends] = both_ends.map(|end| {
@@ -294,7 +295,7 @@ impl Recording {
                     })
                     .sum::<Vector3<f64>>()
                     / count;
-                mean.amax() > most * self.noise / count.sqrt() + askew
+                mean.amax() > most * self.noise / count.sqrt() + misalignment
             });
             if !starts && !ends {
                 break;

@@ -55,15 +55,15 @@ pub enum Failure {
 pub const MOST_ITERATIONS: u64 = 200;
 
 /// The search ends if the expected reduction of the sum is below this. The unit of the sum is a squared uncertainty.
-const ENOUGH: f64 = 1e-8;
+const MIN_GAIN: f64 = 1e-8;
 /// The same limit, relative to the sum.
-const ENOUGH_OF_SUM: f64 = 1e-10;
+const MIN_RELATIVE_GAIN: f64 = 1e-10;
 /// If no step reduces the sum, an expected reduction below this is rounding error.
 const GAIN_ROUNDING: f64 = 1e-3;
 /// Singular values below this fraction of the largest are rounding error of the slopes.
 pub const SINGULAR: f64 = 1e-6;
 /// A limit closer than this, in uncertainties, counts as reached.
-const HERE: f64 = 1e-9;
+const REACHED_LIMIT: f64 = 1e-9;
 /// Initial damping, for slopes whose columns have length 1.
 const DAMPING: f64 = 1e-3;
 const MOST_DAMPING: f64 = 1e12;
@@ -88,7 +88,7 @@ pub fn search(
         let linear = Linear::new(&slopes, &scale, &r, limits, &p);
         let held = linear.held();
         let gain = linear.gain(&held);
-        let failure = if gain <= ENOUGH.max(ENOUGH_OF_SUM * sum) {
+        let failure = if gain <= MIN_GAIN.max(MIN_RELATIVE_GAIN * sum) {
             None
         } else if step == MOST_ITERATIONS {
             Some(Failure::TooManySteps)
@@ -154,7 +154,7 @@ impl<'a> Linear<'a> {
     /// Returns the limits that hold the parameters at this point: the direction of steepest descent crosses them.
     fn held(&self) -> Vec<usize> {
         let here: Vec<usize> = (0..self.limits.len())
-            .filter(|place| self.limits[*place].least >= -HERE)
+            .filter(|place| self.limits[*place].least >= -REACHED_LIMIT)
             .collect();
         let cone: Vec<Limit> = here
             .iter()

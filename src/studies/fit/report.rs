@@ -28,7 +28,7 @@ pub struct FitReport<'a> {
 }
 
 /// Uncertainties of the two sides that differ by at most this fraction are shown as one.
-const ALIKE: f64 = 0.05;
+const SAME_SIDES: f64 = 0.05;
 /// Significant digits of a value without an uncertainty.
 const REPORT_VALUE_DIGITS: usize = 7;
 
@@ -45,7 +45,7 @@ impl Fitted {
     /// Formats the value with its uncertainty: 0.003920(38), or 0.003920 +0.000042 -0.000038 if the two sides differ.
     pub fn stated(&self) -> String {
         if let Some(Sides { below, above }) = self.sides
-            && (below - above).abs() > ALIKE * below.max(above)
+            && (below - above).abs() > SAME_SIDES * below.max(above)
         {
             let value = to_the_digit_of(self.value, below.max(above));
             let [above, below] = [above, below].map(|side| to_the_digit_of(side, side));

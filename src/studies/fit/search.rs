@@ -71,21 +71,21 @@ const SLOPE_CHANGE: f64 = 1e-4;
 /// A change that moves a datum by more than this fraction of its uncertainty may be too large for a slope.
 const LARGE_SLOPE_CHANGE: f64 = 0.5;
 /// The fraction to aim at then.
-const AIM: f64 = 0.1;
+const TARGET_SLOPE_EFFECT: f64 = 0.1;
 /// Maximum change as a fraction of the distance to a limit that is not yet reached: near it the data may bend.
-const OF_WAY: f64 = 1e-3;
+const LIMIT_FRACTION: f64 = 1e-3;
 /// A limit closer than this fraction of a change counts as reached.
-const REACHED: f64 = 1e-4;
+const REACHED_FRACTION: f64 = 1e-4;
 /// Maximum number of start points.
 const MOST_STARTS: usize = 4;
 /// Maximum number of times the weights are recomputed.
 const MOST_ROUNDS: u32 = 40;
 
-/// Fits the free keys of `model` to its data. `tell` is called at each step with the number of steps and chi^2.
+/// Fits the free keys of `model` to its data. `on_step` is called at each step with the number of steps and chi^2.
 pub fn fit(
     model: &Model,
     go_on: FitProgress<'_>,
-    tell: &(dyn Fn(u64, f64) + Sync),
+    on_step: &(dyn Fn(u64, f64) + Sync),
 ) -> Result<Fit, NoFit> {
     let (data, keys) = (model.data.len(), model.free.len());
     if data < keys {
@@ -96,7 +96,7 @@ pub fn fit(
     let chart = Chart::new(&model.free, &scenario);
     let mut first_failure = None;
     for start in starts(model, &chart, own, go_on)? {
-        match fit_from(model, &chart, start, go_on, tell) {
+        match fit_from(model, &chart, start, go_on, on_step) {
             Err(failure @ (NoFit::Stuck(_) | NoFit::TooLong { .. })) => {
                 first_failure.get_or_insert(failure);
             }
@@ -133,7 +133,7 @@ fn fit_from(
     chart: &Chart,
     mut p: Vec<f64>,
     go_on: FitProgress<'_>,
-    tell: &(dyn Fn(u64, f64) + Sync),
+    on_step: &(dyn Fn(u64, f64) + Sync),
 ) -> Result<Fit, NoFit> {
     let mut weights = Weights::at(model, &p, go_on)?;
     let changes = Mutex::new(
@@ -154,7 +154,7 @@ fn fit_from(
             weights: &weights,
             changes: &changes,
             go_on,
-            tell: &|step, sum| tell(steps + step, sum),
+            on_step: &|step, sum| on_step(steps + step, sum),
         };
         let minimum = levenberg::search(&weighed, &start, &limits)?;
         steps += minimum.steps;
@@ -292,11 +292,11 @@ struct Weighed<'a> {
     /// Change of each parameter for computing slopes, in the parameter's unit.
     changes: &'a Mutex<Vec<f64>>,
     go_on: FitProgress<'a>,
-    tell: &'a (dyn Fn(u64, f64) + Sync),
+    on_step: &'a (dyn Fn(u64, f64) + Sync),
 }
 
 impl Weighed<'_> {
-    fn kept(&self) -> MutexGuard<'_, Vec<f64>> {
+    fn lock_changes(&self) -> MutexGuard<'_, Vec<f64>> {
         self.changes.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -323,12 +323,14 @@ impl Weighed<'_> {
 
     /// Returns `change` of the `index`-th parameter from `p`, or a smaller change if a limit is near.
     fn before_limits(&self, p: &[f64], index: usize, change: f64) -> f64 {
-        let ways = self
+        let distances = self
             .limits
             .iter()
             .map(|limit| limit.room(p) / limit.normal[index].abs());
-        let near = ways.filter(|way| *way > REACHED * change);
-        near.fold(change, |change, way| change.min(OF_WAY * way))
+        let near = distances.filter(|distance| *distance > REACHED_FRACTION * change);
+        near.fold(change, |change, distance| {
+            change.min(LIMIT_FRACTION * distance)
+        })
     }
 
     /// Returns the slope of every datum along the `index`-th parameter, and the change that it was computed with.
@@ -347,7 +349,7 @@ impl Weighed<'_> {
             if most <= LARGE_SLOPE_CHANGE || try_ == TRIES || !most.is_finite() {
                 return Ok((slope, change));
             }
-            change *= AIM / most;
+            change *= TARGET_SLOPE_EFFECT / most;
         }
         Err(Stop::Interrupted) // not reached: the tries are counted
     }
@@ -400,7 +402,7 @@ impl LeastSquares for Weighed<'_> {
     }
 
     fn slopes(&self, p: &[f64]) -> Result<DMatrix<f64>, Stop> {
-        let changes: Vec<(usize, f64)> = self.kept().iter().copied().enumerate().collect();
+        let changes: Vec<(usize, f64)> = self.lock_changes().iter().copied().enumerate().collect();
         let found: Vec<(Vec<f64>, f64)> =
             cores::map::<_, _, Result<_, Stop>>(&changes, |(index, change)| {
                 self.slope(p, *index, *change)
@@ -419,7 +421,7 @@ impl LeastSquares for Weighed<'_> {
                 }
             })
             .collect();
-        *self.kept() = found.iter().map(|(_, change)| *change).collect();
+        *self.lock_changes() = found.iter().map(|(_, change)| *change).collect();
         let slopes = DMatrix::from_columns(&columns);
         // The decomposition of a matrix that contains a NaN would never end.
         are_numbers(slopes.norm_squared())?;
@@ -427,7 +429,7 @@ impl LeastSquares for Weighed<'_> {
     }
 
     fn on_iteration(&self, step: u64, sum: f64) {
-        (self.tell)(step, sum);
+        (self.on_step)(step, sum);
     }
 }
 

@@ -33,32 +33,32 @@ pub(super) const COMBINATION_ROUNDING: f64 = 1e-2;
 /// A key's component of a direction is rounding error below this.
 const ROUNDING: f64 = 1e-9;
 
-/// Returns the combination of keys in the direction `way`, for keys in `units`: the keys involved and their changes,
+/// Returns the combination of keys along `direction`, for keys in `units`: the keys involved and their changes,
 /// scaled so that the largest is 1.
-fn alike(way: &DVector<f64>, moving: &[usize], units: &[f64]) -> Vec<(usize, f64)> {
-    let parts: Vec<f64> = way
+fn alike(direction: &DVector<f64>, moving: &[usize], units: &[f64]) -> Vec<(usize, f64)> {
+    let parts: Vec<f64> = direction
         .iter()
         .zip(units)
-        .map(|(way, unit)| way / unit)
+        .map(|(direction, unit)| direction / unit)
         .collect();
     // Of equal components, the first counts.
     let sizes = parts.iter().copied().rev();
     let largest = sizes
         .max_by(|a, b| a.abs().total_cmp(&b.abs()))
         .unwrap_or_default();
-    let places = (0..moving.len()).filter(|&place| way[place].abs() > COMBINATION_ROUNDING);
+    let places = (0..moving.len()).filter(|&place| direction[place].abs() > COMBINATION_ROUNDING);
     let combined = places.map(|place| (moving[place], parts[place] / largest));
     combined.collect()
 }
 
 /// A direction of the keys along the active limits, for keys in units in which the slope of each is 1.
-struct Way {
+struct KeyDirection {
     singular: f64,
     parts: DVector<f64>,
 }
 
 /// Returns the directions in which the keys can move along the active limits.
-fn singular_ways(slopes: &DMatrix<f64>, normals: &[DVector<f64>]) -> Vec<Way> {
+fn singular_directions(slopes: &DMatrix<f64>, normals: &[DVector<f64>]) -> Vec<KeyDirection> {
     let free = complement(normals.iter(), slopes.ncols());
     if free.is_empty() {
         return Vec::new();
@@ -68,7 +68,7 @@ fn singular_ways(slopes: &DMatrix<f64>, normals: &[DVector<f64>]) -> Vec<Way> {
         return Vec::new();
     };
     (0..v_t.nrows())
-        .map(|k| Way {
+        .map(|k| KeyDirection {
             // With fewer data than keys, some directions have no singular value.
             singular: svd.singular_values.get(k).copied().unwrap_or(0.0),
             parts: &free * v_t.row(k).transpose(),
@@ -84,7 +84,7 @@ impl FitSolution {
         let all_units: Vec<f64> = (0..free.len())
             .map(|index| norms[index] * free[index].size(keys[index]))
             .collect();
-        let (silent, heard): (Vec<usize>, Vec<usize>) =
+        let (silent, effective): (Vec<usize>, Vec<usize>) =
             (0..free.len()).partition(|index| all_units[*index] <= SILENT_KEY);
         let mut solution = Self {
             covariance: vec![vec![None; free.len()]; free.len()],
@@ -93,10 +93,10 @@ impl FitSolution {
             alike: Vec::new(),
             is_moving: vec![false; free.len()],
         };
-        if heard.is_empty() {
+        if effective.is_empty() {
             return solution;
         }
-        let columns: Vec<DVector<f64>> = heard
+        let columns: Vec<DVector<f64>> = effective
             .iter()
             .map(|&index| slopes.column(index) / norms[index])
             .collect();
@@ -105,36 +105,45 @@ impl FitSolution {
             .iter()
             .map(|&place| {
                 let normal = chart.matrix.tr_mul(&chart.limits[place].normal);
-                let parts = heard.iter().map(|&index| normal[index] / norms[index]);
-                DVector::from_iterator(heard.len(), parts)
+                let parts = effective.iter().map(|&index| normal[index] / norms[index]);
+                DVector::from_iterator(effective.len(), parts)
             })
             .collect();
-        let ways = singular_ways(&DMatrix::from_columns(&columns), &normals);
-        let largest = ways.iter().map(|way| way.singular).fold(0.0, f64::max);
-        let (seen, unseen): (Vec<&Way>, Vec<&Way>) =
-            (ways.iter()).partition(|way| way.singular > SINGULAR * largest);
+        let directions = singular_directions(&DMatrix::from_columns(&columns), &normals);
+        let largest = directions
+            .iter()
+            .map(|direction| direction.singular)
+            .fold(0.0, f64::max);
+        let (seen, unseen): (Vec<&KeyDirection>, Vec<&KeyDirection>) =
+            (directions.iter()).partition(|direction| direction.singular > SINGULAR * largest);
         solution.rank = seen.len();
-        let units: Vec<f64> = heard.iter().map(|&index| all_units[index]).collect();
-        let alike = unseen.iter().map(|way| alike(&way.parts, &heard, &units));
+        let units: Vec<f64> = effective.iter().map(|&index| all_units[index]).collect();
+        let alike = unseen
+            .iter()
+            .map(|direction| alike(&direction.parts, &effective, &units));
         solution.alike = alike.collect();
-        for (place, &index) in heard.iter().enumerate() {
-            solution.is_moving[index] = ways.iter().any(|way| way.parts[place].abs() > ROUNDING);
+        for (place, &index) in effective.iter().enumerate() {
+            solution.is_moving[index] = directions
+                .iter()
+                .any(|direction| direction.parts[place].abs() > ROUNDING);
         }
-        let known: Vec<usize> = (0..heard.len())
+        let known: Vec<usize> = (0..effective.len())
             .filter(|place| {
-                solution.is_moving[heard[*place]]
+                solution.is_moving[effective[*place]]
                     && unseen
                         .iter()
-                        .all(|way| way.parts[*place].abs() <= COMBINATION_ROUNDING)
+                        .all(|direction| direction.parts[*place].abs() <= COMBINATION_ROUNDING)
             })
             .collect();
         for (&i, &j) in known.iter().flat_map(|i| known.iter().map(move |j| (i, j))) {
             let sum: f64 = seen
                 .iter()
-                .map(|way| way.parts[i] * way.parts[j] / way.singular.powi(2))
+                .map(|direction| {
+                    direction.parts[i] * direction.parts[j] / direction.singular.powi(2)
+                })
                 .sum();
-            let covariance = sum / (norms[heard[i]] * norms[heard[j]]);
-            solution.covariance[heard[i]][heard[j]] =
+            let covariance = sum / (norms[effective[i]] * norms[effective[j]]);
+            solution.covariance[effective[i]][effective[j]] =
                 Some(covariance).filter(|covariance| covariance.is_finite());
         }
         solution

@@ -20,12 +20,12 @@ pub struct Weights {
     /// A change of each datum that is small but well above rounding, in its unit.
     pub(super) resolution: Vec<f64>,
     /// Groups of data that share uncertain settings.
-    together: Vec<Together>,
+    correlated: Vec<CorrelatedData>,
 }
 
 /// Data of one row, and the Cholesky factor of their covariance matrix.
 #[derive(Clone, Debug)]
-struct Together {
+struct CorrelatedData {
     data: Vec<usize>,
     root: Cholesky<f64, Dyn>,
 }
@@ -103,7 +103,7 @@ impl Weights {
     /// Computes the weights of the data of `model` at the values `p` of its free keys.
     pub fn at(model: &Model, p: &[f64], go_on: FitProgress<'_>) -> Result<Self, Stop> {
         if !are_stated(model).map_err(Stop::Impossible)? {
-            return Ok(Self::alike(model));
+            return Ok(Self::unweighted(model));
         }
         let sigmas = model.data.iter().filter_map(|datum| datum.point.sigma);
         let sigma: Vec<f64> = sigmas.collect(); // all data have one here
@@ -111,7 +111,7 @@ impl Weights {
             resolution: sigma.clone(),
             are_stated: true,
             count_settings: false,
-            together: Vec::new(),
+            correlated: Vec::new(),
             sigma,
         };
         let settings = uncertain_settings(model);
@@ -124,7 +124,7 @@ impl Weights {
         Ok(weights)
     }
 
-    fn alike(model: &Model) -> Self {
+    fn unweighted(model: &Model) -> Self {
         let squares = model.data.iter().map(|datum| datum.point.value.powi(2));
         let size = (squares.sum::<f64>() / model.data.len() as f64).sqrt();
         let size = if size > 0.0 { size } else { 1.0 };
@@ -133,7 +133,7 @@ impl Weights {
             resolution: vec![RESIDUAL_CHANGE * size; model.data.len()],
             are_stated: false,
             count_settings: false,
-            together: Vec::new(),
+            correlated: Vec::new(),
         }
     }
 
@@ -151,7 +151,7 @@ impl Weights {
                 own + moved.iter().map(|moved| moved[a] * moved[b]).sum::<f64>()
             });
             if let Some(root) = Cholesky::new(covariance) {
-                self.together.push(Together { data, root });
+                self.correlated.push(CorrelatedData { data, root });
             }
         }
         for (index, sigma) in self.sigma.iter_mut().enumerate() {
@@ -165,11 +165,11 @@ impl Weights {
         let pairs = values.iter().zip(&self.sigma);
         let mut white =
             DVector::from_iterator(values.len(), pairs.map(|(value, sigma)| value / sigma));
-        for together in &self.together {
-            let own = together.data.iter().map(|&index| values[index]);
-            let own = DVector::from_iterator(together.data.len(), own);
-            if let Some(solved) = together.root.l_dirty().solve_lower_triangular(&own) {
-                for (&index, value) in together.data.iter().zip(solved.iter()) {
+        for correlated in &self.correlated {
+            let own = correlated.data.iter().map(|&index| values[index]);
+            let own = DVector::from_iterator(correlated.data.len(), own);
+            if let Some(solved) = correlated.root.l_dirty().solve_lower_triangular(&own) {
+                for (&index, value) in correlated.data.iter().zip(solved.iter()) {
                     white[index] = *value;
                 }
             }

@@ -43,9 +43,9 @@ pub fn least_squares(a: &DMatrix<f64>, c: &DVector<f64>, limits: &[Limit]) -> Wi
     // Each round adds or removes one limit. The bound stops a cycle between limits that meet in one point.
     for _ in 0..4 * (limits.len() + 1) {
         let free = complement(held.iter().map(|&place| &limits[place].normal), a.ncols());
-        let way = &free * solved(&(a * &free), &(c - a * &y));
-        let (part, blocking) = reach(&y, &way, limits, &held);
-        y += part * way;
+        let step = &free * solved(&(a * &free), &(c - a * &y));
+        let (fraction, blocking) = reach(&y, &step, limits, &held);
+        y += fraction * step;
         if let Some(place) = blocking {
             held.push(place);
             continue;
@@ -59,25 +59,25 @@ pub fn least_squares(a: &DMatrix<f64>, c: &DVector<f64>, limits: &[Limit]) -> Wi
     Within { y, held }
 }
 
-/// Returns the fraction of `way`, at most 1, that leads from `y` to the first limit, and the index of this limit.
+/// Returns the fraction of `step`, at most 1, that leads from `y` to the first limit, and the index of this limit.
 fn reach(
     y: &DVector<f64>,
-    way: &DVector<f64>,
+    step: &DVector<f64>,
     limits: &[Limit],
     held: &[usize],
 ) -> (f64, Option<usize>) {
-    let (mut part, mut blocking) = (1.0, None);
+    let (mut fraction, mut blocking) = (1.0, None);
     for (place, limit) in limits.iter().enumerate() {
-        let speed = limit.normal.dot(way);
-        if held.contains(&place) || speed >= -ROUNDING * limit.normal.norm() * way.norm() {
+        let speed = limit.normal.dot(step);
+        if held.contains(&place) || speed >= -ROUNDING * limit.normal.norm() * step.norm() {
             continue;
         }
         let to_limit = limit.room(y.as_slice()).max(0.0) / -speed;
-        if to_limit < part {
-            (part, blocking) = (to_limit, Some(place));
+        if to_limit < fraction {
+            (fraction, blocking) = (to_limit, Some(place));
         }
     }
-    (part, blocking)
+    (fraction, blocking)
 }
 
 /// Returns the index of the `held` limit that `pull` leaves fastest toward the inside; `None` if `pull` leads outside
@@ -103,7 +103,7 @@ pub fn complement<'a>(
         let next = across(normal.normalize(), &basis);
         basis.extend(next.try_normalize(ROUNDING));
     }
-    let taken = basis.len();
+    let held_count = basis.len();
     let mut units: Vec<DVector<f64>> = (0..count)
         .map(|place| DVector::from_fn(count, |row, _| f64::from(u8::from(row == place))))
         .collect();
@@ -113,8 +113,8 @@ pub fn complement<'a>(
         let next = across(units.remove(left.imax()), &basis);
         basis.push(next.normalize());
     }
-    DMatrix::from_fn(count, count - taken, |row, column| {
-        basis[taken + column][row]
+    DMatrix::from_fn(count, count - held_count, |row, column| {
+        basis[held_count + column][row]
     })
 }
 

@@ -31,7 +31,7 @@ const ROWS_BEFORE_PARTING: usize = 20;
 /// The same number for one slip, in rows with more than the digits of single precision.
 const ROWS_OF_ONE_BEFORE_PARTING: usize = 8;
 /// Rows are evidence of a slip if they differ from the run without it by this multiple of the tolerance.
-const EVIDENCE: f64 = 50.0;
+const MIN_EVIDENCE: f64 = 50.0;
 
 /// Latest step of the first difference for which pairs are tried.
 pub const MOST_FOR_PAIRS: i64 = 4000;
@@ -278,7 +278,7 @@ impl Search<'_> {
         let needs_all_rows = self.has_few_digits || self.is_single;
         found.retain(|pair| {
             let has_all_rows = pair.followed.parted.is_none();
-            pair.evidence >= EVIDENCE && (has_all_rows || !needs_all_rows)
+            pair.evidence >= MIN_EVIDENCE && (has_all_rows || !needs_all_rows)
         });
         (found, closest)
     }
@@ -292,7 +292,7 @@ impl Search<'_> {
             (Some(_), true) => ROWS_BEFORE_PARTING,
         };
         // Without principal axes, two slips together can produce the rows of many other pairs.
-        explanation.evidence >= EVIDENCE
+        explanation.evidence >= MIN_EVIDENCE
             && (explanation.variants.len() == 1
                 || program::<f64>(self.plan, &[], Order::Forward).has_axes())
             && followed.offset == 0

@@ -7,13 +7,13 @@ use crate::engine::run::Simulation;
 use std::ops::Range;
 
 /// Two copies of a run have diverged if they differ by more than this fraction of a column's tolerance.
-const PARTED: f64 = 0.1;
+const DIVERGED: f64 = 0.1;
 /// Errors of single precision are at most this multiple of the errors of the copies in single precision.
-const ERRORS: f64 = 10.0;
+const SINGLE_ERROR_FACTOR: f64 = 10.0;
 /// Rounding of numbers in single precision, relative to the largest: of the start values and of the output.
 const SINGLE_ROUNDING: f64 = 4.0 * f32::EPSILON as f64;
 /// The same rounding for a whole vector, which few digits cannot distinguish from single precision.
-const ROUNDING_OF_ALL: f64 = 2.0 * SINGLE_ROUNDING;
+const VECTOR_ROUNDING: f64 = 2.0 * SINGLE_ROUNDING;
 /// Maximum tolerance for errors of single precision, relative to the vector. With more, nothing is left to compare.
 const MOST_SLACK: f64 = 0.02;
 /// The offsets to try, in rows.
@@ -99,7 +99,7 @@ impl<A: Stepper, B: Stepper> ReferenceRun<A, B> {
         if self.rounding == Rounding::Double {
             let mut columns = rows.columns.iter().map(|it| (it, values[it.place]));
             let is_known = columns.all(|(column, value)| {
-                let room = PARTED * column.room(value);
+                let room = DIVERGED * column.room(value);
                 copies
                     .iter()
                     .all(|copy| (value - copy[column.place]).abs() <= room)
@@ -122,9 +122,10 @@ impl<A: Stepper, B: Stepper> ReferenceRun<A, B> {
                 numbers.fold(0.0, f64::max)
             };
             let places = if place < 3 { vector.clone() } else { own };
-            let slack = ERRORS * most(places.clone(), 0) + SINGLE_ROUNDING * most(places, 1);
+            let slack =
+                SINGLE_ERROR_FACTOR * most(places.clone(), 0) + SINGLE_ROUNDING * most(places, 1);
             match self.rounding {
-                Rounding::FewDigits => slack + ROUNDING_OF_ALL * most(vector, 1),
+                Rounding::FewDigits => slack + VECTOR_ROUNDING * most(vector, 1),
                 _ => slack,
             }
         });
@@ -237,16 +238,16 @@ pub fn compare_rows<A: Stepper, B: Stepper>(
         ..RowAgreement::default()
     });
     let count = rows.count;
-    let goes_on = |lane: &RowAgreement| lane.next < count && lane.differs.is_none();
+    let is_active = |lane: &RowAgreement| lane.next < count && lane.differs.is_none();
     let mut step = 0;
-    while lanes.iter().any(goes_on) && (goes_on(&lanes[0]) || !lanes[0].is_whole()) {
+    while lanes.iter().any(is_active) && (is_active(&lanes[0]) || !lanes[0].is_whole()) {
         let Some(at) = run.now(rows) else {
-            for lane in lanes.iter_mut().filter(|lane| goes_on(lane)) {
+            for lane in lanes.iter_mut().filter(|lane| is_active(lane)) {
                 lane.parted = Some(step);
             }
             break;
         };
-        for lane in lanes.iter_mut().filter(|lane| goes_on(lane)) {
+        for lane in lanes.iter_mut().filter(|lane| is_active(lane)) {
             lane.compare_due_rows(rows, steps, step, &at);
         }
         run.step();

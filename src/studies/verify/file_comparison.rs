@@ -41,7 +41,7 @@ pub struct FileComparison {
     names: Option<Vec<String>>,
     rows: u64,
     /// Number of the first line that ends in CR LF.
-    rewritten: Option<u64>,
+    first_crlf_line: Option<u64>,
     difference: Option<FileDifference>,
 }
 
@@ -71,7 +71,7 @@ impl FileComparison {
             line: 0,
             names: None,
             rows: 0,
-            rewritten: None,
+            first_crlf_line: None,
             difference: None,
         }
     }
@@ -92,7 +92,7 @@ impl FileComparison {
                 ));
             }
         }
-        if let Some(line) = self.rewritten {
+        if let Some(line) = self.first_crlf_line {
             self.line = line;
             self.differ(format!(
                 "every row is the same, but the lines end in CR LF from line {line} on instead of LF: \
@@ -122,7 +122,7 @@ impl FileComparison {
         let mut there = self.next(computed.len() as u64 + MOST_LINE_EXCESS)?;
         let is_whole = there.pop_if(|byte| *byte == b'\n').is_some();
         if is_whole && there.pop_if(|byte| *byte == b'\r').is_some() {
-            self.rewritten.get_or_insert(self.line);
+            self.first_crlf_line.get_or_insert(self.line);
         }
         let [computed, there] = [&computed, &there].map(|text| self.without_mark(text));
         let is_header = self.names.is_none() && computed.starts_with(b"#");

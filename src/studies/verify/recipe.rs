@@ -23,12 +23,12 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Start of the line of column names in the CSV of a comparison.
-const OF_COMPARISON: &[u8] = b"scheme,time_step_s,";
+const COMPARISON_COLUMNS_START: &[u8] = b"scheme,time_step_s,";
 /// End of the line of column names in the CSV of a fit.
 const FIT_COLUMNS_END: &[u8] = b",residual,residual_sigmas";
 /// Columns of a comparison that hold measured computing times.
-const BY_THE_CLOCK: [&str; 2] = ["ns_per_step", "wall_s"];
-const OF_THE_CLOCK: &str =
+const CLOCK_COLUMNS: [&str; 2] = ["ns_per_step", "wall_s"];
+const CLOCK_NOTE: &str =
     "a comparison: ns_per_step and wall_s are measured computing times and cannot be verified";
 /// Maximum number of values in the table of a comparison.
 const MOST_COMPARISON_VALUES: usize = 1_000_000;
@@ -59,7 +59,7 @@ impl CsvRecipe {
         header: &str,
         document: &Document,
     ) -> Result<Self, Unverified> {
-        if head.names().starts_with(OF_COMPARISON) {
+        if head.names().starts_with(COMPARISON_COLUMNS_START) {
             return Self::of_comparison(path, document.scenario()?);
         }
         if head.names().ends_with(FIT_COLUMNS_END) {
@@ -121,7 +121,7 @@ impl CsvRecipe {
             Self::Sweep(sweep) => comparison.keys = sweep.keys().count(),
             Self::Comparison { .. } => {
                 comparison.keys = 2;
-                comparison.left_out = &BY_THE_CLOCK;
+                comparison.left_out = &CLOCK_COLUMNS;
             }
             Self::Fit { .. } => {}
         }
@@ -161,7 +161,7 @@ impl CsvRecipe {
                 schemes,
                 time_steps_s,
             } => {
-                notes.push(OF_THE_CLOCK.to_owned());
+                notes.push(CLOCK_NOTE.to_owned());
                 let rows = compare::compare(scenario, schemes, time_steps_s, watch)
                     .ok_or(Unverified::Stopped)?;
                 out.write_all(&csv_of_comparison(scenario, &rows)?)?;
