@@ -85,7 +85,7 @@ fn row(session: &ListedSession, now: SystemTime) -> [String; 5] {
     [session.name.clone(), written, step, in_use, run].map(|text| printable(&text).into_owned())
 }
 
-/// Formats a duration as a time ago, in the largest unit of which it has at least two.
+/// Formats a time in the past in the largest unit that gives at least two, such as "2 hours ago".
 fn ago(time: Duration) -> String {
     let seconds = time.as_secs();
     let units = [(86_400, "days"), (3600, "hours"), (60, "minutes")];

@@ -364,7 +364,7 @@ fn a_key_at_its_bound_is_reported() {
     assert!(told.contains(remark), "{told}");
     has(
         &told,
-        "body.part.0.moments_kg_m2.2 is at its bound 0.0038: the fit would be better beyond it, and it has no uncertainty. With another start value (--set), the search may find a better fit within the bounds.",
+        "body.part.0.moments_kg_m2.2 is at its bound 0.0038: the fit would be better beyond it, and the key has no uncertainty. With another start value (--set), the search may find a better fit within the bounds.",
     );
     // A value inside its bounds is not reported as held.
     let inside = format!("{MOMENT}=0.003..0.005");

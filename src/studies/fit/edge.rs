@@ -76,7 +76,7 @@ impl Edge {
             (Rule::Least(place) | Rule::Greatest(place), None) => {
                 let (key, value) = key(place);
                 format!(
-                    "{key} is at its bound {value}: the fit would be better beyond it, and it has no uncertainty. With another start value (--set), the search may find a better fit within the bounds."
+                    "{key} is at its bound {value}: the fit would be better beyond it, and the key has no uncertainty. With another start value (--set), the search may find a better fit within the bounds."
                 )
             }
             (Rule::Least(place) | Rule::Greatest(place), Some(Most { at_68, at_95 })) => {
@@ -95,7 +95,7 @@ impl Edge {
                     format!(" {sum} is above {moment} by{}", &percents[1..])
                 });
                 format!(
-                    "body.part.{part} is flat: {}, at the physical limit (A, B, C: its moments .0, .1, .2 about its center).{most}{} The other values have the uncertainty of an exactly flat body to one side; to the other, that of the thickness is added in quadrature.",
+                    "body.part.{part} is flat: {}, at the physical limit (A, B, C: its moments .0, .1, .2 about its center).{most}{} On one side, the other values have the uncertainty of an exactly flat body; on the other side, the uncertainty of the thickness is added in quadrature.",
                     FLAT[axis],
                     if most.is_empty() { "" } else { "." }
                 )
@@ -108,7 +108,7 @@ impl Edge {
                     format!(" {moment} is{} of {other}.", &percents[1..])
                 });
                 format!(
-                    "body.part.{part} is a rod: {}, at the physical limit (A, B, C: its moments .0, .1, .2 about its center).{most} The other values have the uncertainty of an exact rod to one side; to the other, that of the thickness is added in quadrature.",
+                    "body.part.{part} is a rod: {}, at the physical limit (A, B, C: its moments .0, .1, .2 about its center).{most} On one side, the other values have the uncertainty of an exact rod; on the other side, the uncertainty of the thickness is added in quadrature.",
                     ROD[axis]
                 )
             }

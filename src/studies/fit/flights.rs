@@ -1,7 +1,7 @@
 //! Finds the free flights in a recording of a body's three rates.
 //!
-//! In free flight, Euler's equations hold without a torque: w1 changes by g1 times the integral of w2 w3, with g1 = (B
-//! - C)/A, and likewise for the other axes. Whatever its moments are, no body has a g outside -1..1.
+//! In free flight, Euler's equations hold without a torque. w1 changes by g1 times the integral of w2 w3, and likewise
+//! for the other axes. The factor g1 = (B - C)/A is within -1..1 for every body, whatever its moments are.
 //!
 //! A flight is a longest run of rows in which the body turns fast and one such g for each axis explains the rates
 //! within the noise. A hand that turns or catches the body changes the rates in other ways.
@@ -44,8 +44,8 @@ const MIN_RATE: f64 = 2.0;
 const MISALIGNMENT: f64 = 0.01;
 /// Allowed excess of the noise's mean square over its expected value, in standard deviations.
 const NOISE_TOLERANCE: f64 = 4.0;
-/// Duration at each end, s, whose rows are trimmed if their mean deviates by more than `END_DEVIATION` standard deviations. For a
-/// whole recording the limit is `END_DEVIATION_OF_WHOLE`.
+/// Duration at each end, s. Its rows are trimmed if their mean deviates by more than `END_DEVIATION` standard
+/// deviations; for a whole recording, `END_DEVIATION_OF_WHOLE`.
 const END_S: f64 = 0.02;
 const END_DEVIATION: f64 = 3.0;
 const END_DEVIATION_OF_WHOLE: f64 = 6.0;

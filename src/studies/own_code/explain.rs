@@ -19,8 +19,8 @@ pub const SLIP_COUNT: usize = SLIPS.len() + 2;
 /// Presets whose start may be left over in a program, the report's own first. Each can be made into a plan.
 const STARTS: [&str; 4] = ["method-1", "method-2", "wobble-push", "every-slip"];
 
-/// Minimum number of steps up to which a slip must agree to be called closest, and the minimum as a multiple of the
-/// steps up to which the scheme itself agrees.
+/// Minimum number of agreeing steps of the closest slip: a fixed number, and a multiple of the steps that agree with
+/// the scheme itself.
 const LASTS: (i64, i64) = (20, 10);
 
 /// Number of rows after the first difference that must agree with a pair of slips, or with a slip that is stated as
@@ -427,7 +427,7 @@ pub fn hidden(
         }
         let alone = std::slice::from_ref(variant);
         let followed = compare_rows(rows, steps_by(rows, alone), double(plan, alone));
-        // A run whose copies diverge long before those of the scheme is a different run.
+        // A run whose copies diverge long before the scheme's copies is a different run.
         followed.is_whole()
             && followed
                 .parted

@@ -61,7 +61,7 @@ impl Stepper for Simulation {
 /// Purpose of the copies of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rounding {
-    /// Copies in double precision: if they differ, rounding has taken over the motion.
+    /// Copies in double precision: if they differ, rounding errors dominate the motion.
     Double,
     /// Copies in single precision: their errors are tolerated.
     Single,

@@ -299,7 +299,7 @@ impl CheckOutcome<'_> {
         self.coarsest().map_or(0, ProgramColumn::digits)
     }
 
-    /// Returns true if the digits are fewer than those of single precision.
+    /// Returns true if the rows have fewer digits than single precision.
     fn has_few_digits(&self) -> bool {
         self.digits() < SINGLE_DIGITS
     }

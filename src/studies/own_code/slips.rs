@@ -110,8 +110,8 @@ pub struct Mutations {
 
 /// A common mistake in programs of the report's step.
 ///
-/// It has a name, the behavior of the program and that of the report, both without a period, and the variants. A
-/// variant has a note and the change that it makes; `{n}` in a note is the name of the n-th of the axle's other points.
+/// It consists of a name, the program's behavior and the report's behavior (both without a period), and variants. A
+/// variant has a note and a change; `{n}` in a note is the name of the n-th of the axle's other points.
 type Slip = (
     &'static str,
     &'static str,
