@@ -3,6 +3,7 @@
 use super::ink::{PageRectangle, at};
 use super::scene::Point;
 use std::cmp::Ordering;
+use std::collections::HashMap;
 
 /// Number of points that are simplified together; the first and last are kept. This bounds the time for a pathological
 /// line.
@@ -84,6 +85,145 @@ fn inside(from: Point, to: Point, frame: &PageRectangle) -> Option<[Point; 2]> {
 /// Returns a subset of the points, including the first and the last. No other point is farther than `within_pt` from
 /// the line between its kept neighbors (Douglas and Peucker, 1973).
 pub fn simplified(points: &[Point], within_pt: f64) -> Vec<Point> {
+    let corners = corners(points, within_pt);
+    corners.into_iter().map(|index| points[index]).collect()
+}
+
+/// Returns the line through `points`, each at a `place` on the page, without ripples of at most `within_pt`. A dashed line
+/// is then as long as it looks: its dashes do not follow ripples that nobody sees.
+pub fn without_ripples<P: Copy>(
+    points: &[P],
+    place: impl Fn(&P) -> Point,
+    within_pt: f64,
+) -> Vec<P> {
+    /// Length of a ripple compared with the straight line between its ends. A bend is shorter.
+    const RIPPLE: f64 = 1.2;
+    let places: Vec<Point> = points.iter().map(place).collect();
+    let mut steady: Vec<P> = Vec::new();
+    for pair in corners(&places, within_pt).windows(2) {
+        let (begin, end) = (pair[0], pair[1]);
+        let straight = distance(places[begin], places[end]);
+        let is_ripple = length(&places[begin..=end]) > RIPPLE * straight;
+        let kept = if is_ripple {
+            begin..begin + 1
+        } else {
+            begin..end
+        };
+        steady.extend(&points[kept]);
+    }
+    steady.extend(points.last());
+    steady
+}
+
+/// Returns the parts of `lines` that are at least `apart_pt` away from all parts before them; `place` returns where a point
+/// is on the page. A dashed line that follows itself would look solid.
+pub fn first_passes<P: Copy>(
+    lines: &[Vec<P>],
+    place: impl Fn(&P) -> Point,
+    apart_pt: f64,
+) -> Vec<Vec<P>> {
+    let mut passed = Passed::new(apart_pt);
+    let mut fresh: Vec<Vec<P>> = Vec::new();
+    for line in lines {
+        let mut is_joined = false;
+        for pair in line.windows(2) {
+            let is_new = passed.is_first([place(&pair[0]), place(&pair[1])]);
+            match fresh.last_mut().filter(|_| is_joined) {
+                Some(part) if is_new => part.push(pair[1]),
+                _ if is_new => fresh.push(pair.to_vec()),
+                _ => {}
+            }
+            is_joined = is_new;
+        }
+    }
+    fresh
+}
+
+/// The places on the page that a line has passed.
+struct Passed {
+    apart_pt: f64,
+    /// One place in each square of side `apart_pt`, and the length of the line up to there, pt.
+    places: HashMap<[i64; 2], (Point, f64)>,
+    length_pt: f64,
+    checked: u32,
+}
+
+/// The most places along a line that are checked. Beyond them the page is full.
+const MOST_CHECKED: u32 = 2_000_000;
+
+impl Passed {
+    fn new(apart_pt: f64) -> Self {
+        Self {
+            apart_pt,
+            places: HashMap::new(),
+            length_pt: 0.0,
+            checked: 0,
+        }
+    }
+
+    /// Appends the next segment of the line. Returns whether it leads through a new place.
+    fn is_first(&mut self, [from, to]: [Point; 2]) -> bool {
+        let long_pt = distance(from, to);
+        let count = (long_pt / self.apart_pt).ceil().clamp(1.0, 1e5) as u32;
+        self.checked = self.checked.saturating_add(count);
+        if self.checked > MOST_CHECKED {
+            return false;
+        }
+        let begin_pt = self.length_pt;
+        let along = (1..=count).map(|number| {
+            let share = f64::from(number) / f64::from(count);
+            let there = at(
+                from.x + share * (to.x - from.x),
+                from.y + share * (to.y - from.y),
+            );
+            (there, begin_pt + share * long_pt)
+        });
+        let along: Vec<(Point, f64)> = along.collect();
+        self.length_pt += long_pt;
+        let is_first = along
+            .iter()
+            .any(|(there, length_pt)| !self.has(*there, *length_pt));
+        if is_first {
+            for (there, length_pt) in along {
+                let square = self.square(there);
+                self.places.entry(square).or_insert((there, length_pt));
+            }
+        }
+        is_first
+    }
+
+    /// Returns whether the line was near `there` before; `length_pt` is its length up to there now.
+    fn has(&self, there: Point, length_pt: f64) -> bool {
+        /// Neighbors along the line do not count: their distance along it, in units of `apart_pt`.
+        const ITSELF: f64 = 4.0;
+        let [column, row] = self.square(there);
+        (-1..=1).any(|right| {
+            (-1..=1).any(|down| {
+                let near = self.places.get(&[column + right, row + down]);
+                near.is_some_and(|(place, when_pt)| {
+                    distance(*place, there) < self.apart_pt
+                        && length_pt - when_pt > ITSELF * self.apart_pt
+                })
+            })
+        })
+    }
+
+    fn square(&self, place: Point) -> [i64; 2] {
+        [place.x, place.y].map(|side| (side / self.apart_pt).floor() as i64)
+    }
+}
+
+/// Returns the length of the line through `points`, pt.
+pub fn length(points: &[Point]) -> f64 {
+    points.array_windows().map(|[a, b]| distance(*a, *b)).sum()
+}
+
+fn distance(a: Point, b: Point) -> f64 {
+    libm::hypot(b.x - a.x, b.y - a.y)
+}
+
+/// Returns the indices of the points that [`simplified`] keeps.
+fn corners(points: &[Point], within_pt: f64) -> Vec<usize> {
     let Some(last) = points.len().checked_sub(1) else {
         return vec![];
     };
@@ -104,8 +244,7 @@ pub fn simplified(points: &[Point], within_pt: f64) -> Vec<Point> {
             }
         }
     }
-    let kept = points.iter().zip(is_kept).filter(|(_, is_kept)| *is_kept);
-    kept.map(|(point, _)| *point).collect()
+    (0..points.len()).filter(|index| is_kept[*index]).collect()
 }
 
 /// Returns the squared distance of a point from the line segment between two others; infinity if it is NaN, so that the

@@ -354,14 +354,17 @@ fn the_duration_of_a_push_is_shaded_and_labeled_once() {
 }
 
 #[test]
-fn a_path_with_few_steps_per_turn_is_drawn_as_points() {
+fn a_path_with_fewer_than_two_steps_per_turn_is_drawn_as_points() {
     for kind in ["above", "3d"] {
-        let runs = [run("method-1", &["motion.steps=200"])];
+        // The body turns by 4.5 rad in a step.
+        let runs = [run(
+            "method-1",
+            &["motion.steps=200", "motion.time_step_s=0.007"],
+        )];
         let coarse = drawn(&runs, &with_exact(kind));
-        let name = "the report's scheme, Δt = 1 ms, every step";
+        let name = "the report's scheme, Δt = 7 ms, every step";
         says(&coarse.scene, &[name, "exact motion"]);
-        let words = "about 10 time steps per turn";
-        has(told(&coarse).join("; "), words);
+        has(told(&coarse).join("; "), "time steps per turn");
         // Nothing is drawn between steps.
         let is_dot = |item: &&SceneItem| matches!(&item.paint, Paint::Stroke(pen) if pen.width_pt >= 0.5 && pen.dash_pt.is_empty());
         let dots = coarse
@@ -375,6 +378,51 @@ fn a_path_with_few_steps_per_turn_is_drawn_as_points() {
         let fine = drawn(&[run("cusps", &[])], &with_exact(kind));
         says(&fine.scene, &["rk4, Δt = 1 ms", "exact motion"]);
         assert_eq!(fine.told().next(), None);
+    }
+}
+
+/// The report's scheme turns the body about Ω: within a step, the top goes along a circle.
+#[test]
+fn a_step_of_the_reports_scheme_is_an_arc() {
+    let set = ["motion.steps=100", "motion.gravity_m_per_s2=0"];
+    let runs = [run("method-1", &set)];
+    let scene = drawn(&runs, &spec("above")).scene;
+    let [panel] = panels(&scene)[..] else {
+        panic!("one panel")
+    };
+    let curves = lines(&scene, panel);
+    assert!(curves.len() <= 2, "an unbroken line");
+    // Without torque it is one circle about L, from above an ellipse through the origin.
+    let points: Vec<Point> = curves.iter().flat_map(|item| item.path.points()).collect();
+    let [left, top, right, bottom] = extent_of_lines(&scene, panel);
+    let middle = Point {
+        x: 0.5 * (left + right),
+        y: 0.5 * (top + bottom),
+    };
+    let off = points.iter().map(|at| {
+        let x = (at.x - middle.x) / (0.5 * (right - left));
+        let y = (at.y - middle.y) / (0.5 * (bottom - top));
+        (libm::hypot(x, y) - 1.0).abs()
+    });
+    let most = most(off);
+    assert!(most < 2e-3, "{most} of its radius off");
+}
+
+#[test]
+fn a_curve_of_ten_steps_a_swing_reaches_its_extremes() {
+    // Upright again and again: the exact motion and the report's scheme agree in that.
+    for preset in ["method-1", "method-1-steeper"] {
+        let run = run(preset, &["motion.steps=300"]);
+        let column = FigureKind::named("tilt_deg").unwrap().columns()[0];
+        let points = recorded(&run).points(column);
+        // The least of each swing, which has 11 steps or fewer.
+        let swings = points.chunk_by(|a, b| (a[0] / 0.011).floor() == (b[0] / 0.011).floor());
+        let lows: Vec<f64> = swings
+            .map(|swing| least(swing.iter().map(|at| at[1])))
+            .collect();
+        assert!(lows.len() > 20);
+        let highest = most(lows.into_iter());
+        assert!(highest < 0.25, "{preset}: {highest} degrees");
     }
 }
 

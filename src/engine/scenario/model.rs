@@ -87,6 +87,14 @@ pub struct Edit {
     pub begins_segment: bool,
 }
 
+impl Scenario {
+    /// Returns how the body moves in the first step: what edits before it have made of the file's motion.
+    pub fn first_motion(&self) -> &Motion {
+        let at_start = self.edits.iter().take_while(|edit| edit.step == 0);
+        at_start.last().map_or(&self.motion, |edit| &edit.motion)
+    }
+}
+
 impl Edit {
     /// Returns the pushes that the edit set, with their new values.
     pub fn pushes_set(&self) -> impl Iterator<Item = &Push> {

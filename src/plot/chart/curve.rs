@@ -1,10 +1,10 @@
 //! The line of a series on the page, without the points that nobody could see.
 
 use super::layout::PlacedPanel;
-use super::{ChartSeries, EXACT_COLOR, Panel};
-use crate::plot::ink::{PageRectangle, WHITE, at, paler};
-use crate::plot::line::{clipped, simplified};
-use crate::plot::scene::{PageScene, Point, StrokeStyle, VectorPath};
+use super::{ChartSeries, Panel, SeriesStyle};
+use crate::plot::ink::{PageRectangle, WHITE, at, paler, pen};
+use crate::plot::line::{clipped, first_passes, length, simplified, without_ripples};
+use crate::plot::scene::{Color, PageScene, Point, StrokeStyle, VectorPath};
 use crate::plot::stroke_outline;
 use std::collections::HashSet;
 
@@ -17,8 +17,10 @@ const UNSEEN_PT: f64 = 0.014;
 const MANY_LINE_POINTS: usize = 5_000;
 /// The part of white in the color of a band, which its line has pure.
 pub const BAND_WHITE: f64 = 0.72;
-/// The white on both sides of a dash of the exact motion together, pt.
-const HALO_PT: f64 = 0.9;
+/// Ripples of a dashed line that are lower than this part of its width are not followed.
+const UNSEEN_RIPPLE: f64 = 0.35;
+/// A dashed line is drawn once where it comes so near to itself again, in its widths.
+const AGAIN: f64 = 2.0;
 /// How far outside of its panel a line is followed, pt: half its width, which is cut off at the edge.
 const BEYOND_PT: f64 = 2.0;
 
@@ -29,35 +31,39 @@ impl PlacedPanel {
 
     /// Draws the line of `series`, if it has one; of a band its two edges.
     pub fn draw_line(&self, series: &ChartSeries, scene: &mut PageScene) {
-        if series.style.width_pt == 0.0 {
-            return;
-        }
-        let clip = self.frame.grown(BEYOND_PT);
-        let places = series.points.iter().map(|point| self.place(point));
-        let pieces = if !series.band.is_empty() {
-            let edges = self
-                .edges(&series.band)
-                .map(|edge| clipped(edge.into_iter(), &clip));
-            edges.concat()
-        } else if series.style.is_dots {
-            dots(places.filter(|place| clip.holds(*place)))
-        } else {
-            clipped(places, &clip)
-        };
-        draw_curve(&pieces, &series.style.pen(), Some(&self.frame), scene);
+        self.draw_with(&series.style.pen(), series, scene);
     }
 
     /// Draws a white edge around the dashes of an exact motion, which are seen on dense swings then.
     pub fn draw_halo(&self, series: &ChartSeries, scene: &mut PageScene) {
-        if series.style.color == EXACT_COLOR && series.style.width_pt > 0.0 {
+        if series.style.halo_pt() > 0.0 {
             let pen = series.style.pen();
             let halo = StrokeStyle {
-                width_pt: pen.width_pt + HALO_PT,
+                width_pt: pen.width_pt + series.style.halo_pt(),
                 color: WHITE,
                 ..pen
             };
-            draw_curve(&self.pieces(series), &halo, Some(&self.frame), scene);
+            self.draw_with(&halo, series, scene);
         }
+    }
+
+    /// Draws what [`draw_line`](Self::draw_line) draws, with this `pen`.
+    fn draw_with(&self, pen: &StrokeStyle, series: &ChartSeries, scene: &mut PageScene) {
+        if series.style.width_pt == 0.0 {
+            return;
+        }
+        let pieces = if !series.band.is_empty() {
+            let edges = self
+                .edges(&series.band)
+                .map(|edge| clipped(edge.into_iter(), &self.clip()));
+            edges.concat()
+        } else if series.style.is_dots {
+            let places = series.points.iter().map(|point| self.place(point));
+            dots(places.filter(|place| self.clip().holds(*place)))
+        } else {
+            self.pieces(series)
+        };
+        draw_curve(&pieces, pen, Some(&self.frame), scene);
     }
 
     /// Draws the marks along the line of `series`, if it has them: so many at equal distances, those of the series `place` of a
@@ -78,23 +84,36 @@ impl PlacedPanel {
         }
     }
 
+    /// The line of `series` on the page, cut off at the panel.
     pub fn pieces(&self, series: &ChartSeries) -> Vec<Vec<Point>> {
         let places = series.points.iter().map(|point| self.place(point));
-        clipped(places, &self.frame.grown(BEYOND_PT))
+        as_dashed(clipped(places, &self.clip()), &series.style, |place| *place)
     }
 
-    /// Fills the band of `series`, if it has one.
+    /// A frame around the panel with room for the width of a line.
+    fn clip(&self) -> PageRectangle {
+        self.frame.grown(BEYOND_PT)
+    }
+
+    /// Fills or hatches the band of `series`, if it has one.
     pub fn fill_band(&self, series: &ChartSeries, scene: &mut PageScene) {
-        let [least, greatest] = self.edges(&series.band);
-        let outline: Vec<_> = least
-            .into_iter()
-            .chain(greatest.into_iter().rev())
-            .map(|place| self.frame.grown(BEYOND_PT).nearest(place))
-            .collect();
-        if !outline.is_empty() {
-            let color = paler(series.style.color, BAND_WHITE);
-            scene.fill_in(VectorPath::polygon(outline), color, Some(&self.frame));
+        let ([first, .., last], color) = (&series.band[..], series.style.color) else {
+            return;
+        };
+        if series.style.is_hatched {
+            let [left, right] = [first[0], last[0]].map(|x| self.x.place(x));
+            let stripe = PageRectangle {
+                left: left.max(self.frame.left),
+                right: right.min(self.frame.right),
+                ..self.frame
+            };
+            return hatch(&stripe, color, scene);
         }
+        let [least, greatest] = self.edges(&series.band);
+        let corners = least.into_iter().chain(greatest.into_iter().rev());
+        let outline = corners.map(|place| self.clip().nearest(place));
+        let color = paler(color, BAND_WHITE);
+        scene.fill_in(VectorPath::polygon(outline), color, Some(&self.frame));
     }
 
     /// The lower and the upper edge of a `band`.
@@ -127,11 +146,46 @@ impl PlacedPanel {
     }
 }
 
+/// Hatches a rectangle of the page.
+pub fn hatch(rectangle: &PageRectangle, color: Color, scene: &mut PageScene) {
+    const APART_PT: f64 = 4.0;
+    const HATCH_PT: f64 = 0.35;
+    let pen = pen(HATCH_PT, paler(color, 0.4));
+    let height = rectangle.height();
+    let count = ((rectangle.width() + height) / APART_PT).ceil() as u32;
+    for number in 0..count {
+        let foot = rectangle.left - height + (f64::from(number) + 0.5) * APART_PT;
+        let line = [at(foot, rectangle.bottom), at(foot + height, rectangle.top)];
+        scene.stroke(VectorPath::polyline(line), pen.clone(), Some(rectangle));
+    }
+}
+
 pub fn dots(places: impl Iterator<Item = Point>) -> Vec<Vec<Point>> {
     const LENGTH_PT: f64 = 0.02;
     places
         .map(|place| vec![place, at(place.x + LENGTH_PT, place.y)])
         .collect()
+}
+
+/// Returns the parts of a line of this `style` that are drawn, with its points at a `place` on the page: of a dashed one each
+/// part once, since dashes that follow each other would make it solid.
+pub fn as_dashed<P: Copy>(
+    pieces: Vec<Vec<P>>,
+    style: &SeriesStyle,
+    place: impl Fn(&P) -> Point,
+) -> Vec<Vec<P>> {
+    if style.dash_pt.is_empty() {
+        return pieces;
+    }
+    let steady: Vec<Vec<P>> = pieces
+        .iter()
+        .map(|piece| without_ripples(piece, &place, UNSEEN_RIPPLE * style.width_pt))
+        .collect();
+    let mut pairs = steady.iter().flat_map(|piece| piece.array_windows());
+    if pairs.all(|[from, to]| place(from).x <= place(to).x) {
+        return steady; // a curve over time
+    }
+    first_passes(&steady, &place, AGAIN * style.width_pt)
 }
 
 /// Draws a line that is cut off outside of `clip`, in fewer pieces that look the same.
@@ -223,12 +277,6 @@ impl Squares {
         });
         !self.0.is_empty() && covered.count() as f64 >= Self::SAME * self.0.len() as f64
     }
-}
-
-pub fn length(line: &[Point]) -> f64 {
-    let pairs = line.windows(2);
-    let ways = pairs.map(|pair| libm::hypot(pair[1].x - pair[0].x, pair[1].y - pair[0].y));
-    ways.sum()
 }
 
 #[cfg(test)]

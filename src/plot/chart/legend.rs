@@ -1,6 +1,6 @@
 //! Which line is what: in a corner of the panel where nothing is drawn, or above the panels.
 
-use super::curve::BAND_WHITE;
+use super::curve::{BAND_WHITE, hatch};
 use super::layout::{ChartLayout, PAGE_EDGE};
 use super::{Chart, SeriesStyle};
 use crate::plot::ink::{self, LABEL_PT, PageRectangle, WHITE, at, paler};
@@ -162,12 +162,17 @@ impl LegendEntry {
         };
         let y = place.y - 0.5 * ink::height(LABEL_PT);
         if style.is_band {
-            let (from, to) = (
-                at(place.x, y - LEGEND_BAND),
-                at(place.x + KEY, y + LEGEND_BAND),
-            );
-            let corners = [from, at(to.x, from.y), to, at(from.x, to.y)];
-            scene.fill(VectorPath::polygon(corners), paler(style.color, BAND_WHITE));
+            let key = PageRectangle {
+                left: place.x,
+                top: y - LEGEND_BAND,
+                right: place.x + KEY,
+                bottom: y + LEGEND_BAND,
+            };
+            if style.is_hatched {
+                hatch(&key, style.color, scene);
+            } else {
+                scene.fill(key.outline(), paler(style.color, BAND_WHITE));
+            }
         }
         if style.width_pt > 0.0 {
             let ends = [at(place.x, y), at(place.x + KEY, y)];

@@ -98,12 +98,20 @@ impl ChartSeries {
 
     /// The time of a push, which acts between these values of the axis x.
     pub fn push(from: f64, to: f64) -> Self {
-        let everything = [f64::NEG_INFINITY, f64::INFINITY];
+        Self::stripe("push", SeriesStyle::push(), from, to)
+    }
+
+    /// The time between these values of the axis x in which the motion cannot be predicted.
+    pub fn unpredictable(from: f64, to: f64) -> Self {
+        Self::stripe("not predictable", SeriesStyle::unpredictable(), from, to)
+    }
+
+    /// A stripe over the whole height of the panel between these values of the axis x.
+    fn stripe(name: &str, style: SeriesStyle, from: f64, to: f64) -> Self {
+        let stripe = [from, to].map(|time| [time, f64::NEG_INFINITY, f64::INFINITY]);
         Self {
-            band: [from, to]
-                .map(|time| [time, everything[0], everything[1]])
-                .into(),
-            ..Self::new("push", Vec::new(), SeriesStyle::push())
+            band: stripe.into(),
+            ..Self::new(name, Vec::new(), style)
         }
     }
 
@@ -170,6 +178,8 @@ pub struct SeriesStyle {
     pub is_dots: bool,
     /// Whether it is a band where its series has one.
     pub is_band: bool,
+    /// Whether that band is hatched.
+    pub is_hatched: bool,
     /// The mark at a few places along its line, which tells it from others without color.
     pub sparse_mark: Option<PointMark>,
 }
@@ -185,6 +195,7 @@ impl Default for SeriesStyle {
             is_behind: false,
             is_dots: false,
             is_band: false,
+            is_hatched: false,
             sparse_mark: None,
         }
     }
@@ -274,6 +285,14 @@ impl SeriesStyle {
             width_pt: 0.0,
             is_band: true,
             ..Self::default()
+        }
+    }
+
+    /// The time in which the motion cannot be predicted: hatched.
+    pub fn unpredictable() -> Self {
+        Self {
+            is_hatched: true,
+            ..Self::push()
         }
     }
 
@@ -369,6 +388,16 @@ impl SeriesStyle {
             width_pt: DOT_PT,
             is_dots: true,
             ..self
+        }
+    }
+
+    /// The white on both sides of its line together, pt: the exact motion is seen on the swings of a run then.
+    pub fn halo_pt(&self) -> f64 {
+        const HALO_PT: f64 = 0.9;
+        if self.color == EXACT_COLOR && self.width_pt > 0.0 {
+            HALO_PT
+        } else {
+            0.0
         }
     }
 

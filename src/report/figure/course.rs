@@ -1,6 +1,8 @@
 //! The numbers of a figure, from a run that is stepped through: once more, or while something else is read off it.
 
+use super::arcs::StepArcs;
 use super::path::{self, TracedPath};
+use crate::engine::analysis::predictability::predictability;
 use crate::engine::analysis::{DistanceMeter, ExactReference, Health};
 use crate::engine::export::CsvColumn;
 use crate::engine::export::columns::DISTANCE;
@@ -12,6 +14,7 @@ use crate::physics::exact::LagrangeTop;
 use crate::physics::observables::{self, Azimuth};
 use crate::physics::{Loads, State};
 use nalgebra::Vector3;
+use std::f64::consts::TAU;
 use std::io;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -42,6 +45,8 @@ pub struct SampledRun {
     pub broke: Option<NotFinite>,
     /// Its health at its last step; `None` where it was not compared with the exact motion.
     pub health: Option<Health>,
+    /// The time from which on no computation can predict the motion, s; `None` up to that time, and where it is not known.
+    pub predictable_until_s: Option<f64>,
     /// The period of its nutation, s, of the exact motion where it is known: its moments may be too few to count them.
     pub swing_s: Option<f64>,
 }
@@ -155,11 +160,14 @@ fn part_at(whole: &RecordingBin, time_s: f64) -> u64 {
     (CURVE_BINS * ((time_s - whole.begin_s) / length_s)) as u64
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct RunSampler {
     wanted: SampleRequest,
     scenario: Arc<Scenario>,
     stretch_end_s: f64,
+    arcs: StepArcs,
+    /// The azimuth at the newest step.
+    azimuth: Azimuth,
     curves: Vec<Recording>,
     path: path::PathRecorder,
     above: path::PathRecorder,
@@ -173,6 +181,8 @@ impl RunSampler {
     /// A recorder of what is `wanted` of the run of `scenario`, before its start.
     pub fn new(scenario: &Arc<Scenario>, wanted: SampleRequest) -> Self {
         Self {
+            arcs: StepArcs::new(scenario, &wanted),
+            azimuth: Azimuth::start(&scenario.start.axle()),
             stretch_end_s: wanted.end_s(scenario),
             curves: vec![Recording::default(); wanted.columns.len().div_ceil(EXACT_TOGETHER)],
             path: path::PathRecorder::new(false),
@@ -202,6 +212,12 @@ impl RunSampler {
     /// curves have that one too, and the last one before the stretch, so that they come from one edge and go on to the other.
     pub fn follow(&mut self, step: &Step) {
         let beyond_s = step.motion().time_step_s;
+        for state in self.arcs.within(step) {
+            self.azimuth.turn_to(&state.axle());
+            let numbers = sample(&self.scenario, &state, &self.azimuth, step.loads());
+            self.take(state.time_s, beyond_s, &numbers.position, || numbers);
+        }
+        self.azimuth = *step.azimuth();
         self.take(step.time_s(), beyond_s, step.position(), || step.sample());
     }
 
@@ -254,6 +270,7 @@ impl RunSampler {
             is_empty: self.is_empty,
             broke,
             health: None,
+            predictable_until_s: None,
             swing_s: None,
         }
     }
@@ -291,15 +308,17 @@ pub fn play(
         Ok((Ended::NotFinite(error), _)) => Some(error),
         Ok((Ended::Done, _)) | Err(_) => None, // nothing is written that could fail
     };
+    let health = Health::new(simulation.now(), &mut beside);
     Some(SampledRun {
-        health: Some(Health::new(simulation.now(), &mut beside)),
+        predictable_until_s: health.limits().until_s,
+        health: Some(health),
         ..recorder.end(broke)
     })
 }
 
 /// Moments of the exact motion within the shortest of its periods that is known, and at least over the whole stretch; and at
 /// most, whatever the periods are.
-const A_PERIOD: f64 = 32.0;
+const A_PERIOD: f64 = 200.0;
 const LEAST_EXACT_SAMPLES: f64 = 3000.0;
 const MOST_EXACT_SAMPLES: f64 = 400_000.0;
 /// The part of a period, beside whole ones, between moments that are farther apart than it: the golden section, which meets
@@ -324,8 +343,16 @@ pub fn exact(
     let end_s = wanted.end_s(scenario);
     truth.state_at(begin_s);
     let closed = truth.motion().closed_form();
-    let period_s = closed.and_then(LagrangeTop::nutation_period);
-    let look_every = if closed.is_some() { 1024 } else { 1 };
+    let (has_formula, swing_s) = (
+        closed.is_some(),
+        closed.and_then(LagrangeTop::nutation_period),
+    );
+    let look_every = if has_formula { 1024 } else { 1 };
+    let period_s = if has_formula {
+        swing_s
+    } else {
+        turn_s(scenario)
+    };
     let interval_s = apart_s(end_s - begin_s, scenario.motion.time_step_s, period_s);
     let count = ((end_s - begin_s) / interval_s)
         .ceil()
@@ -346,9 +373,20 @@ pub fn exact(
         }
     }
     Some(SampledRun {
-        swing_s: period_s,
+        swing_s,
+        predictable_until_s: if has_formula {
+            None
+        } else {
+            predictability(scenario, end_s).until_s
+        },
         ..recorder.end(None)
     })
+}
+
+/// Returns the time in which the body of `scenario` turns once at the start, s.
+fn turn_s(scenario: &Scenario) -> Option<f64> {
+    let rate = observables::angular_velocity(&scenario.body.mechanics, &scenario.start).norm();
+    (rate > 0.0 && rate.is_finite()).then_some(TAU / rate)
 }
 
 /// How far the moments of a stretch of the exact motion are apart, s.

@@ -9,9 +9,9 @@ use crate::engine::export::CsvColumn;
 use crate::engine::recording::Extent;
 use crate::engine::text::nice_numbers;
 use crate::plot::PT_PER_MM;
-use crate::plot::chart::Chart;
-use crate::plot::chart::curve;
 use crate::plot::chart::layout::{ChartLayout, PlacedPanel};
+use crate::plot::chart::{Chart, ChartSeries};
+use crate::plot::line;
 use crate::plot::scene::Point;
 use crate::plot::stroke_outline::Grid;
 
@@ -80,6 +80,11 @@ impl Columns {
     }
 }
 
+/// Returns the width that the line of `series` covers, with its halo, pt.
+fn covered_pt(series: &ChartSeries) -> f64 {
+    series.style.width_pt + series.style.halo_pt()
+}
+
 /// Proposes a time range for `chart` if one of its curves, the `columns` of `drawn`, is too dense. In this range all
 /// curves are visible.
 pub(super) fn over_time(
@@ -97,7 +102,7 @@ pub(super) fn over_time(
         let series = drawn.iter().zip(&panel.series);
         series.filter_map(|(run, series)| {
             let parts = Columns::new(&run.course.parts(column), placed);
-            let is_dense = parts.are_dense(series.style.width_pt, placed);
+            let is_dense = parts.are_dense(covered_pt(series), placed);
             let swing_s = run.course.swing_s.unwrap_or(f64::INFINITY);
             let swings = (run.course.end_s - spec.from_s) / swing_s;
             is_dense.then(|| parts.turns().max((2.0 * swings) as u64))
@@ -130,14 +135,14 @@ pub(super) fn draw_bands(
             .iter()
             .map(|it| Columns::new(&it.course.parts(column), placed))
             .collect();
-        let widths = panel.series.iter().map(|series| series.style.width_pt);
+        let widths = panel.series.iter().map(covered_pt);
         let dense = all
             .iter()
             .zip(widths)
             .filter(|(it, width_pt)| it.are_dense(*width_pt, placed));
         let widest = dense.map(|(_, width_pt)| width_pt).fold(0.0, f64::max);
         for (parts, series) in all.iter().zip(&mut panel.series) {
-            if parts.are_dense(series.style.width_pt.max(widest), placed) {
+            if parts.are_dense(covered_pt(series).max(widest), placed) {
                 series.band = parts.band(placed);
                 series.style.is_band = true;
             }
@@ -185,7 +190,7 @@ fn of_path(
     if grid.area_inside_pt2(INSIDE) < DENSE_SHARE * area_pt2 {
         return None;
     }
-    let length_pt: f64 = lines.iter().map(|line| curve::length(line)).sum();
+    let length_pt: f64 = lines.iter().map(|line| line::length(line)).sum();
     let share = (LOOSE * area_pt2 / (path.times * length_pt * LINE_PT)).min(0.5);
     let what = format!(
         "its turns are too dense to be drawn on {} mm and cover the paper",

@@ -2,7 +2,8 @@
 //!
 //! - [`of_runs`]: figures of runs: curves over time, from above and in space. [`kind`] names them, and [`course`]
 //!   samples the runs in bounded memory, with `path` for paths. `measured` adds measured data. `dense` finds curves and
-//!   paths whose turns are too dense, `chords` paths with too few points. [`labels`] applies requested words and axes,
+//!   paths whose turns are too dense. `arcs` computes the motion within long time steps, and `chords` finds paths with
+//!   too few points for that. [`labels`] applies requested words and axes,
 //!   and `size` separates values from rounding. `job` is a figure that is being drawn.
 //! - [`of_table`]: figures of a comparison, a sweep or a fit, read by [`table`](crate::studies::table).
 //! - `spec`: the request for a figure.
@@ -11,6 +12,7 @@
 //! - `redraw`: redraws a figure from its file.
 //! - [`quantity`]: axis labels of columns and readouts.
 
+mod arcs;
 mod chords;
 pub mod course;
 mod dense;

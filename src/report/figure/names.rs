@@ -22,7 +22,11 @@ pub(super) fn names(job: &FigureJob<'_>) -> Vec<String> {
     }
     let mut differs = PARTS.map(|of| runs.iter().any(|run| of(run) != of(&runs[0])));
     if let ([run], true) = (runs, job.is_beside()) {
-        differs = [false, true, run.scenario.motion.scheme.order.is_some()];
+        differs = [
+            false,
+            true,
+            run.scenario.first_motion().scheme.order.is_some(),
+        ];
     }
     if let ([_], [false, false, false]) = (runs, differs) {
         return vec![String::new()];
@@ -71,7 +75,7 @@ fn by_parts(run: &FigureRun, differs: [bool; 3], room_pt: f64) -> String {
 /// The parts of a name.
 const PARTS: [fn(&FigureRun) -> String; 3] = [
     |run| run.scenario.file.title.clone(),
-    |run| scheme_in_words(run.scenario.motion.scheme.name).to_owned(),
+    |run| scheme_in_words(run.scenario.first_motion().scheme.name).to_owned(),
     step,
 ];
 
@@ -86,9 +90,27 @@ pub(super) fn scheme_in_words(name: &str) -> &str {
 
 pub(super) const EXACT_CURVE_NAME: &str = "exact motion";
 
-/// Formats the time step as markup, such as "Δt = 10 ms".
+/// Formats the time step as markup, such as "Δt = 10 ms", or "Δt = 10 ms, then 1 ms" if an edit changes it.
 fn step(run: &FigureRun) -> String {
-    let seconds = run.scenario.motion.time_step_s;
+    let scenario = &run.scenario;
+    let changed = scenario.edits.iter().filter(|edit| edit.step > 0);
+    let mut lengths: Vec<f64> = [scenario.first_motion()]
+        .into_iter()
+        .chain(changed.map(|edit| &edit.motion))
+        .map(|motion| motion.time_step_s)
+        .collect();
+    lengths.dedup();
+    let then = match &lengths[..] {
+        [_] => String::new(),
+        [_, second] => format!(", then {}", seconds_in_words(*second)),
+        [.., last] => format!(", …, {}", seconds_in_words(*last)),
+        [] => return String::new(),
+    };
+    format!("Δ*t* = {}{then}", seconds_in_words(lengths[0]))
+}
+
+/// Returns a time step in a unit in which its number is short, as markup.
+fn seconds_in_words(seconds: f64) -> String {
     let (number, unit) = match seconds {
         s if s >= 0.1 => (s, "s"),
         s if s >= 1e-4 => (s * 1e3, "ms"),
@@ -96,5 +118,5 @@ fn step(run: &FigureRun) -> String {
         s => (s, "s"),
     };
     let number = letters::escape(&significant(number, 6));
-    format!("Δ*t* = {number} {unit}")
+    format!("{number} {unit}")
 }

@@ -2,6 +2,7 @@
 
 pub(super) mod charts;
 
+use super::arcs;
 use super::chords;
 use super::course::{self, SampleRequest, SampledRun};
 use super::dense;
@@ -16,11 +17,10 @@ use super::spec::FigureSpec;
 use crate::engine::analysis::Predictability;
 use crate::engine::analysis::health::LEAST_SWING_DEG;
 use crate::engine::export::CsvColumn;
-use crate::engine::run::Truth;
+use crate::engine::run::{Clock, Truth};
 use crate::engine::scenario::{Scenario, ScenarioFile};
 use crate::engine::text::nice_numbers;
 use crate::engine::text::number::{short, shortest};
-use crate::physics::exact::LagrangeTop;
 use crate::plot::chart::legend::longest_name;
 use crate::plot::chart::{Chart, MOST_CURVES, SeriesStyle};
 use crate::plot::letters;
@@ -102,10 +102,9 @@ fn play(
         if let Some(error) = course.broke {
             broke.get_or_insert_with(|| format!("{}: {error}", run.named));
         }
-        let is_shown =
-            !wanted.columns.is_empty() && (!is_exact(&run.scenario) || wanted.counts_steps());
+        let is_curve = !wanted.columns.is_empty() && !shows_all_times(run, wanted);
         warnings.extend(
-            not_believed(run, course, spec.exact).or_else(|| few_a_swing(run).filter(|_| is_shown)),
+            not_believed(run, course, spec.exact).or_else(|| few_a_swing(run).filter(|_| is_curve)),
         );
         warnings.extend(limited(run, course));
     }
@@ -313,17 +312,24 @@ fn not_believed(run: &FigureRun, course: &SampledRun, exact: bool) -> Option<Str
         .health
         .filter(|health| health.is_believed() == Some(false))?;
     let (most_m, swing) = (health.most_distance_m?, health.swing?);
+    let motion = run.scenario.first_motion();
     let of = format!(
         "{} with the scheme {} at {} s",
         run.named,
-        run.scenario.motion.scheme.name,
-        shortest(run.scenario.motion.time_step_s),
+        motion.scheme.name,
+        shortest(motion.time_step_s),
     );
     let what = if health.point_holds() == Some(true) {
         format!("the nutation of {of}: {swing}, as in the exact motion")
     } else {
+        let end_s = Clock::end_s(&run.scenario);
+        let until = if course.end_s < end_s {
+            format!(" in the first {} s", shortest(course.end_s))
+        } else {
+            String::new()
+        };
         format!(
-            "{of}: its traced point is up to {} m ({} % of its arm) off the exact motion",
+            "{of}: its traced point is up to {} m ({} % of its arm) off the exact motion{until}",
             short(most_m),
             short(100.0 * most_m / health.arm_m),
         )
@@ -348,14 +354,21 @@ const LEAST_A_SWING: f64 = 6.0;
 /// Time steps in a nutation that show it as a smooth curve.
 const A_SMOOTH_SWING: f64 = 20.0;
 
-/// Whether the time steps of `run` do not show its nutation as a smooth curve.
+/// Returns whether what is `wanted` of `run` is known between its steps too.
+fn shows_all_times(run: &FigureRun, wanted: &SampleRequest) -> bool {
+    let is_exact = is_exact(&run.scenario) && !wanted.counts_steps();
+    is_exact || arcs::are_drawn(&run.scenario, wanted)
+}
+
+/// Returns whether the time steps of `run`, an exact motion, do not show it as a smooth curve.
 fn is_coarse(run: &FigureRun) -> bool {
     let truth = Truth::new(Arc::clone(&run.scenario));
-    let period_s = truth
-        .motion()
-        .closed_form()
-        .and_then(LagrangeTop::nutation_period);
-    period_s.is_some_and(|period_s| period_s < A_SMOOTH_SWING * run.scenario.motion.time_step_s)
+    match truth.motion().closed_form() {
+        Some(motion) => motion.nutation_period().is_some_and(|period_s| {
+            period_s < A_SMOOTH_SWING * run.scenario.first_motion().time_step_s
+        }),
+        None => arcs::are_bent(&run.scenario),
+    }
 }
 
 /// What is said of `run` where it has too few time steps in a nutation for a curve over time.
@@ -363,8 +376,7 @@ fn few_a_swing(run: &FigureRun) -> Option<String> {
     let truth = Truth::new(Arc::clone(&run.scenario));
     let motion = truth.motion().closed_form()?;
     let ((low, high), period_s) = (motion.tilt_range(), motion.nutation_period()?);
-    let time_step_s = run.scenario.motion.time_step_s;
-    let steps = period_s / time_step_s;
+    let steps = period_s / run.scenario.first_motion().time_step_s;
     let is_there = (high - low).to_degrees() > LEAST_SWING_DEG;
     (is_there && steps < LEAST_A_SWING).then(|| {
         format!(

@@ -45,6 +45,7 @@ pub(super) fn over_time(
             }
         }
         series.extend(pushes(job.runs, from_s, end_s));
+        series.extend(unpredictable(drawn, from_s, end_s));
         Panel::new(size::axis(job.runs, column.name), series)
     });
     job.chart(x, panels.collect())
@@ -87,6 +88,13 @@ fn pushes(runs: &[FigureRun], from_s: f64, end_s: f64) -> Vec<ChartSeries> {
         .iter()
         .map(|(begin, end)| ChartSeries::push(*begin, *end));
     stripes.collect()
+}
+
+/// Returns the stripe of the time from which on one of the runs `drawn` cannot be predicted, between two times, s.
+fn unpredictable(drawn: &[SampledRunNumbers], from_s: f64, end_s: f64) -> Option<ChartSeries> {
+    let times = drawn.iter().filter_map(|it| it.course.predictable_until_s);
+    let until_s = times.fold(f64::INFINITY, f64::min);
+    (until_s < end_s).then(|| ChartSeries::unpredictable(until_s.max(from_s), end_s))
 }
 
 /// The paths of the runs from above, and the places that were `measured`.

@@ -35,11 +35,13 @@ impl Space {
         }
         let paths: Vec<PathPieces> = drawn
             .iter()
-            .map(|drawn| {
-                drawn.course.path.lines(|at| {
+            .zip(styles)
+            .map(|(drawn, style)| {
+                let lines = drawn.course.path.lines(|at| {
                     let boxed = self.boxed(at);
                     (self.place(&boxed), self.view.depth(&boxed))
-                })
+                });
+                curve::as_dashed(lines, style, |(place, _)| *place)
             })
             .collect();
         let depths = paths.iter().flatten().flatten().map(|(_, depth)| *depth);
@@ -61,9 +63,8 @@ impl Space {
         let (behind, before): (Vec<_>, Vec<_>) = parted
             .iter()
             .zip(styles)
-            .rev()
             .partition(|(_, style)| style.is_behind);
-        for (parts, style) in behind.into_iter().chain(before) {
+        for (parts, style) in behind.into_iter().rev().chain(before) {
             for (nearness, pieces) in parts.iter().enumerate() {
                 draw_at(nearness, pieces, style, scene);
             }
