@@ -578,7 +578,7 @@ fn the_csv_of_a_fit_opens_as_the_fitted_run() {
     assert!(residuals.y.unit.contains('σ'));
 }
 
-/// Returns the number of steps in the CSV of a fit of [`TOP`] to data up to `last_s`.
+/// Returns the number of steps of the run of a fit of [`TOP`] to data up to `last_s`.
 fn steps_written(last_s: f64) -> u64 {
     let text = format!("t_s,tilt_deg\n0,30\n{last_s},30\n");
     let model = top(&[], &["start.spin_rpm"], &text);

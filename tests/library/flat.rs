@@ -130,7 +130,7 @@ fn a_flat_body_without_noise_is_recovered_exactly() {
     }
 }
 
-/// Returns the second moments of mass of a random body from flat to cubic, its angular velocity and its data.
+/// Returns the moments of a random body from flat to cubic, its angular velocity and its data.
 fn any_throw(seed: u64) -> ([f64; 3], [f64; 3], MeasuredData) {
     let mut dice = Dice(seed.wrapping_mul(0xD134_2543_DE82_EF95) | 1);
     (0..20).for_each(|_| {

@@ -1,4 +1,4 @@
-//! Lessons that are taken beside the lab, from the keys to the picture.
+//! Lessons opened in the lab, from the keys to the picture.
 
 use crate::support::scenarios::resumed;
 use crate::support::stage::{LARGE, SMALL, Stage};
@@ -85,14 +85,14 @@ hint = "g goes to a time."
 You were at {mine:.1} s.
 "#;
 
-/// A stage with that lesson in a file, open on its page `page`.
+/// Opens a stage with [`LESSON`] from a file, on page `page`.
 fn taken(page: usize) -> (Stage, tempfile::TempDir, String) {
     let (mut stage, folder, name) = with(LESSON);
     stage.lesson(&name, page).arrive();
     (stage, folder, name)
 }
 
-/// A stage with a lesson of that text in a file: its folder and its path.
+/// Opens a stage and writes a lesson with `text` to a file. Returns the stage, the folder and the path.
 fn with(text: &str) -> (Stage, tempfile::TempDir, String) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("swing.md");
@@ -101,7 +101,7 @@ fn with(text: &str) -> (Stage, tempfile::TempDir, String) {
     (Stage::open("method-2", &[], SMALL), folder, name)
 }
 
-/// The answer to the question "finer".
+/// Returns the answer to the question "finer".
 fn answer_in(class: &Lessons) -> PredictionAnswer {
     let mut all = class.open_lesson().unwrap().place.predictions.all();
     all.find(|(name, _)| *name == "finer")
@@ -112,7 +112,7 @@ fn answer_in(class: &Lessons) -> PredictionAnswer {
 }
 
 #[test]
-fn a_page_opens_its_run_and_tells_its_numbers() {
+fn a_page_opens_its_run_and_shows_its_numbers() {
     let (mut stage, _folder, _) = taken(1);
     stage
         .shows("Swing ─")
@@ -124,7 +124,7 @@ fn a_page_opens_its_run_and_tells_its_numbers() {
     assert!(stage.lab.view().hides(HideablePart::Health));
 }
 
-/// The answers on the page: of each whether it is chosen, and what stands at its end.
+/// Returns the answers on the page: whether each is chosen, and the mark at its end.
 fn answers(stage: &Stage) -> Vec<(bool, &'static str)> {
     let sheet = stage.lab.view().sheet.as_ref().unwrap();
     let kinds = sheet.paragraphs.iter().map(|one| &one.kind);
@@ -139,7 +139,7 @@ fn answers(stage: &Stage) -> Vec<(bool, &'static str)> {
 }
 
 #[test]
-fn predictions_are_asked_for_once_locked_and_then_shown_beside_what_happened() {
+fn a_prediction_is_requested_locked_and_compared_with_the_outcome() {
     let (mut stage, _folder, _) = taken(1);
     stage.shows("Your prediction").shows(" 1  stays");
     stage.shows_no("It goes on here");
@@ -180,7 +180,7 @@ fn predictions_are_asked_for_once_locked_and_then_shown_beside_what_happened() {
     stage.press("\n").shows("your answer is locked");
 }
 
-/// The words in the row of the verdict, and in the note below it.
+/// Returns the words in the row of the verdict and in the note below it.
 fn rows_below(stage: &Stage) -> [String; 2] {
     let layout = gyrolab::tui::screen::layout(&stage.lab, true, stage.size);
     let picture = stage.picture();
@@ -189,7 +189,7 @@ fn rows_below(stage: &Stage) -> [String; 2] {
 }
 
 #[test]
-fn an_open_question_hides_what_answers_it_and_names_its_keys() {
+fn an_open_question_hides_its_answer_and_names_its_keys() {
     let text = LESSON.replace("hide = [\"health\", \"predicted\"]\n", "exact = true\n");
     let (mut stage, _folder, name) = with(&text);
     stage.lesson(&name, 1).arrive();
@@ -199,7 +199,7 @@ fn an_open_question_hides_what_answers_it_and_names_its_keys() {
     stage.press("2").wait(0.0);
     let chosen = "1 2 3 or ↑ ↓ choose  Enter lock this prediction  n skip";
     assert_eq!(rows_below(&stage), [chosen, hidden]);
-    // Neither the exact motion nor its numbers, nor advice; the run can be played.
+    // The exact motion, its numbers and advice are hidden; the run can be played.
     stage.shows_no("reliable");
     let picture = stage.picture();
     stage.commands("exact = false");
@@ -209,7 +209,7 @@ fn an_open_question_hides_what_answers_it_and_names_its_keys() {
         .press("t")
         .shows("until you have predicted");
     stage.press("a").shows("until you have predicted");
-    // The column of the exact motion is empty: each row ends with the run's number.
+    // The exact column is empty: each row ends with the number of the run.
     stage
         .press("e")
         .shows(" values ")
@@ -218,7 +218,7 @@ fn an_open_question_hides_what_answers_it_and_names_its_keys() {
     let step = stage.step();
     stage.press(" ").wait(1.0).press(" ").wait(6.0);
     assert!(stage.step() > step);
-    // A number is typed; then all of it comes back.
+    // After a number is typed and locked, everything is shown again.
     stage.press("\n");
     assert_eq!(rows_below(&stage)[0], "Enter type your prediction  n skip");
     stage.press("3\n").wait(6.0);
@@ -227,7 +227,7 @@ fn an_open_question_hides_what_answers_it_and_names_its_keys() {
 }
 
 #[test]
-fn what_is_hidden_is_gone_from_every_pane() {
+fn hidden_items_are_hidden_in_every_pane() {
     let mut stage = Stage::open("cusps", &[], LARGE);
     stage.commands("pause = true\ngo_to = '2 s'\nexact = true");
     stage.arrive().wait(6.0).shows("reliable:").shows("exact");
@@ -247,7 +247,7 @@ fn what_is_hidden_is_gone_from_every_pane() {
 }
 
 #[test]
-fn the_run_stays_in_view_whatever_is_turned_to() {
+fn the_run_stays_visible_with_every_pane() {
     let (mut stage, _folder, _) = taken(3);
     let panes = |shown: &Stage| {
         let layout = gyrolab::tui::screen::layout(&shown.lab, true, shown.size);
@@ -270,7 +270,7 @@ fn the_run_stays_in_view_whatever_is_turned_to() {
         stage.press(" ").wait(0.5).press(" p");
         assert!(stage.step() > step, "the run goes on from there");
         assert!(!stage.lab.player().run().scenario().pushes.is_empty());
-        // While a value is typed too.
+        // This also holds while a value is typed.
         stage.press("e\n").shows("Enter: ");
         assert_eq!(panes(&stage), [run[0], run[1], values], "{keys}");
         stage.press("\u{1b}\u{1b}").wait(6.0);
@@ -288,12 +288,12 @@ fn the_run_stays_in_view_whatever_is_turned_to() {
 }
 
 #[test]
-fn an_open_prediction_can_be_left_open() {
+fn a_prediction_can_be_skipped() {
     let (mut stage, _folder, _) = taken(1);
     stage.press("↓").press("nn").arrive().shows("2 of 4");
     stage.shows("It is 5.0.").shows_no("You said: it");
     stage.shows("You made no prediction. Page 1 asks");
-    // Where nothing else is said, a blank stands for the prediction.
+    // A missing prediction is shown as a blank, unless the lesson gives other words.
     stage.shows("You said: ….");
     stage.press("N").arrive();
     assert_eq!(answers(&stage)[0], (true, ""));
@@ -301,7 +301,7 @@ fn an_open_prediction_can_be_left_open() {
 }
 
 #[test]
-fn play_is_free_and_one_key_leads_back() {
+fn the_lab_can_be_used_freely_and_one_key_returns_to_the_page() {
     let (mut stage, _folder, _) = taken(2);
     let before = stage.step();
     stage.press("p..,,.....").arrive();
@@ -314,7 +314,7 @@ fn play_is_free_and_one_key_leads_back() {
 }
 
 #[test]
-fn a_task_is_done_by_hand_or_shown() {
+fn a_task_can_be_done_by_hand_or_demonstrated() {
     let (mut stage, _folder, _) = taken(3);
     stage.shows("[ ] not yet: be at 4 s").shows_no("Hint");
     stage.press("h").shows("Hint: g goes to a time.");
@@ -335,7 +335,7 @@ fn a_task_is_done_by_hand_or_shown() {
 }
 
 #[test]
-fn the_session_keeps_page_and_predictions() {
+fn the_session_saves_page_and_predictions() {
     let (mut stage, _folder, _) = taken(1);
     stage.press("↓↓\n").press("nn").arrive();
     let content = stage.lab.content(stage.class.kept());
@@ -351,7 +351,7 @@ fn the_session_keeps_page_and_predictions() {
 }
 
 #[test]
-fn a_lesson_that_is_gone_leaves_the_lab_and_what_was_predicted() {
+fn a_missing_lesson_keeps_the_lab_and_the_predictions() {
     let (mut stage, folder, name) = taken(1);
     stage.press("↓↓\n");
     let content = stage.lab.content(stage.class.kept());
@@ -365,7 +365,7 @@ fn a_lesson_that_is_gone_leaves_the_lab_and_what_was_predicted() {
 }
 
 #[test]
-fn a_file_that_changes_is_read_again_and_the_page_stays() {
+fn a_changed_lesson_is_reloaded_on_the_same_page() {
     let (mut stage, _folder, name) = taken(2);
     let step = stage.step();
     fs::write(&name, LESSON.replace("It is {with", "Now it is {with")).unwrap();
@@ -377,7 +377,7 @@ fn a_file_that_changes_is_read_again_and_the_page_stays() {
 }
 
 #[test]
-fn a_file_that_could_keep_the_lab_waiting_is_refused() {
+fn a_lesson_that_is_not_a_regular_file_is_rejected() {
     let (mut stage, folder, name) = taken(2);
     let fifo = folder.path().join("fifo.md");
     let made = std::process::Command::new("mkfifo").arg(&fifo).status();
@@ -392,7 +392,7 @@ fn a_file_that_could_keep_the_lab_waiting_is_refused() {
     stage.shows("2 of 4");
 }
 
-/// The words of the page on the screen, in one line.
+/// Returns the words of the page on the screen, in one line.
 fn page_on_screen(stage: &Stage) -> String {
     let layout = gyrolab::tui::screen::layout(&stage.lab, true, stage.size);
     let place = layout.place_of(Pane::Lesson).unwrap();
@@ -407,7 +407,7 @@ fn page_on_screen(stage: &Stage) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// What must be whole on the screen when a page opens.
+/// True for lines that must be fully visible when a page opens.
 fn is_needed(kind: &SheetLineKind) -> bool {
     matches!(
         kind,
@@ -420,7 +420,7 @@ fn is_needed(kind: &SheetLineKind) -> bool {
 }
 
 #[test]
-fn each_page_opens_with_what_matters_and_is_the_same_after_wandering() {
+fn every_page_opens_with_its_essential_lines_from_any_state() {
     for lesson in shipped::LESSONS {
         let mut stage = Stage::open("method-2", &[], SMALL);
         let mut wanderer = Stage::open("method-2", &[], SMALL);
@@ -478,7 +478,7 @@ fn each_page_opens_with_what_matters_and_is_the_same_after_wandering() {
 }
 
 #[test]
-fn a_page_plays_its_run_and_n_leads_to_its_end() {
+fn a_page_plays_its_run_and_n_jumps_to_its_end() {
     let text = LESSON
         .replace("go_to = \"3 s\"", "speed = 0.5\nrun_until = \"t_s >= 3\"")
         .replace("## Compare\n", "## Compare\n\nWatch.\n");
@@ -499,7 +499,7 @@ fn a_page_plays_its_run_and_n_leads_to_its_end() {
 }
 
 #[test]
-fn what_became_of_tasks_and_late_predictions_is_kept() {
+fn results_of_tasks_and_late_predictions_are_saved() {
     let (mut stage, _folder, _) = taken(1);
     stage.press("nn").arrive().press("N").arrive().press("↓\n");
     stage.press("nn").arrive().press("n").arrive();
@@ -514,14 +514,14 @@ fn what_became_of_tasks_and_late_predictions_is_kept() {
 }
 
 #[test]
-fn a_push_that_is_tried_again_takes_the_place_of_the_first() {
+fn a_repeated_push_replaces_the_first() {
     let (mut stage, _folder, _) = taken(2);
     stage.press("rp10.").arrive().press("rp").arrive();
     assert_eq!(stage.lab.player().run().scenario().pushes.len(), 1);
 }
 
 #[test]
-fn lessons_are_chosen_from_a_list_and_left_where_they_stand() {
+fn lessons_are_opened_from_a_list_and_resumed_at_their_page() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage
         .press("n")
@@ -560,7 +560,7 @@ fn the_teacher_has_notes_the_next_page_and_a_clock() {
 }
 
 #[test]
-fn a_long_page_begins_at_its_top_and_scrolls() {
+fn a_long_page_starts_at_its_top_and_scrolls() {
     let long = "\n\nOne more paragraph stands here.".repeat(30);
     let text = format!("# Long\n\n## Page\n\n{long}\n\n## Two\n\nx\n\n## Three\n\nLast words.\n");
     let (mut stage, _folder, name) = with(&text);
@@ -574,7 +574,7 @@ fn a_long_page_begins_at_its_top_and_scrolls() {
 }
 
 #[test]
-fn what_a_page_has_stated_stays_while_the_run_goes_on() {
+fn stated_numbers_stay_while_the_run_continues() {
     let (mut stage, _folder, _) = taken(1);
     stage.press("10.").arrive().shows("The time is 2.0 s");
     stage.press("g5 s\n").arrive().shows("The time is 2.0 s");
@@ -586,7 +586,7 @@ fn what_a_page_has_stated_stays_while_the_run_goes_on() {
 }
 
 #[test]
-fn the_step_pane_beside_a_page_has_its_keys() {
+fn the_step_pane_next_to_a_page_has_its_keys() {
     let text = r#"# Step
 
 ## One
@@ -624,7 +624,7 @@ x
 }
 
 #[test]
-fn the_3d_view_and_a_pane_that_fills_the_screen_lead_back_to_the_page() {
+fn closing_the_3d_view_or_a_full_screen_pane_returns_to_the_page() {
     let (mut stage, _folder, _) = taken(1);
     stage.press("d").shows("3-D").shows("1 of 4");
     assert_eq!(stage.focus(), "3d");
@@ -636,7 +636,7 @@ fn the_3d_view_and_a_pane_that_fills_the_screen_lead_back_to_the_page() {
 }
 
 #[test]
-fn a_page_never_breaks_the_screen() {
+fn a_page_fits_screens_of_every_size() {
     let (mut stage, _folder, _) = taken(1);
     for (width, height) in [(1, 1), (20, 5), (40, 12), (71, 24), (72, 9), (300, 90)] {
         stage.size.width = width;

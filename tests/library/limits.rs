@@ -1,4 +1,4 @@
-//! Files of absurd size, and files that would be costly to refuse: what they cost does not grow faster than they do.
+//! Huge files, and files that are expensive to reject: the cost grows at most linearly with their size.
 
 use crate::support::scenarios::preset;
 use crate::support::words::has;
@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::sync::Arc;
 
-/// A good scenario of three points.
+/// A valid scenario with three points.
 const GOOD: &str = "title = 'x'\n[[body.point]]\nname = 'top'\nat_m = [0, 0, 1]\nmass_kg = 1\n[[body.point]]\n\
                     name = 'a'\nat_m = [1, 0, 1]\nmass_kg = 1\n[[body.point]]\nname = 'b'\nat_m = [0, 1, 1]\n\
                     mass_kg = 1\n[start]\nmomentum_Js = [0, 0, 9]\n[motion]\ntime_step_s = 0.01\nsteps = 5\n";
@@ -25,7 +25,7 @@ fn refusal(text: &str) -> String {
 }
 
 #[test]
-fn texts_are_limited_and_the_limit_is_told() {
+fn the_length_of_texts_is_limited() {
     let long = |count: usize| "x".repeat(count);
     let titled = |title: &str| GOOD.replace("'x'", &format!("'{title}'"));
     checked(&titled(&long(1000))).unwrap();
@@ -56,12 +56,12 @@ fn texts_are_limited_and_the_limit_is_told() {
 }
 
 #[test]
-fn a_file_that_is_too_large_is_refused_by_its_size() {
+fn a_file_that_is_too_large_is_rejected_unread() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("large.toml");
     fs::write(&path, GOOD).unwrap();
     let file = fs::OpenOptions::new().write(true).open(&path).unwrap();
-    file.set_len(1 << 40).unwrap(); // takes no room: it is never read
+    file.set_len(1 << 40).unwrap(); // sparse, and never read
     let told = || Document::read(&path).map(drop).unwrap_err().to_string();
     assert!(told().contains("is larger than 4 MB"), "{}", told());
     fs::write(&path, ",".repeat(800_000)).unwrap();
@@ -70,7 +70,7 @@ fn a_file_that_is_too_large_is_refused_by_its_size() {
 }
 
 #[test]
-fn pushes_and_edits_are_limited() {
+fn the_number_of_pushes_and_edits_is_limited() {
     let edits =
         |count: usize| "[[edit]]\nstep = 1\nset.'motion.gravity_m_per_s2' = 7\n".repeat(count);
     let pushed = |count: usize| GOOD.to_owned() + &PUSH.repeat(count);
@@ -101,7 +101,7 @@ fn pushes_and_edits_are_limited() {
 }
 
 #[test]
-fn many_problems_are_counted() {
+fn problems_beyond_a_limit_are_counted() {
     let mut text = String::new();
     for index in 0..10_000 {
         let _ = writeln!(text, "titl{index} = 0");
@@ -124,7 +124,7 @@ fn many_problems_are_counted() {
 }
 
 #[test]
-fn many_pushes_with_many_edits_are_what_their_edits_make_of_them() {
+fn hundreds_of_edited_pushes_are_parsed() {
     const COUNT: usize = 900;
     let mut text = GOOD.to_owned() + &PUSH.repeat(COUNT);
     for index in 0..COUNT {
@@ -148,7 +148,7 @@ fn many_pushes_with_many_edits_are_what_their_edits_make_of_them() {
 }
 
 #[test]
-fn an_edit_is_refused_for_what_it_sets() {
+fn errors_in_an_edit_name_the_key_that_it_sets() {
     for (set, key) in [
         ("'push.1.steps' = -1", "edit.0.set.push.1.steps"),
         ("'push.1' = { point = 'a' }", "edit.0.set.push.1.force_N"),
@@ -170,7 +170,7 @@ fn an_edit_is_refused_for_what_it_sets() {
 }
 
 #[test]
-fn what_would_take_too_much_memory_is_refused_before_it_is_read() {
+fn files_that_need_too_much_memory_are_rejected_before_parsing() {
     for nested in [
         "x.a.b.c.d.e.f.g=1\n".repeat(35_000),
         (0..35_000).fold(String::new(), |text, k| {
@@ -179,7 +179,7 @@ fn what_would_take_too_much_memory_is_refused_before_it_is_read() {
         format!("x=[{}]\n", "{a=1},".repeat(250_000)),
         format!("x=[{}]\n", "[1],".repeat(1_700_000)),
     ] {
-        // Only then is the last line no TOML.
+        // The limit is reported before the syntax error in the last line.
         let told = refusal(&(nested + "]"));
         assert!(told.contains("has more than 120000 tables"), "{told}");
     }
@@ -187,12 +187,12 @@ fn what_would_take_too_much_memory_is_refused_before_it_is_read() {
     assert!(!refusal(&decimals).contains("has more than"));
 }
 
-/// A push that makes every step dear from 0.07 s on. Nothing before that says so.
+/// A push that makes every step expensive from 0.07 s on, without any sign before.
 const HARD_PUSH: &str = "push.0={point='camera',force_N=[0,0,-1e9],from_s=0.07,for_s=1}";
 
 #[test]
-fn the_clock_is_looked_at_after_every_step_that_may_be_integrated() {
-    // At rest, nothing is to be integrated until the push sets in.
+fn the_clock_is_checked_after_every_integrated_step() {
+    // A body at rest needs no integration until the push starts.
     let at_rest = "start.omega_rad_per_s=[0,0,0]";
     for (name, set, looks_expected) in [
         ("phone", &[HARD_PUSH, at_rest][..], 50),

@@ -1,9 +1,9 @@
-//! The library: physics, files, runs, what they are worth, and the lab without a terminal.
+//! Tests of the library: physics, files, runs, verdicts, and the lab without a terminal.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-// What is only compared may come from the C library.
+// Tests may use the mathematics of the C library.
 #![allow(clippy::disallowed_methods)]
-// What a text is held against may be borrowed or not.
+// Expected words may be borrowed or owned.
 #![allow(clippy::needless_borrows_for_generic_args)]
 
 #[path = "../support/mod.rs"]

@@ -1,5 +1,5 @@
-//! Files as accidents leave them: whatever is cut out of a scenario, swapped, or put in, it is refused in printable
-//! words or it runs, and never does the program panic.
+//! Randomly damaged files: after deleting, swapping or inserting parts, a scenario is rejected with a printable message or
+//! runs, and the program never panics.
 
 use gyrolab::engine::analysis::cost;
 use gyrolab::engine::export::COLUMNS;
@@ -12,7 +12,7 @@ use proptest::prelude::*;
 use proptest::sample::Index;
 use std::sync::Arc;
 
-/// Makes of a preset a run file with all there may be in one, where it has a point "hub".
+/// Text that extends a preset to a run file with everything a run file can contain. It needs a point "hub".
 const MORE: &str = r#"
 [[push]]
 point = "hub"
@@ -29,7 +29,7 @@ step = 9
 set = { "push.0.force_N" = [0, 1, 2], "motion.scheme" = "report" }
 "#;
 
-/// `preset` with [`MORE`], pushed where its body has a point.
+/// Returns `preset` with [`MORE`], pushed at a point of its body.
 fn with_more(preset: &str) -> String {
     let scenario = load(preset).unwrap();
     let hub = match scenario.body.point("hub") {
@@ -39,7 +39,7 @@ fn with_more(preset: &str) -> String {
     preset.to_owned() + &MORE.replace("\"hub\"", &format!("\"{hub}\""))
 }
 
-/// One accident.
+/// One random damage to a file.
 #[derive(Clone, Debug)]
 enum Accident {
     Cut(Index, usize),
@@ -80,7 +80,7 @@ fn accident() -> impl Strategy<Value = Accident> {
     ]
 }
 
-/// Beginnings and ends of the parts of `text` that are made of such characters.
+/// Returns the ranges of `text` that consist of characters for which `belongs` is true.
 fn parts(text: &str, belongs: impl Fn(char) -> bool) -> Vec<(usize, usize)> {
     let mut parts: Vec<(usize, usize)> = Vec::new();
     for (at, c) in text.char_indices().filter(|&(_, c)| belongs(c)) {
@@ -92,7 +92,7 @@ fn parts(text: &str, belongs: impl Fn(char) -> bool) -> Vec<(usize, usize)> {
     parts
 }
 
-/// Where the numbers behind the `=` signs stand.
+/// Returns the ranges of the numbers after `=` signs.
 fn numbers(text: &str) -> Vec<(usize, usize)> {
     let all = parts(text, |c| c.is_ascii_alphanumeric() || ".-+_".contains(c));
     all.into_iter()
@@ -182,8 +182,8 @@ fn load(text: &str) -> Result<Scenario, Problems> {
     Document::parse("mangled.toml", text).and_then(|document| document.scenario())
 }
 
-/// The samples of the first steps, up to the last one whose numbers are finite; of a motion that is integrated through many
-/// turns in a step, only as many as can be had within seconds.
+/// Returns the samples of the first steps, up to the last finite one. If every step integrates many turns, only as many
+/// steps as take a few seconds are played.
 fn first_samples(scenario: Scenario, steps: u64) -> Vec<Sample> {
     let rad_per_step = cost::integration_rad(&scenario) / scenario.steps as f64;
     let affordable = (cost::AFFORDABLE_RAD / rad_per_step) as u64;
@@ -221,7 +221,7 @@ fn check_refusal(problems: &Problems) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-/// What is written of a scenario is the scenario: the same file, and the same run to the last bit.
+/// Checks that a written scenario reads back to the same file and to the same run, bit for bit.
 fn check_round_trip(scenario: &Scenario, samples: &[Sample]) -> Result<(), TestCaseError> {
     let text = scenario.to_toml();
     let again = match load(&text) {
@@ -251,7 +251,7 @@ fn bits(scenario: &Scenario, samples: &[Sample]) -> Vec<u64> {
 }
 
 #[test]
-fn every_preset_survives_its_round_trip() {
+fn every_preset_survives_a_round_trip() {
     for preset in PRESETS {
         for text in [preset.text.to_owned(), with_more(preset.text)] {
             let scenario = load(&text).unwrap_or_else(|problems| panic!("{problems}"));
@@ -266,7 +266,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 10_000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn a_mangled_file_is_refused_or_runs(text in mangled()) {
+    fn a_mangled_file_is_rejected_or_runs(text in mangled()) {
         match load(&text) {
             Err(problems) => check_refusal(&problems)?,
             Ok(scenario) => {
@@ -278,14 +278,14 @@ proptest! {
     }
 
     #[test]
-    fn any_text_is_refused_or_runs(text in any::<String>()) {
+    fn any_text_is_rejected_or_valid(text in any::<String>()) {
         if let Err(problems) = load(&text) {
             check_refusal(&problems)?;
         }
     }
 
     #[test]
-    fn any_setting_is_refused_or_runs(
+    fn any_setting_is_rejected_or_runs(
         keys in prop::collection::vec(prop_oneof![
             prop::sample::select(gyrolab::engine::scenario::keys::KEYS.iter().map(|key| key.path.replace('*', "0")).collect::<Vec<_>>()),
             "[a-z._0-9]{0,12}",

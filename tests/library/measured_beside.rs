@@ -1,4 +1,4 @@
-//! Measured data beside a run in the lab, and drawn with runs on paper.
+//! Measured data compared with a run in the lab, and drawn in figures.
 
 use crate::figures::{least, most};
 use crate::support::desk::Desk;
@@ -20,8 +20,8 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// A file of what the run of `scenario` has of `columns` at every tenth step of 200, each value higher than that by so many
-/// of its uncertainties as `off` says of its number.
+/// Writes `columns` of the run of `scenario` at every tenth of 200 steps. Value number n is raised by `off(n)` of its
+/// uncertainties.
 fn data(scenario: &Scenario, columns: &[(&str, f64)], off: impl Fn(usize) -> f64) -> String {
     let mut text = "t_s".to_owned();
     for (name, _) in columns {
@@ -56,7 +56,7 @@ fn sum(lab: &Lab) -> Sum {
 }
 
 #[test]
-fn what_a_run_says_is_what_it_is_compared_with() {
+fn data_generated_from_a_run_agree_with_it() {
     let scenario = preset("method-2", &[]);
     let columns = [("x_m", 0.01), ("tilt_deg", 0.1), ("spin_rpm", 1.0)];
     let (_folder, path) = file(&data(&scenario, &columns, |_| 0.0));
@@ -68,14 +68,14 @@ fn what_a_run_says_is_what_it_is_compared_with() {
     desk.commands("go_to = 200");
     assert_eq!(sum(&desk.lab).compared, 60);
     assert_eq!(sum(&desk.lab).chi_squared, 0.0);
-    // An edit of the start begins the run anew, and undo goes back to the one before.
+    // An edit of the start starts a new run, and undo returns to the previous one.
     desk.commands("set = { 'start.tilt_deg' = 46 }");
     assert_eq!(sum(&desk.lab).compared, 60, "played to the same time");
     let largest = sum(&desk.lab).largest.unwrap();
     assert!(largest.sigmas > 9.0, "{largest:?}");
     desk.commands("undo = 1\ngo_to = 200");
     assert_eq!(sum(&desk.lab).chi_squared, 0.0);
-    // The run goes on from the present step with an act; what came before stays as it was.
+    // An edit of motion takes effect at the current step; the comparison before it is unchanged.
     desk.commands("go_to = 95\nset = { 'motion.gravity_m_per_s2' = 20 }\ngo_to = 200");
     let edited = desk.lab.comparison().data().unwrap().compared.clone();
     let shown = &edited.curves[0];
@@ -88,7 +88,7 @@ fn what_a_run_says_is_what_it_is_compared_with() {
 }
 
 #[test]
-fn the_numbers_are_those_of_the_residuals() {
+fn chi_squared_and_largest_residual_are_correct() {
     let scenario = preset("method-2", &[]);
     let (_folder, path) = file(&data(&scenario, &[("z_m", 0.01)], |number| {
         if number == 7 { -3.0 } else { 0.5 }
@@ -103,7 +103,7 @@ fn the_numbers_are_those_of_the_residuals() {
 }
 
 #[test]
-fn points_stand_on_strips_and_from_above_and_residuals_about_zero() {
+fn points_are_drawn_in_traces_and_from_above_and_as_residuals() {
     let scenario = preset("method-2", &[]);
     let columns = [("x_m", 0.05), ("y_m", 0.05), ("spin_rpm", 1.0)];
     let (_folder, path) = file(&data(&scenario, &columns, |number| {
@@ -123,7 +123,7 @@ fn points_stand_on_strips_and_from_above_and_residuals_about_zero() {
 }
 
 #[test]
-fn strips_show_what_was_measured_over_the_whole_run() {
+fn traces_show_measured_quantities_over_the_whole_run() {
     let scenario = preset("cusps", &[]);
     let columns = [("x_m", 0.05), ("tilt_deg", 0.6)];
     let (_folder, path) = file(&data(&scenario, &columns, |_| 0.5));
@@ -142,7 +142,7 @@ fn strips_show_what_was_measured_over_the_whole_run() {
 }
 
 #[test]
-fn a_key_without_data_says_how_to_get_them() {
+fn the_residual_key_without_data_explains_how_to_load_them() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     assert!(!stage.picture().contains("E residuals"));
     stage.press("m");
@@ -154,7 +154,7 @@ fn a_key_without_data_says_how_to_get_them() {
 }
 
 #[test]
-fn a_table_of_runs_and_what_is_outside_of_the_folder_are_refused() {
+fn tables_of_runs_and_files_outside_the_folder_are_rejected() {
     let mut desk = Desk::open("method-2");
     let refused = |at: &mut Desk, name: &str| {
         let command = crate::support::desk::commands(&format!("measured = '{name}'"));
@@ -175,7 +175,7 @@ fn a_table_of_runs_and_what_is_outside_of_the_folder_are_refused() {
 }
 
 #[test]
-fn a_session_keeps_them_by_name() {
+fn a_session_saves_the_name_of_the_measured_data() {
     let scenario = preset("method-2", &[]);
     let (folder, path) = file(&data(&scenario, &[("z_m", 0.01)], |_| 1.0));
     let mut desk = Desk::with("method-2", scenario);
@@ -196,7 +196,7 @@ fn a_session_keeps_them_by_name() {
 }
 
 #[test]
-fn a_scenario_names_the_data_beside_its_run() {
+fn a_scenario_can_name_its_measured_data() {
     let scenario = preset("method-2", &["view.measured=\"heidelberg-spin-decay\""]);
     let mut desk = Desk::with("method-2", scenario);
     desk.lab
@@ -204,10 +204,10 @@ fn a_scenario_names_the_data_beside_its_run() {
         .unwrap();
     assert_eq!(sum(&desk.lab).points, 7);
     desk.commands("open = 'cusps'");
-    // They were of the other run.
+    // The data belonged to the other run.
     assert!(desk.lab.comparison().data().is_none());
     desk.commands("measured = 'heidelberg-spin-decay'\nopen = 'loops'");
-    // They were chosen by hand.
+    // The data were chosen by the user.
     assert!(desk.lab.comparison().data().is_some());
 }
 
@@ -235,7 +235,7 @@ fn figure_with(kind: Option<&str>, text: &str, known: &KnownNumbers) -> DrawnFig
 }
 
 #[test]
-fn what_the_run_is_known_to_say_is_not_computed_again() {
+fn known_values_of_the_run_are_not_recomputed() {
     let text = "t_s,x_m,azimuth_deg\n1,0.2,350\n2,0.3,20\n";
     let measured = data::read("bench.csv", text).unwrap();
     let run = Arc::new(preset("method-2", &["motion.steps=200"]));
@@ -246,7 +246,7 @@ fn what_the_run_is_known_to_say_is_not_computed_again() {
         recorded: None,
         said: Some(numbers.to_vec()),
     };
-    // By a full turn more, the directions are drawn elsewhere: the numbers are those that were given.
+    // Directions shifted by a full turn appear elsewhere, which shows that the given numbers are used.
     let mut turned = said.clone();
     turned[1].iter_mut().for_each(|degrees| *degrees += 360.0);
     let mut moved = said.clone();
@@ -259,7 +259,7 @@ fn what_the_run_is_known_to_say_is_not_computed_again() {
     }
 }
 
-/// The middles of the empty circles, without that of the legend.
+/// Returns the centers of the open circles, without that of the legend.
 fn rings(figure: &DrawnFigure) -> Vec<[f64; 2]> {
     let middle = |item: &SceneItem| {
         let points: Vec<_> = item.path.points().collect();
@@ -278,13 +278,13 @@ fn rings(figure: &DrawnFigure) -> Vec<[f64; 2]> {
 }
 
 #[test]
-fn points_are_drawn_at_their_places_on_paper() {
+fn points_are_drawn_at_their_positions_in_figures() {
     let scenario = preset("method-2", &[]);
     let off = |number: usize| number as f64 % 4.0;
     let text = data(&scenario, &[("x_m", 0.05), ("y_m", 0.05)], off);
     let read = data::read("bench.csv", &text).unwrap();
     let series = read.series().unwrap().clone();
-    // Of one panel after the other, each a line from values to the page.
+    // Panel by panel, the positions are a linear function of the values.
     let all = rings(&figure(None, &text));
     assert_eq!(all.len(), 40);
     for (rings, curve) in all.chunks(20).zip(&series.curves) {
@@ -304,7 +304,7 @@ fn points_are_drawn_at_their_places_on_paper() {
     is_in_proportion(&off, &residuals[..20], 1);
 }
 
-/// Whether the numbers `part` of `places` stand in proportion to `values`: up where that is 1.
+/// Asserts that the coordinate `part` of `places` is a linear function of `values`; 1 is the vertical coordinate.
 #[track_caller]
 fn is_in_proportion(values: &[f64], places: &[[f64; 2]], part: usize) {
     let by_value = |a: &usize, b: &usize| values[*a].total_cmp(&values[*b]);
@@ -320,8 +320,8 @@ fn is_in_proportion(values: &[f64], places: &[[f64; 2]], part: usize) {
 }
 
 #[test]
-fn a_point_without_uncertainty_has_no_bar() {
-    // The ends of a bar are 3.4 pt long, and no tick is.
+fn a_point_without_uncertainty_has_no_error_bar() {
+    // The ends of an error bar are 3.4 pt long; no tick has this length.
     let ends =
         |figure: &DrawnFigure| {
             figure.scene.items.iter().filter(|item| {
@@ -336,7 +336,7 @@ fn a_point_without_uncertainty_has_no_bar() {
 }
 
 #[test]
-fn a_figure_that_shows_no_point_says_so() {
+fn a_figure_without_points_says_so() {
     let warned = |kind: &str| {
         let mut told = figure(Some(kind), "t_s,spin_rpm\n0,5\n1,6\n").warnings;
         told.retain(|told| !told.contains("do not believe"));
@@ -346,15 +346,15 @@ fn a_figure_that_shows_no_point_says_so() {
     has(warned("above"), "tilt_deg and azimuth_deg");
     has(warned("3d"), "not drawn in space");
     assert_eq!(warned("spin_rpm"), "");
-    // The run has 20 s.
+    // The run lasts 20 s.
     let longer = figure(None, "t_s,x_m\n5,0.5\n25,0.4\n").warnings;
     let words = "the run ends at 20 s, before the last point of bench.csv at 25 s: use --duration 25 to extend the run";
     assert_eq!(longer[1..], [words]);
 }
 
 #[test]
-fn the_legend_counts_the_points_that_the_figure_has() {
-    // Two places and three tilts; what is drawn of the legend is as wide as its words.
+fn the_legend_counts_the_drawn_points() {
+    // Two positions and three tilts; the width of the legend depends on its text.
     let data = "t_s,x_m,tilt_deg\n1,0.5,45\n2,0.4,45\n3,,45\n";
     let fewer = "t_s,x_m\n1,0.5\n2,0.4\n";
     let paths = |kind: &str, text: &str| -> Vec<String> {
@@ -367,7 +367,7 @@ fn the_legend_counts_the_points_that_the_figure_has() {
 }
 
 #[test]
-fn data_after_the_end_of_the_run_are_told_with_what_plays_it_to_there() {
+fn data_after_the_end_of_the_run_are_reported_with_a_remedy() {
     let mut stage = Stage::open("heidelberg", &[], SMALL);
     stage.commands("measured = 'heidelberg-spin-decay'");
     stage.commands("go_to = 'end'").wait(1.0);

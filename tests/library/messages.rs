@@ -1,4 +1,4 @@
-//! What the lab and the summary say: sentences that a newcomer took for wrong or could not make sense of.
+//! Messages of the lab and the summary that newcomers misunderstood before.
 
 use crate::support::desk::Desk;
 use crate::support::scenarios::preset;
@@ -15,7 +15,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// The health of the run of `scenario` with `set` at its end.
+/// Returns the verdict at the end of the run of `scenario` with `set`.
 fn health(scenario: &str, set: &[&str]) -> Health {
     let mut simulation = Simulation::new(Arc::new(preset(scenario, set)));
     let mut monitor = Monitor::new(simulation.now());
@@ -26,14 +26,14 @@ fn health(scenario: &str, set: &[&str]) -> Health {
     monitor.health(simulation.now())
 }
 
-/// Waits until the search for advice is over.
+/// Waits until the search for advice has ended.
 fn await_advice(stage: &Stage) {
     while stage.lab.adviser().is_seeking() {
         std::thread::sleep(Duration::from_millis(5));
     }
 }
 
-/// The reasons of the verdict on a run, at length.
+/// Returns the long form of the reasons of the verdict on a run.
 fn reasons(scenario: &str, set: &[&str]) -> Vec<String> {
     let verdict = Verdict::new(&health(scenario, set));
     verdict.reasons.into_iter().map(|it| it.long).collect()
@@ -46,7 +46,7 @@ fn the_verdict_names_a_damped_nutation() {
 }
 
 #[test]
-fn a_nutation_that_is_lost_does_not_contradict_the_first_words() {
+fn a_lost_nutation_does_not_contradict_the_opening_words() {
     let health = health("fast-top", &["motion.scheme=report"]);
     let sentence = health.sentence(None);
     let begin = "The traced point is right, but not the nutation";
@@ -54,7 +54,7 @@ fn a_nutation_that_is_lost_does_not_contradict_the_first_words() {
 }
 
 #[test]
-fn an_unreliable_run_says_how_far_the_wheel_turns_and_how_far_it_is_off() {
+fn the_verdict_on_an_unreliable_run_states_turns_and_distance() {
     let verdict = Verdict::new(&health("method-2", &[]));
     assert_eq!(verdict.word, VerdictWord::Badge("NOT RELIABLE".to_owned()));
     let [turns, distance] = &verdict.reasons[..] else {
@@ -72,9 +72,9 @@ fn an_unreliable_run_says_how_far_the_wheel_turns_and_how_far_it_is_off() {
     assert!(distance.short.ends_with(" m off"), "{distance:?}");
 }
 
-/// From a tenth of a turn per step on, the wheel's ten points move to where others were. That is no fault of the run.
+/// From a tenth of a turn per step on, the wheel's ten points move to earlier positions of others. The run itself is right.
 #[test]
-fn a_wheel_that_looks_slow_is_no_fault_of_the_run() {
+fn a_wheel_that_looks_slow_does_not_make_a_run_unreliable() {
     let verdict = Verdict::new(&health("method-1", &[]));
     assert_eq!(verdict.word, VerdictWord::Reliable);
     assert_eq!(
@@ -88,7 +88,7 @@ fn a_wheel_that_looks_slow_is_no_fault_of_the_run() {
 }
 
 #[test]
-fn numbers_that_are_no_longer_finite_are_told_with_what_helps() {
+fn non_finite_numbers_are_reported_with_a_remedy() {
     let begin = "the numbers are no longer finite at step 3: ";
     let end = |edit: &str, is_advised: bool| {
         let mut stage = Stage::open("wobble-push", &["motion.scheme=rk4"], LARGE);
@@ -117,9 +117,9 @@ fn numbers_that_are_no_longer_finite_are_told_with_what_helps() {
     assert_eq!(end(edit, false), format!("{begin}{may}{back}"));
 }
 
-/// The search begins where the run has broken down, and its answer stands in the line about the numbers.
+/// The search starts when the run has broken down, and its result appears in the row of the verdict.
 #[test]
-fn what_mends_a_run_that_broke_down_is_told_as_soon_as_it_is_found() {
+fn advice_on_a_broken_run_appears_as_soon_as_it_is_found() {
     let mut stage = Stage::open("wobble-push", &["motion.scheme=rk4"], LARGE);
     stage.lab.take_advice();
     stage.commands("pause = true");
@@ -129,9 +129,9 @@ fn what_mends_a_run_that_broke_down_is_told_as_soon_as_it_is_found() {
     stage.wait(0.1).shows("a: rerun with srkn11b, dt 0.01 s");
 }
 
-/// A run that stands still is not read again by itself: the search has to begin as soon as it may.
+/// A paused run is not read again by itself, so the search must start as soon as it is allowed.
 #[test]
-fn advice_is_looked_for_where_the_lab_opens_paused() {
+fn the_search_for_advice_starts_in_a_lab_opened_paused() {
     let mut stage = Stage::open("wobble-push", &[], SMALL);
     stage.commands("pause = true");
     stage
@@ -145,7 +145,7 @@ fn advice_is_looked_for_where_the_lab_opens_paused() {
 }
 
 #[test]
-fn a_time_step_that_is_in_force_mends_from_the_start() {
+fn advice_equal_to_the_current_time_step_reruns_from_the_start() {
     let mut stage = Stage::open("wobble-push", &[], LARGE);
     stage.commands("pause = true\ngo_to = 300\nset = { 'motion.time_step_s' = 0.002 }");
     stage.lab.take_advice();
@@ -156,7 +156,7 @@ fn a_time_step_that_is_in_force_mends_from_the_start() {
 }
 
 #[test]
-fn a_figure_of_the_lab_speaks_of_its_keys() {
+fn warnings_of_figures_in_the_lab_name_its_keys() {
     let folder = tempfile::tempdir().unwrap();
     let mut stage = Stage::open("wobble-push", &[], LARGE);
     stage.lab.files_mut().work_in(folder.path());
@@ -170,7 +170,7 @@ fn a_figure_of_the_lab_speaks_of_its_keys() {
 }
 
 #[test]
-fn what_a_broken_scheme_leaves_is_not_shown_as_a_place() {
+fn positions_of_a_broken_scheme_are_not_shown() {
     let mut stage = Stage::open("wobble-push", &["motion.scheme=rk4"], LARGE);
     stage.commands("go_to = 20").wait(1.0);
     stage
@@ -186,7 +186,7 @@ fn what_a_broken_scheme_leaves_is_not_shown_as_a_place() {
 }
 
 #[test]
-fn space_pauses_commands_and_lets_them_go_on() {
+fn space_pauses_and_resumes_commands() {
     let read = |text: &str| command::read(&Document::parse("demo.toml", text).unwrap()).unwrap();
     let mut desk = Desk::open("method-2");
     let commands = "[[do]]\nrun_until = \"t_s >= 50\"\n[[do]]\nstep = 7";
@@ -204,14 +204,14 @@ fn space_pauses_commands_and_lets_them_go_on() {
     desk.press(&[Key::Char(' ')]);
     (0..40).for_each(|_| desk.pass(Duration::from_secs(1)));
     assert_eq!((desk.step(), desk.lab.script().is_done()), (507, true));
-    // Esc leaves out what space has paused.
+    // Esc drops the commands that space has paused.
     desk.lab.take_commands(read(commands));
     desk.press(&[Key::Char('r'), Key::Char(' '), Key::Esc]);
     assert!(desk.lab.script().is_done());
 }
 
 #[test]
-fn a_pause_keeps_what_is_left_of_a_wait_and_a_run_that_plays() {
+fn a_pause_keeps_the_remaining_wait_and_playback() {
     let mut desk = Desk::open("method-2");
     let commands = "[[do]]\nrun = true\n[[do]]\nwait_s = 3\n[[do]]\nstep = 7";
     desk.lab
@@ -230,7 +230,7 @@ fn a_pause_keeps_what_is_left_of_a_wait_and_a_run_that_plays() {
 }
 
 #[test]
-fn words_on_the_screen_are_in_the_glossary() {
+fn terms_on_the_screen_are_explained_in_the_help() {
     for (word, meaning) in [
         ("window", "the time that the strips of the traces show"),
         ("other run", "the previous run, or the pinned one"),
@@ -253,7 +253,7 @@ fn words_on_the_screen_are_in_the_glossary() {
 }
 
 #[test]
-fn undo_names_the_run_to_which_it_returns() {
+fn undo_names_the_run_that_it_restores() {
     let mut stage = Stage::open("method-2", &[], LARGE);
     stage.commands("pause = true\ngo_to = 10\nset = { 'start.tilt_deg' = 30 }");
     stage.press("u");
@@ -262,7 +262,7 @@ fn undo_names_the_run_to_which_it_returns() {
 }
 
 #[test]
-fn a_wrong_number_in_the_export_is_told_once() {
+fn a_wrong_number_in_the_export_is_reported_once() {
     let mut stage = Stage::open("method-2", &[], LARGE);
     stage.commands("pause = true\ngo_to = 10");
     stage.press("xabc");
@@ -272,14 +272,14 @@ fn a_wrong_number_in_the_export_is_told_once() {
 }
 
 #[test]
-fn a_count_that_is_too_large_is_told() {
+fn a_count_that_is_too_large_is_reported() {
     Stage::open("method-2", &[], LARGE)
         .press("99999999999")
         .shows("999999999 is the largest count");
 }
 
 #[test]
-fn a_precession_that_there_is_not_is_no_dash() {
+fn a_missing_precession_is_shown_as_none() {
     Stage::open("method-1", &[], LARGE)
         .commands("pause = true\ngo_to = 1000")
         .wait(1.0)

@@ -1,4 +1,4 @@
-//! The mouse on a screen without a terminal: what is done where it points.
+//! The mouse on a screen without a terminal: the effects of presses, drags and the wheel.
 
 use crate::support::stage::{LARGE, SMALL, Stage};
 use gyrolab::lab::Mode;
@@ -47,7 +47,7 @@ impl Desk {
         panes.find(|(pane, _)| pane.id() == id).unwrap().1
     }
 
-    /// The cell in which `words` begin on the screen.
+    /// Returns the cell in which `words` begin on the screen.
     fn place(&self, words: &str) -> (u16, u16) {
         let picture = self.stage.picture();
         let found = picture.lines().zip(0..).find_map(|(line, y)| {
@@ -86,7 +86,7 @@ fn a_press_on_the_traces_sets_the_cursor_and_a_drag_moves_it() {
 }
 
 #[test]
-fn the_cursor_stands_in_the_column_that_was_pressed() {
+fn the_cursor_is_drawn_in_the_pressed_column() {
     let mut desk = Desk::open("cusps", LARGE);
     let traces = desk.pane("traces");
     let y = traces.bottom() - 3;
@@ -106,7 +106,7 @@ fn the_cursor_stands_in_the_column_that_was_pressed() {
 }
 
 #[test]
-fn a_press_selects_a_pane_goes_to_a_place_and_does_a_key() {
+fn a_press_selects_a_pane_seeks_in_the_overview_and_acts_as_a_key() {
     let mut desk = Desk::open("method-2", LARGE);
     for id in ["above", "3d", "parameters", "traces"] {
         let pane = desk.pane(id);
@@ -123,7 +123,7 @@ fn a_press_selects_a_pane_goes_to_a_place_and_does_a_key() {
     desk.does(Did::Press, (first, overview.y + 1));
     assert_eq!(desk.stage.step(), 0);
     desk.does(Did::Drag, (last, overview.y + 1));
-    // A drag goes no further than the run has been.
+    // A drag does not go beyond the furthest step of the run.
     assert_eq!(desk.stage.step(), 400);
     desk.does(Did::Release, (last, overview.y + 1));
     desk.does(Did::Press, (last, overview.y + 1));
@@ -138,7 +138,7 @@ fn a_press_selects_a_pane_goes_to_a_place_and_does_a_key() {
 }
 
 #[test]
-fn the_wheel_zooms_and_a_drag_turns_the_view_in_space() {
+fn the_wheel_zooms_and_a_drag_turns_the_3d_view() {
     let mut desk = Desk::open("method-2", LARGE);
     let traces = desk.pane("traces");
     let length_s = |of: &Desk| of.stage.lab.view().window.length_s();
@@ -200,7 +200,7 @@ fn a_click_selects_a_row_of_any_list_and_a_double_click_opens_it() {
 }
 
 #[test]
-fn two_slow_clicks_are_no_double_click() {
+fn two_slow_clicks_are_not_a_double_click() {
     let mut desk = Desk::open("method-2", SMALL);
     desk.stage.press("c");
     let setting = desk.place("background");
@@ -215,7 +215,7 @@ fn two_slow_clicks_are_no_double_click() {
 }
 
 #[test]
-fn a_mouse_outside_or_one_that_is_the_terminals_does_nothing() {
+fn events_outside_or_with_the_mouse_off_are_ignored() {
     let mut desk = Desk::open("method-2", SMALL);
     let before = desk.stage.picture();
     use Did::{Drag, Press, Release, WheelDown, WheelUp};
@@ -236,7 +236,7 @@ fn a_mouse_outside_or_one_that_is_the_terminals_does_nothing() {
         desk.does(did, (10, 10));
     }
     assert_eq!(desk.stage.picture(), selecting);
-    // Whatever lies on top, and however small the screen: nothing breaks.
+    // No event panics, for any open window and any size of the screen.
     for size in [(1, 1), (9, 3), (40, 12), (80, 24), (200, 50)] {
         let mut small = Desk::open("wobble-push", Rect::new(0, 0, size.0, size.1));
         for keys in ["", "?", "\u{1b}o", "\u{1b}\u{1b}x", "\u{1b}e", "c"] {
@@ -252,7 +252,7 @@ fn a_mouse_outside_or_one_that_is_the_terminals_does_nothing() {
 }
 
 #[test]
-fn health_predictions_and_all_but_two_panes_are_hidden_in_the_settings() {
+fn settings_hide_verdict_theory_and_all_but_two_panes() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.wait(3.0).commands("pause = true");
     stage.shows("turns per step").shows("1.588");
@@ -273,7 +273,7 @@ fn health_predictions_and_all_but_two_panes_are_hidden_in_the_settings() {
 }
 
 #[test]
-fn every_preset_says_what_to_try_next_in_the_room_there_is() {
+fn every_preset_suggests_a_next_step_that_fits_the_screen() {
     for preset in gyrolab::engine::scenario::presets::PRESETS {
         assert!((20..=84).contains(&preset.next.len()), "{}", preset.name);
         for word in preset.next.split([' ', ':', ',']) {
@@ -285,7 +285,7 @@ fn every_preset_says_what_to_try_next_in_the_room_there_is() {
     Stage::open("method-2", &set, SMALL)
         .wait(3.0)
         .shows("Next: look again");
-    // What was changed is no longer what the preset's line speaks of.
+    // The preset's line no longer applies after a change.
     let mut changed = Stage::open("method-2", &["motion.steps=20"], SMALL);
     changed.commands("set = { 'motion.gravity_m_per_s2' = 9.0 }");
     changed.wait(3.0).shows("end of the scenario's run");

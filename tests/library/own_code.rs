@@ -1,6 +1,6 @@
-//! Own programs of the report's scheme: each slip is named, right programs are not accused, broken files are refused.
+//! Users' programs with the report's scheme: mistakes are identified, correct programs pass, broken files are rejected.
 //!
-//! `tests/own_code` holds the files, and `program.py`, written apart from gyrolab, which made them.
+//! `tests/own_code` contains the files, and `program.py`, which produced them and is independent of gyrolab.
 
 use crate::support::desk::Desk;
 use crate::support::ground::names;
@@ -20,7 +20,7 @@ fn folder(name: &str) -> PathBuf {
         .join(name)
 }
 
-/// The names of the files of a folder without their ends, and their texts.
+/// Returns the names of the files in a folder without their extensions, and their texts.
 fn files(name: &str) -> Vec<(String, String)> {
     let folder = folder(name);
     let all: Vec<_> = names(&folder)
@@ -49,14 +49,15 @@ fn judged(text: &str, against: &str, sets: &[&str]) -> Verdict {
     own_code::compare(&rows, against, &scenario, &|| true).unwrap()
 }
 
-/// What the slips of a file must be: those in its name.
+/// Returns the expected mistakes of a file: those in its name.
 fn named(file: &str) -> Vec<&str> {
     file.split('+')
         .map(|slip| slip.split('_').next().unwrap())
         .collect()
 }
 
-/// Whether the rows of `file` have this explanation, and are said to have no other if it is the only one that they prove.
+/// True if the verdict explains the rows of `file` by the mistakes in its name, and calls this explanation unique only if
+/// it is.
 fn is_explained(verdict: &Verdict, file: &str) -> bool {
     let mut expected = named(file);
     expected.sort_unstable();
@@ -73,7 +74,7 @@ fn is_explained(verdict: &Verdict, file: &str) -> bool {
     slips.contains(&expected) && (!is_unique || slips.len() == 1)
 }
 
-/// Files whose rows have more than one explanation, or too few rows before rounding decides.
+/// Files whose rows have more than one explanation, or too few rows before rounding dominates.
 const SEVERAL: &[&str] = &[
     "every-slip/L-kept",
     "every-slip/L-turned_only",
@@ -93,7 +94,7 @@ const SEVERAL: &[&str] = &[
 ];
 
 #[test]
-fn every_slip_is_named_alone() {
+fn every_single_mistake_is_identified() {
     for scenario in ["every-slip", "method-1", "method-2", "wobble-push"] {
         for (file, text) in files(scenario) {
             let verdict = judged(&text, scenario, &[]);
@@ -111,13 +112,13 @@ fn every_slip_is_named_alone() {
 }
 
 #[test]
-fn pairs_of_slips_are_named() {
+fn pairs_of_mistakes_are_identified() {
     let files = files("pairs");
     assert_eq!(files.len(), 32);
     for (file, text) in files {
         let verdict = judged(&text, "every-slip", &[]);
         if file == "inertia-product-sign+dt-forgotten" {
-            // Rounding decides from the third row on.
+            // Rounding dominates from the third row on.
             assert_eq!(verdict.explanations, Explanations::None);
             continue;
         }
@@ -125,12 +126,12 @@ fn pairs_of_slips_are_named() {
     }
 }
 
-/// What the verdict on a file of `tests/own_code/cases` must be: the file, its scenario, whether it agrees, one of its
+/// The expected verdict on a file of `tests/own_code/cases`: the file, its scenario, whether it agrees, one of its
 /// explanations, and words of the verdict.
 type Case<'a> = (&'a str, &'a str, bool, &'a [&'a str], &'a str);
 
 #[test]
-fn explanations_hold_on_all_rows_that_the_digits_allow() {
+fn explanations_cover_all_rows_within_the_digits() {
     let cases: [Case<'_>; 12] = [
         (
             "g-9.80665-4-decimals",
@@ -240,9 +241,9 @@ fn explanations_hold_on_all_rows_that_the_digits_allow() {
     }
 }
 
-/// A constant column has the digits that it is written with.
+/// A constant column counts with the digits that it is written with.
 #[test]
-fn two_rows_of_few_digits_agree_with_a_precision_that_is_unknown() {
+fn two_rows_of_few_digits_agree_with_unknown_precision() {
     let text = "step,Lx_Js,Lz_Js\n0,400.0,2000.0\n1,400.0,2000.0\n";
     let verdict = judged(text, "method-1", &[]);
     assert!(verdict.agrees, "{:?}", verdict.lines);
@@ -251,7 +252,7 @@ fn two_rows_of_few_digits_agree_with_a_precision_that_is_unknown() {
 }
 
 #[test]
-fn a_slip_in_single_precision_is_named_with_its_precision() {
+fn mistakes_in_single_precision_are_identified_as_such() {
     for file in ["gravity-9.81", "torque-before-turn"] {
         let text = fs::read_to_string(folder("single").join(format!("{file}.csv"))).unwrap();
         let verdict = judged(&text, "every-slip", &[]);
@@ -265,9 +266,9 @@ fn a_slip_in_single_precision_is_named_with_its_precision() {
     }
 }
 
-/// The first row is at another place than the start of the program that makes the others.
+/// The first row differs from the start of the program that produced the others.
 #[test]
-fn no_row_is_dropped_from_an_explanation() {
+fn an_explanation_must_cover_every_row() {
     let text = fs::read_to_string(folder("every-slip/gravity-10.csv")).unwrap();
     let moved = text.replacen("\n0,0,0,", "\n0,0,0.5,", 1);
     assert_ne!(moved, text);
@@ -280,7 +281,7 @@ fn no_row_is_dropped_from_an_explanation() {
 }
 
 #[test]
-fn right_programs_are_not_accused_whatever_their_digits() {
+fn correct_programs_agree_with_any_number_of_digits() {
     for (file, text) in files("right") {
         let (scenario, kind) = file.rsplit_once('-').unwrap();
         let verdict = judged(&text, scenario, &[]);
@@ -314,9 +315,9 @@ fn right_programs_are_not_accused_whatever_their_digits() {
     }
 }
 
-/// Rows need no times there, and the verdict comes from a thread of its own.
+/// Rows need no times in the lab, and a background thread computes the verdict.
 #[test]
-fn beside_a_run_the_step_that_differs_has_the_slips_own_numbers() {
+fn the_lab_shows_the_mistaken_numbers_of_the_first_differing_step() {
     let text = fs::read_to_string(folder("every-slip/torque-before-turn.csv")).unwrap();
     let verdict = judged(&text, "every-slip", &[]);
     let bare = tempfile::NamedTempFile::new().unwrap();
@@ -337,7 +338,7 @@ fn beside_a_run_the_step_that_differs_has_the_slips_own_numbers() {
     desk.commands("phase = 'torque'");
     let shown = screen::text(&desk.lab, false, (80, 50));
     has_all(&shown, ["torque-before-turn", "yours", "differs at"]);
-    // The numbers are those of the row.
+    // The shown numbers equal those of the row.
     let found = desk.lab.comparison().own_code().unwrap();
     let numbers = found.trial().unwrap().numbers(first).unwrap();
     let momentum = numbers.iter().find(|(_, it)| it.symbol == "new L").unwrap();
@@ -353,7 +354,7 @@ fn beside_a_run_the_step_that_differs_has_the_slips_own_numbers() {
 }
 
 #[test]
-fn what_no_slip_explains_is_said() {
+fn rows_without_an_explanation_are_reported() {
     let text = fs::read_to_string(folder("right/every-slip-17g.csv")).unwrap();
     for set in ["push.0.force_N.2=-99", "start.momentum_Js.0=4"] {
         let verdict = judged(&text, "every-slip", &[set]);
@@ -375,15 +376,15 @@ fn what_no_slip_explains_is_said() {
 }
 
 #[test]
-fn a_program_that_does_not_move_does_not_agree() {
+fn a_program_without_motion_does_not_agree() {
     let text = "step,x_m,y_m,z_m\n0,0,0,1.131370849898476\n1,0,0,1.131370849898476\n";
     let verdict = judged(text, "method-1", &[]);
     assert_eq!((verdict.agrees, verdict.first_step), (false, Some(1)));
 }
 
-/// A file is read in whatever way it is printed, and may lack its first row or have it twice.
+/// A file is read in any number format, and may lack its first row or repeat it.
 #[test]
-fn the_same_rows_agree_however_they_are_printed() {
+fn the_same_rows_agree_in_every_number_format() {
     let text = fs::read_to_string(folder("right/every-slip-10g.csv")).unwrap();
     let (names, rows) = text.split_once('\n').unwrap();
     let parted = |cells: &str, separator: &str, point: &str| {
@@ -425,7 +426,7 @@ fn the_same_rows_agree_however_they_are_printed() {
 }
 
 #[test]
-fn broken_files_are_refused_with_line_and_remedy() {
+fn broken_files_are_rejected_with_line_and_remedy() {
     for (text, map, told) in [
         ("", "", ["mine.csv", "has no columns"]),
         ("step,x_m\n", "", ["mine.csv", "has no rows"]),
@@ -499,7 +500,7 @@ fn broken_files_are_refused_with_line_and_remedy() {
     }
 }
 
-/// The rows up to the first number that is not finite are compared, and the file does not agree.
+/// The rows before the first non-finite number are compared, and the file does not agree.
 #[test]
 fn a_run_that_ends_in_nan_does_not_agree() {
     let text = fs::read_to_string(folder("right/method-1-17g.csv")).unwrap();

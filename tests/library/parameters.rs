@@ -1,4 +1,4 @@
-//! The values of a scenario one at a time: listed, nudged, typed, changed.
+//! Single values of a scenario: listed, nudged, typed and changed.
 
 use crate::support::scenarios::changed;
 use crate::support::scenarios::{parse, preset};
@@ -58,7 +58,7 @@ for_s = 2
 ";
 
 #[test]
-fn what_is_nudged_shows_or_is_refused_in_words() {
+fn nudged_values_change_or_explain_why_not() {
     let mut nudged = 0;
     for preset in PRESETS {
         let scenario = self::preset(preset.name, &[]);
@@ -86,7 +86,7 @@ fn what_is_nudged_shows_or_is_refused_in_words() {
 }
 
 #[test]
-fn what_is_shown_can_be_typed() {
+fn shown_values_can_be_typed() {
     for preset in PRESETS {
         for row in listed(&self::preset(preset.name, &[])) {
             let shown = row.shown();
@@ -123,7 +123,7 @@ fn every_value_of_a_file_is_listed_in_groups() {
 }
 
 #[test]
-fn no_rim_no_rows_of_it() {
+fn a_body_without_a_rim_has_no_rim_rows() {
     let rim = "[body.rim]\npoints = 4\nradius_m = 1\nheight_m = 1\npoint_mass_kg = 1\n";
     let rimless = TWO_PUSHES
         .replace(rim, "")
@@ -133,7 +133,7 @@ fn no_rim_no_rows_of_it() {
 }
 
 #[test]
-fn nudges_follow_the_size() {
+fn nudges_scale_with_the_value() {
     let scenario = parse(TWO_PUSHES);
     let next = |key: &str, times| named(&scenario, key).nudged(times);
     assert_eq!(next("push.0.force_N.0", 1), Ok(Value::Float(0.05))); // norm 5
@@ -154,7 +154,7 @@ fn nudges_follow_the_size() {
 }
 
 #[test]
-fn what_is_typed_is_held_against_the_rule() {
+fn typed_values_are_checked_against_their_rule() {
     let scenario = parse(TWO_PUSHES);
     let typed = |key: &str, text| named(&scenario, key).typed(text);
     assert_eq!(
@@ -179,7 +179,7 @@ fn what_is_typed_is_held_against_the_rule() {
 }
 
 #[test]
-fn a_refused_change_is_told_in_one_line() {
+fn a_rejected_change_is_reported_in_one_line() {
     let file = parse(TWO_PUSHES).file;
     assert_eq!(
         refusal(&file, "motion.time_step_s", -0.1),
@@ -203,7 +203,7 @@ fn a_refused_change_is_told_in_one_line() {
 }
 
 #[test]
-fn the_values_of_a_run_are_those_after_its_edits() {
+fn the_values_of_a_run_include_its_edits() {
     let text = format!(
         "{TWO_PUSHES}[[edit]]\nstep = 7\nset = {{ 'motion.time_step_s' = 0.02, 'push.1.for_s' = 9 }}\n"
     );
@@ -218,7 +218,7 @@ fn the_values_of_a_run_are_those_after_its_edits() {
 }
 
 #[test]
-fn of_many_points_the_first_fifty_are_listed() {
+fn only_the_first_fifty_points_are_listed() {
     let points: String = (0..120)
         .map(|index| {
             format!("[[body.point]]\nname = 'p{index}'\nat_m = [0, {index}, 1]\nmass_kg = 1\n")

@@ -1,5 +1,4 @@
-//! Bodies of solid parts: their inertia against Steiner's theorem, what stays symmetric, what is refused and in which words,
-//! and how they are listed and changed.
+//! Bodies of solid parts: inertia compared with Steiner's theorem, symmetry, error messages, listing and editing.
 
 use crate::support::scenarios::changed;
 use crate::support::scenarios::{parse, read};
@@ -16,7 +15,7 @@ use proptest::prelude::*;
 use std::sync::Arc;
 use toml::Value;
 
-/// A scenario of these parts; `top` is a point of no mass on the axle.
+/// A scenario of `parts`; `top` is a massless point on the axle.
 fn text(parts: &str) -> String {
     format!(
         "title = 'x'\n[[body.point]]\nname = 'top'\nat_m = [0, 0, 1.5]\n{parts}\n[start]\nspin_rpm = 300\n[motion]\ntime_step_s = 0.01\nsteps = 100\n"
@@ -29,13 +28,12 @@ fn part(shape: &str, dimensions: &str) -> String {
     )
 }
 
-/// What is refused, without the file's name.
+/// Returns the error message for `parts`, without the file's name.
 fn refusal(parts: &str) -> String {
     read(&text(parts)).unwrap_err().to_string()
 }
 
-/// Every shape, its dimensions made of three lengths, and its moments for a mass of 1 kg, each written out as the books have
-/// it: across, across, about the axis.
+/// A shape, its dimensions from three lengths, and its textbook moments for a mass of 1 kg: across, across, about the axis.
 type Solid = (&'static str, String, [f64; 3]);
 
 fn solids([a, b, h]: [f64; 3]) -> Vec<Solid> {
@@ -86,7 +84,7 @@ fn any_vector() -> impl Strategy<Value = [f64; 3]> {
     [-2.0..2.0_f64, -2.0..2.0, -2.0..2.0]
 }
 
-/// Inertia about the pivot of a part by Steiner's theorem, kg m².
+/// Computes the inertia of a part about the pivot by Steiner's theorem, kg m².
 fn steiner(mass: f64, moments: [f64; 3], at: [f64; 3], axis: [f64; 3]) -> Matrix3<f64> {
     let (at, axis) = (Vector3::from(at), Vector3::from(axis));
     let turn = Rotation3::rotation_between(&Vector3::z(), &axis).unwrap();
@@ -99,7 +97,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[test]
-    fn the_inertia_is_that_of_steiners_theorem(
+    fn the_inertia_of_parts_follows_steiners_theorem(
         parts in prop::collection::vec(
             (0..9_usize, [any_length(), any_length(), any_length()], any_vector(), any_vector(), 0.01..50.0_f64),
             1..6,
@@ -120,7 +118,7 @@ proptest! {
             first += mass * Vector3::from(at);
         }
         let Ok(scenario) = read(&text(&body)) else {
-            // A rod that points to the pivot, and nothing else.
+            // A single rod that points to the pivot has no inertia about its axis.
             prop_assume!(false);
             return Ok(());
         };
@@ -132,7 +130,7 @@ proptest! {
     }
 
     #[test]
-    fn a_symmetric_part_along_the_axle_leaves_the_body_symmetric(
+    fn a_symmetric_part_along_the_axle_keeps_the_body_symmetric(
         which in 0..8_usize, lengths in [any_length(), any_length(), any_length()], height in -2.0..2.0_f64, down: bool
     ) {
         let (shape, dimensions, _) = solids(lengths).swap_remove(which);
@@ -155,15 +153,15 @@ proptest! {
 }
 
 #[test]
-fn six_points_of_a_sixth_of_the_mass_stand_for_a_part() {
+fn a_part_is_represented_by_six_points() {
     let scenario = parse(&text(&part("ball", "radius_m = 1")));
     let points = scenario.body.mechanics.points();
     assert_eq!(scenario.body.points_before_parts(), 1);
-    // Behind the point: the centre, which has no mass, and the six.
+    // After the point come the massless center and the six points.
     assert_eq!(points.len(), 8);
     assert_eq!((points[1].mass, points[1].at.z), (0.0, 0.5));
     assert!(points[2..].iter().all(|point| point.mass == 2.0 / 6.0));
-    // A ball's six lie at sqrt(3/5) of its radius.
+    // The six points of a ball are at sqrt(3/5) of its radius.
     for point in &points[2..] {
         let far = (point.at - points[1].at).norm();
         assert!((far - 0.6_f64.sqrt()).abs() < 1e-15);
@@ -171,7 +169,7 @@ fn six_points_of_a_sixth_of_the_mass_stand_for_a_part() {
 }
 
 #[test]
-fn points_stand_before_parts_and_keep_their_places() {
+fn points_precede_parts_and_keep_their_indices() {
     let rim = "[body.rim]\npoints = 3\nradius_m = 1\nheight_m = 0\npoint_mass_kg = 1\n";
     let without = parse(&text(rim));
     let with = parse(&text(&format!("{rim}{}", part("ring", "radius_m = 0.2"))));
@@ -181,7 +179,7 @@ fn points_stand_before_parts_and_keep_their_places() {
 }
 
 #[test]
-fn the_centre_of_a_part_is_pushed_and_traced_by_its_name() {
+fn the_center_of_a_part_can_be_pushed_and_traced_by_name() {
     let traced = text(&part("ball", "radius_m = 1"))
         .replace("title = 'x'", "title = 'x'\ntrace = 'ball'")
         + "[[push]]\npoint = 'ball'\nforce_N = [1, 0, 0]\nfor_s = 1\n";
@@ -194,7 +192,7 @@ fn the_centre_of_a_part_is_pushed_and_traced_by_its_name() {
 }
 
 #[test]
-fn every_refusal_says_where_which_key_which_value_and_which_rule() {
+fn errors_in_parts_name_line_key_value_and_rule() {
     let mut parts = Vec::new();
     for (shape, dimensions) in [
         ("ring", ""),
@@ -237,14 +235,14 @@ fn every_refusal_says_where_which_key_which_value_and_which_rule() {
 }
 
 #[test]
-fn flat_moments_are_taken_with_their_rounding() {
+fn flat_moments_are_accepted_up_to_rounding() {
     let flat = part("moments", "moments_kg_m2 = [0.1, 0.2, 0.30000000000000004]");
     assert!(read(&text(&flat)).is_ok());
     let beyond = part("moments", "moments_kg_m2 = [0.1, 0.2, 0.300000000001]");
     assert!(refusal(&beyond).contains("A + B is below C"));
 }
 
-/// A part of 2 kg whose moments are about the pivot.
+/// A part of 2 kg with moments about the pivot.
 fn about_pivot(at: [f64; 3], axis: [f64; 3], moments: [f64; 3]) -> String {
     format!(
         "[[body.part]]\nshape = 'moments'\nname = 'body'\nmass_kg = 2\nat_m = {at:?}\naxis = {axis:?}\n\
@@ -256,7 +254,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[test]
-    fn moments_about_the_pivot_are_those_about_parallel_axes(
+    fn moments_about_the_pivot_follow_the_parallel_axis_theorem(
         lengths in [any_length(), any_length(), any_length()], at in any_vector(), axis in any_vector()
     ) {
         prop_assume!(Vector3::from(axis).norm() > 0.1);
@@ -272,7 +270,7 @@ proptest! {
 }
 
 #[test]
-fn moments_about_the_pivot_are_kept_as_the_pivot_is_kept() {
+fn moments_about_the_pivot_survive_a_round_trip() {
     let given = text(&about_pivot(
         [0.0, 0.0, 0.2],
         [0.0, 0.0, 1.0],
@@ -300,13 +298,13 @@ fn moments_about_the_pivot_are_kept_as_the_pivot_is_kept() {
             .iter()
             .any(|one| one.key.contains("part.0.about"))
     );
-    // A flat body, and one whose mass is all at the pivot but for rounding.
+    // A flat body, and one with all its mass at the pivot up to rounding.
     let flat = about_pivot([0.0, 0.0, 30.0], [0.0, 0.0, 1.0], [1800.1, 1800.1, 0.2]);
     assert!(read(&text(&flat)).is_ok());
 }
 
 #[test]
-fn moments_that_no_body_has_about_the_pivot_are_refused_with_the_bound() {
+fn impossible_moments_about_the_pivot_are_rejected_with_the_bound() {
     let curtis = about_pivot([0.0, 0.0, 0.05], [0.0, 0.0, 1.0], [12e-4, 12e-4, 4.5e-4])
         .replace("mass_kg = 2", "mass_kg = 0.5");
     let told = refusal(&curtis);
@@ -314,7 +312,7 @@ fn moments_that_no_body_has_about_the_pivot_are_refused_with_the_bound() {
         &told,
         "about the pivot A must be at least M d^2 = 1.25e-3 kg m^2",
     );
-    // What it advises is the same motion.
+    // The suggested body has the same motion.
     has(&told, "mass_kg = 1 with at_m = [0, 0, 0.025]");
     let alike = curtis
         .replace("mass_kg = 0.5", "mass_kg = 1")
@@ -354,7 +352,7 @@ fn a_part_counts_as_six_points() {
     has(read(&many(99_994)).unwrap_err().to_string(), words);
 }
 
-/// A disk on a rod, and a block on the axle.
+/// A scenario with a disk on a rod and a block on the axle.
 fn three() -> Scenario {
     parse(&text(
         &(part("cylinder", "radius_m = 0.3")
@@ -368,7 +366,7 @@ fn listed(scenario: &Scenario) -> Vec<Parameter> {
 }
 
 #[test]
-fn each_value_of_a_part_is_listed_and_a_dimension_that_it_has_not_is_none() {
+fn parts_list_exactly_the_dimensions_of_their_shape() {
     let list = listed(&three());
     for (shape, dimensions) in [
         ("cylinder", "radius 0.3, length 0"),
@@ -394,11 +392,11 @@ fn refused(file: &ScenarioFile, key: &str, value: impl Into<Value>) -> String {
 }
 
 #[test]
-fn each_value_of_a_part_can_be_changed_or_says_why_not() {
+fn every_value_of_a_part_can_be_changed_or_explains_why_not() {
     let scenario = three();
     let file = &scenario.file;
     let wider = changed(file, "body.part.0.radius_m", Value::Float(0.6)).unwrap();
-    // The disk's share of I3 is m R²/2, the block's m (a² + b²)/12.
+    // The disk contributes m R²/2 to I3, the block m (a² + b²)/12.
     let along = wider.body.mechanics.inertia()[(2, 2)];
     let known = 0.36 + 2.0 * 0.02 / 12.0;
     assert!((along - known).abs() < 1e-15, "{along}");
@@ -416,7 +414,7 @@ fn each_value_of_a_part_can_be_changed_or_says_why_not() {
 }
 
 #[test]
-fn a_part_takes_every_other_shape_as_large_as_it_was() {
+fn changing_the_shape_of_a_part_keeps_its_size() {
     let shapes: Vec<_> = solids([0.3, 0.4, 0.5]);
     for (shape, dimensions, _) in &shapes {
         let scenario = parse(&text(
@@ -428,7 +426,7 @@ fn a_part_takes_every_other_shape_as_large_as_it_was() {
                 .unwrap_or_else(|problems| panic!("{shape} to {other}: {problems}"));
             assert_eq!(turned.file.body.part[0].shape, *other);
         }
-        // Given by its moments it is the same body.
+        // Converted to moments, it is the same body.
         let moments = changed(&scenario.file, "body.part.0.shape", Value::from("moments")).unwrap();
         let off = moments.body.mechanics.inertia() - scenario.body.mechanics.inertia();
         assert!(off.amax() < 1e-14, "{shape}: {off}");
@@ -459,7 +457,7 @@ fn dotted_keys_set_a_part_from_the_command_line() {
 }
 
 #[test]
-fn a_run_file_of_parts_is_read_back_as_it_was() {
+fn a_run_file_with_parts_survives_a_round_trip() {
     let scenario = three();
     let again = parse(&scenario.to_toml());
     assert_eq!(again.to_toml(), scenario.to_toml());
@@ -467,13 +465,13 @@ fn a_run_file_of_parts_is_read_back_as_it_was() {
 }
 
 #[test]
-fn solids_are_seen_as_what_they_are() {
+fn solids_are_recognizable_in_the_3d_view() {
     let filled = |preset: &str, set: &[&str], seconds: f64| {
         let mut stage = Stage::open(preset, set, SMALL);
         stage.wait(seconds).press("d").picture()
     };
     insta::assert_snapshot!("wing_nut_3d", filled("wing-nut", &[], 0.6));
-    // A cone that stands on its apex, and a rod beside it.
+    // A cone on its apex and a rod next to it.
     let cone = [
         "body.part.0={shape='cone',name='cone',mass_kg=1,at_m=[0,0,0.6],radius_m=0.3,length_m=0.8}",
         "body.part.1={shape='rod',name='rod',mass_kg=0.1,at_m=[0.6,0,0.6],axis=[1,0,0],length_m=0.4}",
@@ -482,14 +480,14 @@ fn solids_are_seen_as_what_they_are() {
 }
 
 #[test]
-fn a_part_is_edited_in_the_pane_of_values() {
+fn a_part_can_be_edited_in_the_values_pane() {
     let mut stage = Stage::open("wing-nut", &[], SMALL);
     stage.commands("pause = true").press("e/outer\n");
     stage.shows("outer radius = 0.008 m").press("0.009\n");
     stage.shows("outer radius 0.009 m, rerun");
     let nut = &stage.lab.player().run().scenario().file.body.part[0];
     assert_eq!(nut.outer_radius_m, Some(0.009));
-    // What is refused says why and changes nothing.
+    // A rejected value explains why and changes nothing.
     stage.press("\n").press("0.001\n");
     stage.shows("must not be greater than outer_radius_m");
     let unchanged = &stage.lab.player().run().scenario().file.body.part[0];

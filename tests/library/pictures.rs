@@ -27,7 +27,7 @@ const COLOURS: Theme = Theme {
     background: Background::Dark,
 };
 
-/// The run of a preset after `steps`; `set` changes its keys, and `more` is appended to its file.
+/// Plays a preset for `steps`. `set` changes its keys, and `more` is appended to its file.
 fn run(preset: &str, set: &[&str], more: &str, steps: u64) -> LiveRun {
     let text = presets::find(preset).unwrap().text;
     let mut document = Document::parse("test.toml", &format!("{text}\n{more}")).unwrap();
@@ -47,7 +47,7 @@ fn drawn(widget: impl Widget, (width, height): (u16, u16)) -> String {
     text(&buf)
 }
 
-/// The cells of the buffer as text, one line for each row.
+/// Returns the cells of the buffer as text, one line per row.
 fn text(buf: &Buffer) -> String {
     let lines = buf.content.chunks(buf.area.width.into());
     lines
@@ -63,7 +63,7 @@ fn text(buf: &Buffer) -> String {
         .collect()
 }
 
-/// `run` alone.
+/// Plot inputs with only `run`.
 fn seen_alone<'a>(run: &'a LiveRun, view: &'a View) -> PlotInputs<'a> {
     PlotInputs {
         view,
@@ -98,7 +98,7 @@ fn asked(form: &InputForm, size: (u16, u16)) -> String {
 }
 
 #[test]
-fn a_form_asks_at_the_bottom() {
+fn a_form_is_shown_at_the_bottom() {
     let mut form = question();
     insta::assert_snapshot!("form", asked(&form, (60, 12)));
     let words = "motion.time_step_s (-0.1): must be greater than zero, or nothing would ever move";
@@ -121,7 +121,7 @@ fn a_long_text_scrolls_in_its_field() {
         let line = picture.lines().find(|line| line.starts_with("title"));
         line.unwrap().to_owned()
     };
-    // A wide character has two cells, of which the second is blank here.
+    // A wide character has two cells; the second is blank here.
     assert_eq!(field(&form), "title い 独 楽 abcdef_");
     form.edit_field(FieldEdit::Home);
     assert_eq!(field(&form), "title 0123456789速 い");
@@ -133,7 +133,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
-    fn panes_with_everything_on_them_stay_inside(
+    fn panes_never_draw_outside_their_area(
         width in 0u16..80, height in 0u16..30, marker in 0..Marker::ALL.len(), steps in 0u64..900, ghosts in 0u64..2000,
         window_s in 0.2..300.0f64, force in prop::array::uniform3(-100.0..100.0f64), begin_s in 0.0..90.0f64,
     ) {
@@ -161,7 +161,7 @@ proptest! {
     }
 
     #[test]
-    fn forms_stay_inside(
+    fn forms_never_draw_outside_their_area(
         width in 0u16..100, height in 0u16..30, typed in "\\PC{0,40}", left in 0..20,
         complaint in prop::option::of("[a-z ]{0,90}"), fields in 0usize..5, infos in 0usize..5,
     ) {

@@ -1,4 +1,4 @@
-//! How long motions can be predicted, and what is said of runs that go on for longer.
+//! The time for which motions can be predicted, and verdicts on longer runs.
 
 use crate::support::scenarios::{find_scheme, parse, preset};
 use crate::support::stage::{LARGE, Stage};
@@ -22,7 +22,7 @@ const UPRIGHT: &str = include_str!("motions/balanced-upright.toml");
 const UNPREDICTABLE: &str = "no double-precision computation can predict the motion";
 const BALANCED: &str = "unstable equilibrium: stays upright only in exact arithmetic";
 
-/// The health of the run of `scenario` at `step`, or where it broke down before.
+/// Returns the verdict on the run of `scenario` at `step`, or at the step where it broke down before.
 fn health_at(scenario: &Scenario, step: u64) -> Health {
     let mut simulation = Simulation::new(Arc::new(scenario.clone()));
     let mut monitor = Monitor::new(simulation.now());
@@ -32,7 +32,7 @@ fn health_at(scenario: &Scenario, step: u64) -> Health {
     monitor.health(simulation.now())
 }
 
-/// The health of the whole run of `text` with the scheme `scheme` at `time_step_s`.
+/// Returns the verdict on the whole run of `text` with the scheme `scheme` at `time_step_s`.
 fn health(text: &str, scheme: &str, time_step_s: f64) -> Health {
     let scenario = resampled(&parse(text), time_step_s, find_scheme(scheme));
     health_at(&scenario, scenario.steps)
@@ -45,7 +45,7 @@ fn until_s(text: &str) -> Option<f64> {
 }
 
 #[test]
-fn exact_runs_of_a_chaotic_motion_say_the_same_at_every_time_step() {
+fn the_predictable_time_does_not_depend_on_the_time_step() {
     for (text, time_steps) in [
         (PUSHED, [1.29, 0.43, 0.1, 0.05]),
         (TOP, [0.5, 0.123, 0.0409, 0.01]),
@@ -55,7 +55,7 @@ fn exact_runs_of_a_chaotic_motion_say_the_same_at_every_time_step() {
             let health = health(text, "exact", time_step_s);
             let case = format!("{time_step_s} s: {}", health.sentence(None));
             let until_s = health.predictability.until_s.unwrap();
-            // A push that is counted in steps begins and ends at another step, where there is none at its own time.
+            // If no step falls on the times of the push, it starts and ends at neighboring steps.
             assert!((until_s / whole_s - 1.0).abs() < 0.1, "{whole_s}, {case}");
             assert_eq!(health.is_believed(), Some(true), "{case}");
             assert_eq!(health.is_reliable(), Some(false), "{case}");
@@ -71,9 +71,9 @@ fn exact_runs_of_a_chaotic_motion_say_the_same_at_every_time_step() {
     }
 }
 
-/// The time found is that at which computations of different schemes part: no sooner, and not much later.
+/// Computations with different schemes diverge at the stated time: not before, and not much later.
 #[test]
-fn good_schemes_agree_up_to_the_time_and_part_after_it() {
+fn accurate_schemes_diverge_at_the_predictable_time() {
     let scenario = parse(TOP);
     let until_s = until_s(TOP).unwrap();
     let at = scenario.body.mechanics.points()[scenario.trace].at;
@@ -89,7 +89,7 @@ fn good_schemes_agree_up_to_the_time_and_part_after_it() {
         let [one, other] = [0.002, 0.001].map(|time_step_s| place(time_s, time_step_s));
         (one - other).norm() / scenario.arm_m()
     };
-    // Whole seconds are steps of both.
+    // Both runs have steps at whole seconds.
     let (before, after) = (
         apart((0.5 * until_s).round()),
         apart((2.0 * until_s).round()),
@@ -101,7 +101,7 @@ fn good_schemes_agree_up_to_the_time_and_part_after_it() {
 }
 
 #[test]
-fn a_run_that_fails_before_the_motion_is_unpredictable_is_blamed() {
+fn a_run_that_fails_while_predictable_is_unreliable() {
     let health = health(PUSHED, "rk4", 0.1);
     let sentence = health.sentence(None);
     assert!(
@@ -113,7 +113,7 @@ fn a_run_that_fails_before_the_motion_is_unpredictable_is_blamed() {
 }
 
 #[test]
-fn before_that_time_a_run_is_judged_as_ever() {
+fn before_the_predictable_time_the_usual_verdict_applies() {
     let until_s = until_s(PUSHED).unwrap();
     let scenario = resampled(&parse(PUSHED), 0.05, find_scheme("exact"));
     let health = health_at(&scenario, (0.9 * until_s / 0.05) as u64);
@@ -127,13 +127,13 @@ fn before_that_time_a_run_is_judged_as_ever() {
 }
 
 #[test]
-fn nothing_is_advised_for_an_exact_run_of_a_chaotic_motion() {
+fn an_exact_run_of_a_chaotic_motion_gets_no_advice() {
     let scenario = resampled(&parse(PUSHED), 0.43, find_scheme("exact"));
     assert_eq!(advise(&scenario), Advice::Holds);
 }
 
 #[test]
-fn the_shipped_runs_can_be_predicted_to_their_ends() {
+fn shipped_presets_are_predictable_to_their_ends() {
     for shipped in PRESETS {
         let scenario = Arc::new(preset(shipped.name, &[]));
         let found = predictability(&scenario, Clock::end_s(&scenario));
@@ -144,7 +144,7 @@ fn the_shipped_runs_can_be_predicted_to_their_ends() {
 }
 
 #[test]
-fn an_upright_top_too_slow_to_sleep_is_neither_blamed_nor_praised() {
+fn a_balanced_upright_top_gets_no_verdict() {
     for (scheme, time_step_s) in [
         ("report", 0.513),
         ("report", 0.01),
@@ -166,7 +166,7 @@ fn an_upright_top_too_slow_to_sleep_is_neither_blamed_nor_praised() {
     }
 }
 
-/// A body of unequal moments about its center of mass, in the pivot or `above` it (m), with the start and motion `rest`.
+/// A body with unequal moments and its center of mass `above` the pivot (m), with the start and motion `rest`.
 fn block(above: f64, rest: &str) -> Scenario {
     parse(&format!(
         "title = 'x'\n[[body.part]]\nshape = 'block'\nname = 'block'\nmass_kg = 1\nat_m = [0, 0, {above}]\nsize_m = [0.1, 0.2, 0.3]\n[[body.point]]\nname = 'top'\nat_m = [0, 0, 0.5]\n[start]\n{rest}\n[motion]\ntime_step_s = 0.01\nsteps = 4000\nscheme = 'exact'\n"
@@ -174,7 +174,7 @@ fn block(above: f64, rest: &str) -> Scenario {
 }
 
 #[test]
-fn balance_is_unstable_where_an_offset_grows() {
+fn an_equilibrium_is_unstable_if_an_offset_grows() {
     let spinning = |axis: [f64; 3]| format!("omega_rad_per_s = {axis:?}");
     for (above, rest, expected) in [
         (0.0, spinning([9.0, 0.0, 0.0]), None),
@@ -211,7 +211,7 @@ fn balance_is_unstable_where_an_offset_grows() {
 }
 
 #[test]
-fn a_sleeping_top_is_in_no_unstable_equilibrium() {
+fn a_sleeping_top_is_stable() {
     for (times, is_unstable) in [(0.5, true), (0.99, true), (1.01, false), (2.0, false)] {
         let momentum = format!("start.momentum_Js=[0,0,{}]", 35.967 * times);
         let set = [
@@ -228,7 +228,7 @@ fn a_sleeping_top_is_in_no_unstable_equilibrium() {
 }
 
 #[test]
-fn a_push_ends_the_balance_and_the_run_is_judged_again() {
+fn a_push_ends_the_balance_and_restores_the_verdict() {
     let push = "push.0={point='top',force_N=[1,0,0],from_s=1,for_s=0.1}";
     let mut document = gyrolab::engine::scenario::Document::parse("x.toml", UPRIGHT).unwrap();
     for set in [
@@ -246,7 +246,7 @@ fn a_push_ends_the_balance_and_the_run_is_judged_again() {
 }
 
 #[test]
-fn the_readouts_say_until_when_a_run_is_reliable() {
+fn readouts_state_the_predictable_time() {
     let scenario = resampled(&parse(PUSHED), 0.43, find_scheme("exact"));
     let read = |run: &Scenario, name| {
         let values = at_end(run.clone(), &[find(name).unwrap()], &|| true);
@@ -265,7 +265,7 @@ fn the_readouts_say_until_when_a_run_is_reliable() {
 }
 
 #[test]
-fn a_comparison_has_the_errors_up_to_the_time() {
+fn a_comparison_covers_only_the_predictable_time() {
     let scenario = parse(TOP);
     let rows = compare(&scenario, &[find_scheme("srkn11b")], &[0.002], |_, _| {
         ControlFlow::Continue(())
@@ -286,7 +286,7 @@ fn a_comparison_has_the_errors_up_to_the_time() {
 }
 
 #[test]
-fn the_lab_says_that_the_motion_is_unpredictable() {
+fn the_lab_shows_that_the_motion_is_unpredictable() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("chaotic.toml");
     std::fs::write(&path, PUSHED).unwrap();

@@ -1,4 +1,4 @@
-//! A scenario that starts where a run stands goes on as the run does.
+//! Scenarios saved from the current state of a run: they continue it.
 
 use crate::support::scenarios::{parse, preset};
 use crate::support::words::has;
@@ -11,7 +11,7 @@ use proptest::prelude::*;
 use std::sync::Arc;
 use toml::Table;
 
-/// A ring with a top; `lump` is a mass off the axle, kg.
+/// A scenario of a ring with a top; `lump` is a mass off the axle, kg.
 fn text(scheme: &str, lump: f64, start: &str, more: &str) -> String {
     format!(
         "title = 'x'\nabout = 'y'\n[body.rim]\npoints = 7\nradius_m = 0.8\nheight_m = 1\npoint_mass_kg = 0.5\n[[body.point]]\nname = 'top'\nat_m = [0, 0, 1.5]\n[[body.point]]\nname = 'side'\nat_m = [0.4, 0.2, 0.7]\nmass_kg = {lump}\n[start]\n{start}\n[motion]\nscheme = '{scheme}'\ntime_step_s = 0.05\nsteps = 400\n{more}\n"
@@ -33,10 +33,10 @@ fn here(simulation: &Simulation) -> Result<Scenario, String> {
     scenario_from(simulation.scenario(), state, step).map_err(|problems| problems.to_string())
 }
 
-/// The farthest that the traced point is from where the run has it, m, over the next `steps`.
+/// Returns the largest distance of the traced point between `run` and the saved scenario over the next `steps`, m.
 fn farthest_m(mut run: Simulation, steps: u64) -> f64 {
     let saved = here(&run).unwrap();
-    // What is saved is what is written.
+    // Uses the scenario as written to a file.
     let mut saved = Simulation::new(read(&saved.to_toml()));
     let point = |state: &State, scenario: &Scenario| {
         position(&scenario.body.mechanics, state, scenario.trace)
@@ -63,7 +63,7 @@ const EDITS: &str = "[[edit]]\nstep = 12\nset = { 'motion.time_step_s' = 0.03 }
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, cases: 48, ..ProptestConfig::default() })]
     #[test]
-    fn the_saved_scenario_goes_on_as_the_run(
+    fn the_saved_scenario_continues_the_run(
         tilt in 0.0..180.0f64,
         momentum in prop::array::uniform3(-40.0..40.0f64),
         lump in prop_oneof![Just(0.0), 0.1..2.0f64],
@@ -73,7 +73,7 @@ proptest! {
         let start = format!("tilt_deg = {tilt:?}\nmomentum_Js = {momentum:?}\nturn_deg = 33");
         let edited = step < 30 && more.contains("edit");
         let exact = read(&text("exact", lump, &start, &more));
-        // Edits still to come are not saved.
+        // Later edits are not saved.
         prop_assume!(!edited);
         prop_assert!(farthest_m(at(&exact, step), 100) < 1e-9);
         let report = read(&text("report", lump, &start, &more));
@@ -82,7 +82,7 @@ proptest! {
 }
 
 #[test]
-fn near_the_vertical_it_goes_on_as_well() {
+fn the_saved_scenario_continues_the_run_near_the_vertical() {
     for tilt in [0.0, 1e-9, 1e-5, 180.0, 179.99999] {
         let start =
             format!("tilt_deg = {tilt:?}\nmomentum_Js = [0, 0, 60]\nmomentum_frame = 'body'");
@@ -95,7 +95,7 @@ fn near_the_vertical_it_goes_on_as_well() {
 }
 
 #[test]
-fn what_it_says_and_what_it_leaves_out() {
+fn the_saved_scenario_has_a_new_title_and_omits_past_pushes() {
     let view = format!(
         "{PUSHES}[view]\nspeed = 5\nlook_at = 'z'\n[[expected]]\nreadout = 'z_m'\nat_step = 3\nvalue = 1\ntolerance = 9\n"
     );
@@ -110,7 +110,7 @@ fn what_it_says_and_what_it_leaves_out() {
         *kept,
         Table::from_iter([("speed".to_owned(), 5.0.into())]).into()
     );
-    // Steps 20 to 79 last until t = 3.95 s; the last push is over.
+    // Steps 20 to 79 last until t = 3.95 s; the last push has ended.
     let expected = [(0.0, 3.95 - 2.1), (2.52 - 2.1, 1.51)];
     assert_eq!(file.push.len(), 2);
     for (push, (from_s, for_s)) in file.push.iter().zip(expected) {
@@ -120,7 +120,7 @@ fn what_it_says_and_what_it_leaves_out() {
 }
 
 #[test]
-fn what_is_looked_at_is_written_in_the_order_of_the_keys_and_with_floats() {
+fn view_settings_are_written_in_key_order_with_floats() {
     let view = "\n[view]\nspeed = 20.0\nlook_at = \"l\"\nexact = true\nshow = [\"traces\"]\nphase = 3\nbare = false\n\
         \n[view.camera]\nyaw_deg = 3.0\npitch_deg = 20.0\n\n[view.zoom]\nabove = 4.0\n3d = 2.0\n";
     let mut document = Document::parse("x.toml", &text("rk4", 0.0, UPRIGHT, view)).unwrap();
@@ -130,7 +130,7 @@ fn what_is_looked_at_is_written_in_the_order_of_the_keys_and_with_floats() {
 }
 
 #[test]
-fn at_the_start_steps_stay_steps() {
+fn pushes_in_steps_stay_in_steps_at_the_start() {
     let scenario = read(&text("report", 0.0, UPRIGHT, PUSHES));
     let pushes = here(&at(&scenario, 0)).unwrap().file.push;
     let steps = (pushes[0].first_step, pushes[0].steps);
@@ -139,7 +139,7 @@ fn at_the_start_steps_stay_steps() {
 }
 
 #[test]
-fn a_push_that_accumulates_moves_only_before_it_begins() {
+fn an_accumulating_push_can_be_moved_only_before_it_starts() {
     let push = "[[push]]\npoint = 'top'\nforce_N = [0, 0.1, 0]\nfirst_step = 20\nsteps = 6\naccumulates = true\n";
     let scenario = read(&text("report", 0.0, UPRIGHT, push));
     let moved = here(&at(&scenario, 5)).unwrap().file.push;
@@ -158,7 +158,7 @@ fn a_push_that_accumulates_moves_only_before_it_begins() {
 }
 
 #[test]
-fn what_is_in_force_follows_the_edits() {
+fn forces_and_settings_in_force_include_edits() {
     let more = format!("{PUSHES}{EDITS}");
     let run = read(&text("exact", 0.0, UPRIGHT, &more));
     let force = |step| in_force(&run, step).1[1].force.y;
@@ -168,7 +168,7 @@ fn what_is_in_force_follows_the_edits() {
 }
 
 #[test]
-fn at_another_time_step_it_lasts_as_long() {
+fn the_saved_scenario_lasts_as_long_at_an_edited_time_step() {
     let edit = "edit=[{step=50, set={\"motion.time_step_s\"=0.01}}]";
     let scenario = Arc::new(preset("method-2", &[edit]));
     let run = at(&scenario, 60);

@@ -1,4 +1,4 @@
-//! Every shipped preset: it is complete, and it does what it says.
+//! Every shipped preset is complete and behaves as described.
 
 use crate::support::ground::names;
 use crate::support::scenarios::preset as preset_named;
@@ -17,7 +17,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 #[test]
-fn the_table_of_presets_is_the_folder() {
+fn every_preset_in_the_folder_is_in_the_table() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("presets");
     let files: BTreeSet<_> = names(&folder)
         .into_iter()
@@ -32,7 +32,7 @@ fn the_table_of_presets_is_the_folder() {
 }
 
 #[test]
-fn every_preset_says_what_it_is_and_what_to_look_at() {
+fn every_preset_describes_itself_and_what_to_look_at() {
     for preset in PRESETS {
         let file = preset_named(preset.name, &[]).file;
         let look_at = file.viewed_text("look_at");
@@ -41,20 +41,20 @@ fn every_preset_says_what_it_is_and_what_to_look_at() {
         let [about, source, hint] = lengths;
         assert!(about > 80 && source > 10, "{}", preset.name);
         assert!((21..=160).contains(&hint), "{}", preset.name);
-        // Something to be held to; a user's files have nothing of it.
+        // Presets have expected values; users' files have none.
         assert!(expected_of(preset).len() >= 2, "{}", preset.name);
         assert!(file.expected.is_empty());
     }
 }
 
-/// What the file of a preset says that its run must give.
+/// Returns the expected values in the file of a preset.
 fn expected_of(preset: &Preset) -> Vec<ExpectedFile> {
     let document = Document::parse(preset.name, preset.text).unwrap();
     document.scenario().unwrap().file.expected
 }
 
 #[test]
-fn every_preset_does_what_it_expects() {
+fn every_preset_meets_its_expected_values() {
     for preset in PRESETS {
         let scenario = preset_named(preset.name, &[]);
         let mut expected = expected_of(preset);
@@ -71,7 +71,7 @@ fn every_preset_does_what_it_expects() {
     }
 }
 
-/// The readouts at the end of the preset `name`.
+/// Returns the readouts at the end of the preset `name`.
 fn readouts(name: &str) -> Readouts {
     readouts_of(preset_named(name, &[]))
 }

@@ -1,4 +1,4 @@
-//! Files of measured data that are refused, and in which words: file, line, column, value, rule and remedy.
+//! Rejected files of measured data: messages name file, line, column, value, rule and remedy.
 
 use crate::support::words::without_lists;
 use gyrolab::engine::data::{open, read};
@@ -13,7 +13,7 @@ fn refusal(text: &str) -> String {
     }
 }
 
-/// Files that are refused.
+/// Files that are rejected.
 const BROKEN: &[&str] = &[
     // names of columns
     "t_s,tild_deg\n0,1\n",
@@ -52,7 +52,7 @@ const BROKEN: &[&str] = &[
 ];
 
 #[test]
-fn every_refusal_says_line_column_value_rule_and_remedy() {
+fn every_error_names_line_column_value_rule_and_remedy() {
     let told = BROKEN
         .iter()
         .map(|text| format!("{text}{}\n\n", without_lists(&refusal(text))));
@@ -60,7 +60,7 @@ fn every_refusal_says_line_column_value_rule_and_remedy() {
 }
 
 #[test]
-fn data_that_come_with_the_program_go_by_their_name() {
+fn shipped_data_are_opened_by_name() {
     assert_eq!(
         open("heidelberg-nutation").unwrap().origin,
         "heidelberg-nutation"
@@ -68,7 +68,7 @@ fn data_that_come_with_the_program_go_by_their_name() {
 }
 
 #[test]
-fn files_that_are_no_text_are_refused() {
+fn files_that_are_not_text_are_rejected() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("lab.csv");
     let name = path.to_str().unwrap();
@@ -104,14 +104,14 @@ fn files_that_are_no_text_are_refused() {
 }
 
 #[test]
-fn a_hostile_file_is_told_in_few_lines_that_steer_no_terminal() {
+fn errors_of_hostile_files_are_short_and_escaped() {
     let cell = format!("\u{1b}[2J{}", "9".repeat(100_000));
     let text = format!("t_s,tilt_deg\n{}", format!("0,{cell}\n").repeat(400));
     let told = refusal(&text);
     assert_eq!(told.lines().count(), 13, "{told}");
     assert!(told.len() < 4000 && !told.replace('\n', "").chars().any(is_steering));
     assert!(told.ends_with("lab.csv: and 388 more"), "{told}");
-    // Here each line breaks a rule of its own.
+    // Here, each line violates a different rule.
     let rows: String = (0..401).rev().map(|time| format!("{time},1\n")).collect();
     let of_times = refusal(&format!("t_s,tilt_deg\n{rows}"));
     assert_eq!(of_times.lines().count(), 13, "{of_times}");

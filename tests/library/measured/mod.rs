@@ -1,4 +1,4 @@
-//! Measured data: files that are read, files that are refused, and what a run says at the measured times.
+//! Measured data: accepted files, rejected files, and the values of a run at the measured times.
 
 mod broken;
 mod of_run;

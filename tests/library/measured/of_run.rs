@@ -1,11 +1,11 @@
-//! What a run says at the measured times.
+//! The values of a run at the measured times.
 
 use crate::support::scenarios::preset;
 use gyrolab::engine::data::{DataKind, TimeSeries, at_times, read};
 use gyrolab::engine::run::{Simulation, Truth};
 use std::sync::Arc;
 
-/// A series of these columns with a row at each of these times.
+/// A series of `columns` with a row at each of `times_s`.
 fn series(columns: &[&str], times_s: &[f64]) -> TimeSeries {
     let mut text = format!("t_s,{}\n", columns.join(","));
     for time_s in times_s {
@@ -23,7 +23,7 @@ fn values(series: &TimeSeries, preset_name: &str, set: &[&str]) -> Vec<Vec<f64>>
 }
 
 #[test]
-fn at_the_times_of_steps_it_is_what_the_run_exports() {
+fn values_at_steps_equal_the_exported_ones() {
     let times_s: Vec<f64> = (0..40).map(|step| f64::from(step) * 0.1).collect();
     let series = series(&["z_m", "azimuth_deg", "Lx_Js"], &times_s);
     for scheme in ["report", "strang", "exact"] {
@@ -43,8 +43,8 @@ fn at_the_times_of_steps_it_is_what_the_run_exports() {
 }
 
 #[test]
-fn between_steps_it_is_as_good_as_the_scheme() {
-    // Two thirds of a time step behind every step, a push in seconds and one in steps among them.
+fn values_between_steps_have_the_accuracy_of_the_scheme() {
+    // Two thirds of a time step after every step, with a push in seconds and one in steps.
     let times_s: Vec<f64> = (0..30)
         .map(|step| f64::from(step) * 0.02 + 0.0133)
         .collect();
@@ -64,7 +64,7 @@ fn between_steps_it_is_as_good_as_the_scheme() {
 }
 
 #[test]
-fn exact_does_not_need_the_time_step() {
+fn values_of_exact_do_not_depend_on_the_time_step() {
     let times_s = [0.0, 0.137, 0.137, 2.5, 90.0];
     let series = series(&["tilt_deg", "x_m", "Lz_Js"], &times_s);
     let coarse = values(
@@ -86,7 +86,7 @@ fn exact_does_not_need_the_time_step() {
 }
 
 #[test]
-fn the_motion_goes_on_behind_the_last_step_of_the_run() {
+fn values_after_the_last_step_continue_the_motion() {
     let series = series(&["tilt_deg", "azimuth_deg"], &[0.0, 5.0]);
     let short = values(&series, "method-1", &["motion.steps=1"]);
     assert_eq!(short, values(&series, "method-1", &[]));

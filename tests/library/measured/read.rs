@@ -1,4 +1,4 @@
-//! Files of measured data as they are read.
+//! Reading files of measured data.
 
 use gyrolab::engine::data::SHIPPED;
 use gyrolab::engine::data::{DataKind, MeasuredData, RunTable, TimeSeries, open, read};
@@ -71,7 +71,7 @@ fn a_table_of_runs_has_settings_and_readouts() {
 }
 
 #[test]
-fn a_spreadsheet_with_decimal_commas_is_read_as_it_is_meant() {
+fn decimal_commas_of_spreadsheets_are_recognized() {
     let with_commas = series("\u{feff}t_s;tilt_deg;;\r\n0;1,5;;\r\n2,25;-3,5e1;;\r\n;;;\r\n");
     assert_eq!(with_commas.times_s, [0.0, 2.25]);
     assert_eq!(with_commas.curves[0].points[1].value, -35.0);
@@ -80,7 +80,7 @@ fn a_spreadsheet_with_decimal_commas_is_read_as_it_is_meant() {
 }
 
 #[test]
-fn what_gyrolab_exports_is_measured_data_too() {
+fn exports_of_gyrolab_can_be_read_as_measured_data() {
     use gyrolab::engine::export::CsvWriter;
     use gyrolab::engine::export::layout::LayoutFile;
     let scenario = std::sync::Arc::new(crate::support::scenarios::preset("steady-slow", &[]));
@@ -105,7 +105,7 @@ fn what_gyrolab_exports_is_measured_data_too() {
 }
 
 #[test]
-fn the_data_that_come_with_the_program_are_read() {
+fn shipped_data_can_be_read() {
     for data in SHIPPED {
         let measured = open(data.name).unwrap_or_else(|problems| panic!("{problems}"));
         assert!(measured.about.contains("Heidelberg"), "{}", data.name);
@@ -113,9 +113,9 @@ fn the_data_that_come_with_the_program_are_read() {
     }
 }
 
-/// The gyroscope's file of phyphox as it writes it, in its five variants.
+/// The gyroscope file of phyphox in its five variants.
 #[test]
-fn a_recording_of_phyphox_is_read_as_it_is() {
+fn a_recording_of_phyphox_is_read_unchanged() {
     let names = "\"Time (s)\",\"Gyroscope x (rad/s)\",\"Gyroscope y (rad/s)\",\"Gyroscope z (rad/s)\",\"Absolute (rad/s)\"";
     let rows =
         "0.000000000E0,1.234567890E0,-2.5E-1,NaN,3.0E0\n1.000000000E-2,1.3E0,-2.0E-1,5.0E0,3.1E0\n";
@@ -145,7 +145,7 @@ fn a_recording_of_phyphox_is_read_as_it_is() {
 }
 
 #[test]
-fn a_text_that_tracker_exports_is_read_as_it_is() {
+fn an_export_of_tracker_is_read_unchanged() {
     for begin in ["", "#multi:\n"] {
         let series = series(&format!(
             "{begin}\tmass A\t\t\nt\tx\ty\t\n0.0\t1.5E-1\t-2\n0.033\t0.16\t-2.1\n"
@@ -163,7 +163,7 @@ fn a_text_that_tracker_exports_is_read_as_it_is() {
 }
 
 #[test]
-fn a_zip_is_told_to_be_unpacked() {
+fn a_zip_file_is_rejected_with_the_advice_to_unpack_it() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("phyphox.csv");
     std::fs::write(&path, b"PK\x03\x04\x14\x00\xff\xfe").unwrap();

@@ -1,4 +1,4 @@
-//! Files as other programs write them: names, units, columns and rows that are not read.
+//! Files from other programs: names, units, and skipped columns and rows.
 
 use gyrolab::engine::data::{ColumnOptions, ColumnSigma, MeasuredData, doubts, read, read_with};
 use gyrolab::engine::scenario::Document;
@@ -29,7 +29,7 @@ fn refusal(origin: &str, text: &str, map: &str) -> String {
     }
 }
 
-/// The names of the curves, and the times and values of the last row.
+/// Returns the time of the last row, and the names and values of its curves.
 #[track_caller]
 fn last(measured: &MeasuredData) -> (f64, Vec<(&'static str, f64)>) {
     let series = measured.series().unwrap();
@@ -93,13 +93,13 @@ fn known_spellings_are_read_with_their_units() {
         RATES[0].0
     );
     assert_eq!(measured.left_out, ["time"]);
-    // The accelerometer's file has the same columns.
+    // The file of the accelerometer has the same columns.
     let told = refusal("Accelerometer.csv", gyroscope, "");
     assert!(told.contains("--map "), "{told}");
 }
 
 #[test]
-fn tracker_is_read_with_units_and_without_titles() {
+fn tracker_files_are_read_with_units_and_without_titles() {
     let metres = vec![("x_m", 0.25), ("y_m", -0.125)];
     for text in [
         "t\tx\ty\t\n0\t0\t0\n0.5\t0.25\t-0.125\n",
@@ -116,7 +116,7 @@ const TRACKS: &str =
     "#multi:\n\tmass A\t\tmass B\t\t\nt\tx\ty\tx\ty\t\n0\t1\t2\t3\t4\n1\t5\t6\t7\t8\n";
 
 #[test]
-fn of_several_tracks_one_is_chosen() {
+fn one_of_several_tracks_is_chosen_by_a_map() {
     let told = refusal("trk.txt", TRACKS, "");
     for words in ["mass A", "mass B", "--map 2=x_m,3=y_m", "--map 4=x_m,5=y_m"] {
         assert!(told.contains(words), "{words}: {told}");
@@ -130,7 +130,7 @@ fn of_several_tracks_one_is_chosen() {
 }
 
 #[test]
-fn columns_that_are_not_known_are_left_out_and_named() {
+fn unknown_columns_are_skipped_and_named() {
     let text = "t_s,tilt_deg,ax,ay,az,temp,time,,title\n0,30,1,1,1,1,1,1,a\n";
     let measured = mapped(text, "");
     let left_out = ["ax", "ay", "az", "temp", "time", "column 8", "title"];
@@ -139,7 +139,7 @@ fn columns_that_are_not_known_are_left_out_and_named() {
 }
 
 #[test]
-fn a_mapped_file_is_not_refused_for_columns_that_are_not_mapped() {
+fn unmapped_columns_of_a_mapped_file_are_ignored() {
     let text = "time,clock,z,start.spin_rpm,spin_rpm,tilt_deg,tilt_deg,x_uncertainty_m,predicted_nutation_period_s\n\
                 0,12:00,1,2,fast,1,2,3,4\n1,12:01,2,2,slow,1,2,3,4\n";
     let measured = mapped(text, "z=z_cm");
@@ -148,14 +148,14 @@ fn a_mapped_file_is_not_refused_for_columns_that_are_not_mapped() {
 }
 
 #[test]
-fn a_map_takes_units_and_leaves_columns_out() {
+fn a_map_converts_units_and_skips_columns() {
     let euler = "t,theta,phi,x\n0,0.1,1,2\n0.5,0.5,1,2\n";
     let (_, values) = last(&mapped(euler, "theta=tilt_rad,x=-"));
     let degrees = (0.5_f64.to_degrees() * 1e9).round() / 1e9;
     assert_eq!(values, [("tilt_deg", degrees)]);
     let (time_s, _) = last(&mapped("T,theta\n0,1\n30,2\n", "T=t_min,theta=tilt_deg"));
     assert_eq!(time_s, 1800.0);
-    // The unit in the column's own name counts where the map states gyrolab's.
+    // If the map names the unit of gyrolab, the unit in the column name is converted.
     let (time_of_row_s, of_gyroscope) = last(&mapped(
         "when_ms,gx_dps\n500,100\n",
         "when_ms=t_s,gx_dps=w1_rad_per_s",
@@ -191,7 +191,7 @@ fn uncertainties_are_converted_with_their_columns() {
 }
 
 #[test]
-fn a_file_without_uncertainties_gets_them() {
+fn the_sigma_option_adds_uncertainties() {
     let text = "t_s,theta,x_m,x_uncertainty_m\n0,1,1,0.5\n1,2,2,\n";
     for (sigma, of_tilt) in [
         ("theta=0.1", 0.1_f64.to_degrees()),
@@ -226,7 +226,7 @@ fn a_file_without_uncertainties_gets_them() {
 }
 
 #[test]
-fn rows_before_the_start_are_left_out_and_counted() {
+fn rows_before_the_start_are_skipped_and_counted() {
     let text = "Time (s),Gyroscope x (rad/s)\n-1.616458334E-3,1\n8.0E-3,2\n1.8E-2,3\n";
     let mut measured = mapped(text, "");
     assert_eq!(measured.rows_before, 1);
@@ -244,7 +244,7 @@ fn rows_before_the_start_are_left_out_and_counted() {
     assert!(none.contains("begins at t = 0"), "{none}");
 }
 
-/// The options that a refusal prints.
+/// Returns the `--map` options in an error message.
 fn maps_in(told: &str) -> Vec<String> {
     let parts = told.split("--map ").skip(1);
     let words = parts.map(|part| shlex::split(part.lines().next().unwrap()).unwrap());
@@ -254,7 +254,7 @@ fn maps_in(told: &str) -> Vec<String> {
 }
 
 #[test]
-fn the_map_that_a_refusal_prints_reads_the_file() {
+fn the_map_suggested_by_an_error_reads_the_file() {
     for (text, map) in [
         ("zeitpunkt,neigung\n0,30\n1,31\n", ""),
         ("a,b,c\n0,30,1\n1,31,1\n", ""),
@@ -292,7 +292,7 @@ fn the_map_that_a_refusal_prints_reads_the_file() {
 }
 
 #[test]
-fn one_column_of_a_number_of_the_run_is_a_table() {
+fn a_single_column_of_readouts_is_a_table() {
     for text in [
         "predicted_nutation_period_s\n0.11\n0.12\n",
         "predicted_nutation_period_ms\n110\n\n120\n",
@@ -325,7 +325,7 @@ steps = 100
 "#;
 
 #[test]
-fn what_cannot_be_right_is_said_once() {
+fn implausible_values_are_reported_once() {
     let doubts_of = |set: &str, text: &str| {
         let mut document = Document::parse("top.toml", TOP).unwrap();
         document.set(set).unwrap();
@@ -341,7 +341,7 @@ fn what_cannot_be_right_is_said_once() {
     let radians = "t_s,tilt_deg\n0,0.5\n1,0.6\n";
     let told = doubts_of("start.tilt_deg=30", radians);
     assert!(told.len() == 1 && told[0].contains("tilt_rad"), "{told:?}");
-    // A top that begins almost upright falls.
+    // A top that starts almost upright falls.
     let of_falling = doubts_of("start.tilt_deg=1", "t_s,tilt_deg\n0,0.02\n0.9,1.6\n");
     assert!(
         of_falling.len() == 1 && of_falling[0].contains("tilt_rad"),
@@ -351,7 +351,7 @@ fn what_cannot_be_right_is_said_once() {
 }
 
 #[test]
-fn text_in_other_encodings_is_read_or_told_what_to_do() {
+fn text_in_other_encodings_is_read_or_rejected_with_a_remedy() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("lab.csv");
     let name = path.to_str().unwrap();
@@ -372,15 +372,15 @@ fn text_in_other_encodings_is_read_or_told_what_to_do() {
 }
 
 #[test]
-fn names_in_a_note_steer_no_terminal() {
+fn names_in_notes_are_escaped() {
     let notes = mapped("t_s,\u{1b}x (cm)\n0,1\n", "").notes().concat();
     assert!(notes.contains("as x_m (times 0.01)"), "{notes}");
     assert!(!notes.chars().any(is_steering), "{notes}");
 }
 
-/// The reader of rows that somebody's own program wrote is the same.
+/// Rows of the user's own program are read in the same way.
 #[test]
-fn rows_of_a_program_have_units_too() {
+fn rows_of_a_users_program_may_have_units() {
     use gyrolab::studies::own_code::rows;
     let read = |text: &str, map: &str| rows::read(text, &options(map, "").map, None, 0.1);
     for (text, map) in [
