@@ -87,13 +87,13 @@ fn readouts_of(scenario: Scenario) -> Readouts {
     Readouts::new(&simulation, &mut monitor, &health, None)
 }
 
-/// What a preset says of itself, in one text.
+/// Returns all texts of a preset as one text.
 fn words(name: &str) -> String {
     let file = preset_named(name, &[]).file;
     file.about.clone().unwrap() + file.viewed_text("look_at").unwrap()
 }
 
-/// A figure in a text of the preset `name`, whose place in `wanted` says with how many decimals: `{:.2}`.
+/// Asserts that a text of the preset `name` contains `wanted` with `number` in place of a format such as `{:.2}`.
 #[track_caller]
 fn figure(name: &str, wanted: &str, number: f64) {
     let (before, rest) = wanted.split_once("{:.").unwrap();
@@ -106,13 +106,13 @@ fn figure(name: &str, wanted: &str, number: f64) {
     );
 }
 
-/// Whether `wanted` stands in `text`, however its lines are broken.
+/// True if `text` contains `wanted`, regardless of line breaks.
 fn says(text: &str, wanted: &str) -> bool {
     text.replace('\n', " ").contains(wanted)
 }
 
 #[test]
-fn a_figure_that_is_changed_is_no_longer_found() {
+fn the_search_for_numbers_detects_a_changed_digit() {
     let text = words("wobble-push-accumulating");
     let (place, wanted) = (text.find("100 N at each").unwrap(), "grows by 100 N");
     assert!(says(&text, wanted));
@@ -124,7 +124,7 @@ fn a_figure_that_is_changed_is_no_longer_found() {
 }
 
 #[test]
-fn every_figure_in_the_texts_is_that_of_the_run() {
+fn numbers_in_the_texts_of_tops_match_their_runs() {
     let of = |name: &str| {
         let readouts = readouts(name);
         move |readout: &str| readouts.number(readout).unwrap()
@@ -242,8 +242,8 @@ fn every_figure_in_the_texts_is_that_of_the_run() {
     );
 }
 
-/// When the tilt of the preset `name` first comes back to a turning point of the kind it began at, and when it first
-/// reaches the other kind, s: by a parabola through the three rows around each.
+/// Returns the times, s, at which the tilt of the preset `name` first returns to a turning point of its initial kind and
+/// first reaches the other kind, from a parabola through the three rows around each.
 fn turning_points_s(name: &str, set: &[&str]) -> Vec<f64> {
     let scenario = preset_named(name, set);
     let dt = scenario.motion.time_step_s;
@@ -263,7 +263,7 @@ fn turning_points_s(name: &str, set: &[&str]) -> Vec<f64> {
 }
 
 #[test]
-fn the_figures_of_the_free_bodies_are_those_of_their_runs() {
+fn numbers_in_the_texts_of_free_bodies_match_their_runs() {
     let nut = turning_points_s("wing-nut", &[]);
     figure("wing-nut", "turns over every {:.3} s", nut[0]);
     figure("wing-nut", "at once, every {:.3} s", nut[0]);
@@ -276,7 +276,7 @@ fn the_figures_of_the_free_bodies_are_those_of_their_runs() {
     let edge = caught.number("tilt_deg").unwrap();
     figure("phone", "screen at {:.2} degrees", edge);
     let pass = readouts("rugby-pass");
-    // Free of forces the axle goes round L at |L|/I1, which theory gives about that axis.
+    // Without forces, the axle circles L at |L|/I1; theory states this rate about L.
     let about_momentum = pass.theory.unwrap().precession.unwrap();
     figure(
         "rugby-pass",
@@ -297,12 +297,12 @@ fn the_figures_of_the_free_bodies_are_those_of_their_runs() {
         "stays at {:.3} degrees",
         earth.number("tilt_deg").unwrap(),
     );
-    // 36 525 days of a century in a second.
+    // A century of 36 525 days in a second.
     figure("earth", "it would last {:.0} millionths", 1e6 / 36525.0);
 }
 
 #[test]
-fn the_figures_in_the_texts_are_those_of_the_runs() {
+fn numbers_in_the_other_texts_match_their_runs() {
     let swing = |name: &str| {
         let readouts = readouts(name);
         let number = |measure: &str| readouts.number(measure).unwrap();

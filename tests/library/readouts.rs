@@ -1,4 +1,4 @@
-//! The table of readouts: its names, what they hold, and that no text of the program ever shows what is no number.
+//! The table of readouts: names, values, and that no text of the program shows NaN or infinity.
 
 use crate::support::desk::Desk;
 use crate::support::dice::Dice;
@@ -22,7 +22,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// The readouts at the end of the run, and every row of it.
+/// Returns the readouts at the end of the run, and all its rows.
 fn played(scenario: &Scenario) -> (Readouts, Vec<gyrolab::engine::run::Sample>) {
     let scenario = Arc::new(scenario.clone());
     let mut simulation = Simulation::new(Arc::clone(&scenario));
@@ -50,7 +50,7 @@ fn json(readouts: &Readouts) -> serde_json::Value {
 }
 
 #[test]
-fn the_table_is_whole_and_its_names_say_their_units() {
+fn names_of_readouts_are_unique_and_end_with_their_units() {
     let unique: BTreeSet<_> = names().collect();
     assert_eq!(unique.len(), READOUTS.len());
     for readout in READOUTS {
@@ -77,7 +77,7 @@ fn the_table_is_whole_and_its_names_say_their_units() {
 }
 
 #[test]
-fn a_column_of_the_csv_is_the_readout_of_its_name() {
+fn csv_columns_equal_the_readouts_of_the_same_name() {
     let scenario = preset("wobble-push", &[]);
     let (readouts, rows) = played(&scenario);
     let last = rows.last().unwrap();
@@ -103,7 +103,7 @@ fn a_column_of_the_csv_is_the_readout_of_its_name() {
     }
 }
 
-/// Least and greatest of one number of the rows.
+/// Returns the minimum and maximum of one number over the rows.
 fn extremes(
     rows: &[gyrolab::engine::run::Sample],
     of: fn(&gyrolab::engine::run::Sample) -> f64,
@@ -127,7 +127,7 @@ fn expected_extremes(rows: &[gyrolab::engine::run::Sample]) -> [f64; 4] {
 }
 
 #[test]
-fn the_extremes_are_those_of_the_columns() {
+fn extremes_equal_those_of_the_columns() {
     for preset in PRESETS {
         let friction = self::preset(preset.name, &[]).friction;
         for scheme in true_to(friction) {
@@ -139,7 +139,7 @@ fn the_extremes_are_those_of_the_columns() {
             assert_eq!(told, expected_extremes(&rows), "{}, {scheme}", preset.name);
         }
     }
-    // Near the vertical and the horizontal, where the tilt's cosine or sine says little.
+    // Near the vertical and the horizontal, where the cosine or sine of the tilt is insensitive.
     let mut dice = Dice(0x9E37_79B9_7F4A_7C15);
     for _ in 0..100 {
         let tilt = dice.pick(&[0.0, 90.0, 180.0]) + dice.pick(&[0.0, 1e-9, 1e-5, -1e-7]);
@@ -154,7 +154,7 @@ fn the_extremes_are_those_of_the_columns() {
 }
 
 #[test]
-fn the_extremes_outlive_going_back_and_forth() {
+fn extremes_are_right_after_seeking_back_and_forth() {
     let scenario = preset("method-2", &[]);
     let (_, rows) = played(&scenario);
     let mut desk = Desk::with("method-2", scenario);
@@ -170,7 +170,7 @@ fn the_extremes_outlive_going_back_and_forth() {
     }
 }
 
-/// What theory says about an axis.
+/// Readouts of theory that refer to an axis.
 const ABOUT_THE_AXIS: &[&str] = &[
     "path",
     "predicted_lowest_tilt_deg",
@@ -183,7 +183,7 @@ const ABOUT_THE_AXIS: &[&str] = &[
 ];
 
 #[test]
-fn theory_names_its_axis() {
+fn theory_states_its_axis() {
     let upright = readouts(&preset("cusps", &[]));
     assert_eq!(json(&upright)["theory_axis"], "+z");
     assert!((upright.number("predicted_lowest_tilt_deg").unwrap() - 30.0).abs() < 1e-9);
@@ -211,7 +211,7 @@ fn theory_names_its_axis() {
         assert!(in_full.contains("in this run about +z"), "{in_full}");
         assert!(!in_full.contains("to 0.0000 degrees\n"), "{in_full}");
     }
-    // Without gravity, but with L along +z, it is +z that the axle goes round.
+    // Without gravity, but with L along +z, the axle circles +z.
     let torque_free = readouts(&preset("torque-free", &[]));
     assert_eq!(torque_free.theory.unwrap().axis, TheoryAxis::Z);
     assert!(
@@ -227,7 +227,7 @@ fn theory_names_its_axis() {
 const FREE: &str = "motion.gravity_m_per_s2=0";
 
 #[test]
-fn a_strobed_nutation_is_named_with_theory_or_without() {
+fn an_under_sampled_nutation_is_reported_with_and_without_theory() {
     let resolved = |scenario: &Scenario| json(&readouts(scenario))["nutation_is_resolved"].clone();
     let lopsided = |spin: &str, step: &str| {
         let spin = format!("start.momentum_Js=[0,0,{spin}]");
@@ -249,10 +249,10 @@ fn a_strobed_nutation_is_named_with_theory_or_without() {
             preset("cusps", &[FREE, &step, &scheme, "motion.steps=20"])
         };
         assert_eq!(resolved(&free("1")), false, "{scheme}");
-        // The axle goes round L 60/6.6 rad in a second, faster or slower than the body turns.
+        // The axle circles L at 60/6.6 rad/s, faster or slower than the body turns.
         assert_eq!(resolved(&free("0.36")), false, "{scheme}");
         assert!(resolved(&free("0.001")).is_null(), "{scheme}");
-        // A flat body's axle goes round L faster than the body turns: 3.6 rad a step, and 2.7.
+        // The axle of a flat body circles L faster than the body turns: 3.6 rad per step, and 2.7.
         let flat = [
             FREE,
             "body.rim.height_m=0.3",
@@ -270,7 +270,7 @@ fn a_strobed_nutation_is_named_with_theory_or_without() {
 }
 
 #[test]
-fn the_drift_of_a_balanced_body_is_measured_by_its_kinetic_energy() {
+fn the_drift_of_a_balanced_body_is_relative_to_kinetic_energy() {
     let balanced = |height: &str, momentum: &str| {
         let height = format!("body.rim.height_m={height}");
         let momentum = format!("start.momentum_Js={momentum}");
@@ -299,13 +299,13 @@ fn the_drift_of_a_balanced_body_is_measured_by_its_kinetic_energy() {
     let heavy = EnergyScale::find(&balanced("1", "[0,-30,60]")).unwrap();
     assert_eq!(heavy.unit, EnergyUnit::Weight);
     assert!((heavy.size - 49.0).abs() < 1e-9);
-    // At rest, and balanced but for rounding: there is nothing to measure by.
+    // At rest and balanced up to rounding, there is no energy scale.
     let rest = balanced("1e-16", "[0,0,0]");
     assert_eq!(EnergyScale::find(&rest), None);
     assert_eq!(readouts(&rest).health.energy_drift, None);
 }
 
-/// A text for people that shows something that is no number, or digits that nobody reads.
+/// Returns the first NaN, infinity or overlong number in a text, if any.
 fn blemish(text: &str) -> Option<String> {
     let mut words = text.split(|c: char| !(c.is_alphanumeric() || "._+-".contains(c)));
     words
@@ -319,7 +319,7 @@ fn blemish(text: &str) -> Option<String> {
 }
 
 #[test]
-fn theory_of_a_top_that_is_pulled_up_is_about_z_as_what_is_measured() {
+fn theory_of_an_upward_pulled_top_is_about_z_like_the_measurement() {
     let names: Vec<_> = "precession_rad_per_s nutation_period_s lowest_tilt_deg highest_tilt_deg"
         .split(' ')
         .collect();
@@ -342,7 +342,7 @@ fn theory_of_a_top_that_is_pulled_up_is_about_z_as_what_is_measured() {
     }
 }
 
-/// What is changed in a preset so that its numbers come to the edge of their range.
+/// Settings that bring the numbers of a preset to the limits of their range.
 const EXTREME: &[&[&str]] = &[
     &["motion.gravity_m_per_s2=5e-324"],
     &["motion.gravity_m_per_s2=1e300"],
@@ -384,10 +384,10 @@ const EXTREME: &[&[&str]] = &[
     &["body.point.1.at_m=[0,0,1e-300]", "trace=top"],
 ];
 
-/// The presets that are taken to the edge.
+/// The presets that are brought to these limits.
 const BEGUN_FROM: [&str; 3] = ["cusps", "method-2", "torque-free"];
 
-/// Each preset with each of the settings and `more` of them, but for those that are refused.
+/// Returns each preset with each of the settings and `more`, without rejected combinations.
 fn extreme_scenarios(more: &[&str]) -> Vec<(String, Scenario)> {
     let all = BEGUN_FROM
         .iter()
@@ -403,7 +403,7 @@ fn extreme_scenarios(more: &[&str]) -> Vec<(String, Scenario)> {
 }
 
 #[test]
-fn no_text_shows_what_is_no_number() {
+fn no_text_shows_nan_or_infinity() {
     let mut looked_at = 0;
     for scheme in SCHEMES {
         let scheme = format!("motion.scheme={}", scheme.name);
@@ -426,17 +426,17 @@ fn no_text_shows_what_is_no_number() {
     assert!(looked_at > 200, "{looked_at}");
 }
 
-/// The lab on a large screen, at the end of the run.
+/// Returns the picture of the lab on a large screen at the end of the run.
 fn picture(scenario: &Scenario) -> String {
     let mut desk = Desk::with("x.toml", scenario.clone());
     let _ = desk
         .lab
-        .begin_at(scenario.steps, |_, _| ControlFlow::Continue(())); // where its numbers end it stays there
+        .begin_at(scenario.steps, |_, _| ControlFlow::Continue(())); // stops at the last finite step
     screen::text(&desk.lab, true, (200, 50))
 }
 
 #[test]
-fn no_table_shows_what_is_no_number() {
+fn no_table_shows_nan_or_infinity() {
     for (case, scenario) in extreme_scenarios(&["motion.steps=8"]) {
         let schemes: Vec<_> = SCHEMES.iter().collect();
         let step = scenario.motion.time_step_s;

@@ -1,7 +1,7 @@
-//! The report's scheme against an independent program of it (Octave, written from the report's section 3).
+//! The report's scheme compared with an independent implementation (Octave, written from section 3 of the report).
 //!
-//! `tests/reference/*.csv` are that program's trajectories: step, t, the axle's top, L. Two right implementations
-//! differ by rounding alone, which these motions carry to 6e-10 m at most.
+//! `tests/reference/*.csv` contain the trajectories of that program: step, t, top of the axle, L. Two correct
+//! implementations differ only by rounding, which these motions amplify to at most 6e-10 m.
 
 #![allow(clippy::expect_used)]
 
@@ -10,7 +10,7 @@ use gyrolab::engine::run::Simulation;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Rows of step, t, x, y, z, Lx, Ly, Lz.
+/// Returns the rows of a reference: step, t, x, y, z, Lx, Ly, Lz.
 fn reference(name: &str) -> Vec<[f64; 8]> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("tests/reference")
@@ -21,7 +21,7 @@ fn reference(name: &str) -> Vec<[f64; 8]> {
         .collect()
 }
 
-/// Largest deviations in position (m) and momentum (J s) over all rows of the reference.
+/// Returns the largest deviations in position (m) and momentum (J s) over all rows of the reference.
 fn deviations(name: &str) -> (f64, f64) {
     let mut simulation = Simulation::new(Arc::new(preset(name, &[])));
     let (mut of_position, mut of_momentum) = (0.0f64, 0.0f64);

@@ -1,5 +1,5 @@
-//! What is refused, and in which words: every message names the file, the line, the key and the rule, so that one who
-//! has never seen the code can act on it.
+//! Error messages for scenarios: each names file, line, key and rule, so that a user who has never seen the code can act
+//! on it.
 
 use crate::support::words::{has, has_all};
 use gyrolab::engine::scenario::dotted::set_key;
@@ -10,7 +10,7 @@ use std::fs;
 use std::path::Path;
 use toml::{Table, Value};
 
-/// A run file with every table and every key but those that exclude each other; [`SECONDS`] has the rest.
+/// A run file with every table and every key, except alternatives; [`SECONDS`] has the rest.
 const WHOLE: &str = r#"title = "A top"
 about = "About it."
 source = "a book"
@@ -55,7 +55,7 @@ step = 40
 set = { "push.0.force_N" = [0, 0, -50] }
 "#;
 
-/// `[[push]]` in seconds, to stand in the place of line 26 to 28.
+/// The times of a `[[push]]` in seconds, which replace lines 26 to 28.
 const SECONDS: &str = "from_s = 0\nfor_s = 2\n";
 
 fn refusal(text: &str) -> String {
@@ -65,22 +65,22 @@ fn refusal(text: &str) -> String {
     }
 }
 
-/// `text` with the line of that number (from 1) replaced.
+/// Returns `text` with line `number` (from 1) replaced.
 fn with_line(text: &str, number: usize, new: &str) -> String {
     let mut lines: Vec<_> = text.lines().collect();
     lines[number - 1] = new;
     lines.join("\n")
 }
 
-/// The refusal of the whole file with these lines replaced.
+/// Returns the error message for [`WHOLE`] with these lines replaced.
 fn mistakes(lines: &[(usize, &str)]) -> String {
     refusal(&lines.iter().fold(WHOLE.to_owned(), |text, (at, new)| {
         with_line(&text, *at, new)
     }))
 }
 
-/// The line that is replaced, what stands there instead, and the refusal: its line (0: the file as a whole), how it goes on (the
-/// key first), and what else is in it.
+/// Mistakes: the replaced line, its replacement, and the expected message: line (0: whole file), beginning (from the key
+/// on), and other words in it.
 #[rustfmt::skip]
 const TABLE: &[(usize, &str, usize, &str, &str)] = &[
     // not TOML
@@ -139,7 +139,7 @@ const TABLE: &[(usize, &str, usize, &str, &str)] = &[
     (36, "", 32, "expected.0.tolerance: is missing", ""),
     (38, "", 37, "edit.0.step: is missing", ""),
     (39, "", 37, "edit.0.set: is missing", ""),
-    // wrong types; every key is asked below
+    // wrong types; another test covers every key
     (1, "title = 3", 1, "title (3) must be text, not a number", ""),
     (2, "about = true", 2, "about (true) must be text, not true or false", ""),
     (3, "source = [\"a\"]", 3, "source ([\"a\"]) must be text, not an array", ""),
@@ -243,7 +243,7 @@ const TABLE: &[(usize, &str, usize, &str, &str)] = &[
     (13, "[[body.part]]\ninner_radius_m = -1", 14, "body.part.0.inner_radius_m (-1) must not be negative", ""),
     (13, "[[body.part]]\nouter_radius_m = 0", 14, "body.part.0.outer_radius_m (0) must be greater than zero", ""),
     (13, "[[body.part]]\nradius = 1", 14, "body.part.0.radius: unknown key", "did you mean radius_m?"),
-    // starts by an angular velocity, and a rotor
+    // starts with an angular velocity, and a rotor
     (17, "omega_rad_per_s = [0, 0, 1]", 17, "start.omega_rad_per_s ([0.0, 0.0, 1.0]) is given in addition to momentum_Js", "keep only one"),
     (17, "omega_frame = \"bdy\"", 17, "start.omega_frame (\"bdy\") must be one of world, body", ""),
     (13, "[[body.part]]\nabout = \"pvot\"", 14, "body.part.0.about (\"pvot\") must be one of center, pivot", "did you mean pivot?"),
@@ -273,7 +273,7 @@ fn check_refusal(text: &str, line: usize, begin: &str, words: &str) -> Result<()
         0 => "file.toml: ".to_owned(),
         line => format!("file.toml:{line}: "),
     };
-    // The first of several problems need not be the one that is looked for.
+    // The expected problem need not be the first of several.
     let named = message
         .lines()
         .any(|one| one.starts_with(&format!("{place}{begin}")));
@@ -288,7 +288,7 @@ fn check_refusal(text: &str, line: usize, begin: &str, words: &str) -> Result<()
 }
 
 #[test]
-fn the_whole_file_is_good() {
+fn the_reference_file_is_valid() {
     let good = |text: &str| {
         Document::parse("file.toml", text)
             .and_then(|document| document.scenario())
@@ -304,7 +304,7 @@ fn seconds() -> String {
 }
 
 #[test]
-fn every_refusal_names_line_key_and_rule() {
+fn every_error_names_line_key_and_rule() {
     let mut wrong = Vec::new();
     for &(at, new, line, begin, words) in TABLE {
         if let Err(text) = check_refusal(&with_line(WHOLE, at, new), line, begin, words) {
@@ -315,7 +315,7 @@ fn every_refusal_names_line_key_and_rule() {
 }
 
 #[test]
-fn pushes_in_seconds() {
+fn mistakes_in_pushes_in_seconds_are_reported() {
     #[rustfmt::skip]
     let table: &[(usize, &str, usize, &str)] = &[
         (26, "from_s = -1", 26, "push.0.from_s (-1) must not be negative"),
@@ -333,9 +333,9 @@ fn pushes_in_seconds() {
     }
 }
 
-/// A date is a value of no kind.
+/// No key accepts a date.
 #[test]
-fn every_key_refuses_a_value_of_another_kind() {
+fn every_key_rejects_a_value_of_another_type() {
     for row in KEYS {
         let key = row.path.replace('*', "0");
         let mut table: Table = WHOLE.parse().unwrap();
@@ -367,7 +367,7 @@ fn without_top_the_farthest_point_is_traced() {
         traced(&(hub.clone() + &point("top", 0.25))),
         ("top".to_owned(), 0.25)
     );
-    // Of points as far away the first; a point at the pivot shows no path.
+    // Of equally distant points, the first is traced. A point at the pivot has no path.
     assert_eq!(
         traced(&(hub + &point("other", -0.5))),
         ("hub".to_owned(), 0.5)
@@ -378,7 +378,7 @@ fn without_top_the_farthest_point_is_traced() {
 }
 
 #[test]
-fn a_scenario_without_its_tables() {
+fn missing_tables_of_a_scenario_are_reported() {
     check_refusal("", 0, "start: is missing", "[start]").unwrap();
     check_refusal("", 0, "motion: is missing", "at the end of the file").unwrap();
     check_refusal("", 0, "title: is missing", "name of the scenario").unwrap();
@@ -386,7 +386,7 @@ fn a_scenario_without_its_tables() {
     let bare =
         "title = 'x'\n[start]\nmomentum_Js = [0, 0, 1]\n[motion]\ntime_step_s = 0.1\nsteps = 3\n";
     check_refusal(bare, 0, "body: ", "singular inertia").unwrap();
-    // All the mass on one line, but not on the axle.
+    // All mass is on one line, but not on the axle.
     let line = format!(
         "{bare}[[body.point]]\nname = 'top'\nat_m = [1, 2, 3]\nmass_kg = 1\n[[body.point]]\nname = 'hub'\nat_m = [-2, -4, -6]\nmass_kg = 1\n"
     );
@@ -394,7 +394,7 @@ fn a_scenario_without_its_tables() {
 }
 
 #[test]
-fn lines_are_right_after_windows_line_ends_and_a_byte_order_mark() {
+fn line_numbers_are_right_with_crlf_and_a_byte_order_mark() {
     let broken = with_line(WHOLE, 21, "time_step_s = 0");
     let rule = "motion.time_step_s (0) must be greater than zero";
     let of_windows = broken.replace('\n', "\r\n");
@@ -405,7 +405,7 @@ fn lines_are_right_after_windows_line_ends_and_a_byte_order_mark() {
 }
 
 #[test]
-fn all_that_is_wrong_is_told_at_once_in_the_order_of_the_file() {
+fn all_problems_are_reported_in_file_order() {
     let message = mistakes(&[
         (21, "time_step_s = 0"),
         (6, "points = 0"),
@@ -416,9 +416,9 @@ fn all_that_is_wrong_is_told_at_once_in_the_order_of_the_file() {
     assert!(lines.eq(places), "{message}");
 }
 
-/// However long or deep or numerous the nonsense is, the answer is short, and it comes.
+/// Long, deep or numerous mistakes get a short message in reasonable time.
 #[test]
-fn hostile_sizes_get_short_answers() {
+fn huge_invalid_files_get_short_messages() {
     let points = |row: &str| WHOLE.to_owned() + &format!("[[body.point]]\n{row}\n").repeat(50_000);
     let named = |count: usize| {
         (0..count)
@@ -456,7 +456,7 @@ fn read_refusal(path: &Path) -> String {
 }
 
 #[test]
-fn files_that_are_no_scenarios() {
+fn files_that_are_not_scenarios_are_rejected() {
     let lab = tempfile::tempdir().unwrap();
     let header = with_line(WHOLE, 21, "time_step_s = 0")
         .trim_end()
@@ -537,7 +537,7 @@ fn set(arguments: &[&str]) -> Result<(), String> {
 }
 
 #[test]
-fn settings_that_are_refused() {
+fn invalid_settings_are_rejected() {
     #[rustfmt::skip]
     let table: &[(&str, &str)] = &[
         ("motion.time_step_s", "must be KEY=VALUE"),
@@ -605,7 +605,7 @@ fn settings_that_are_refused() {
 }
 
 #[test]
-fn settings_that_are_good() {
+fn valid_settings_are_accepted() {
     for arguments in [
         &["motion.time_step_s=0.05"][..],
         &[" motion.time_step_s = 0.05 "],
@@ -627,9 +627,9 @@ fn settings_that_are_good() {
     }
 }
 
-/// Wrong values, unknown keys and names that the body does not have are told together.
+/// Wrong values, unknown keys and unknown names are reported together.
 #[test]
-fn every_mistake_is_told_at_once() {
+fn all_kinds_of_mistakes_are_reported_together() {
     let value = (21, "time_step_s = -1");
     let told = mistakes(&[value, (24, "point = \"topp\""), (4, "trace = \"tpo\"")]);
     has_all(
@@ -641,7 +641,7 @@ fn every_mistake_is_told_at_once() {
         ],
     );
     assert_eq!(told.lines().count(), 3, "{told}");
-    // Two names; a name and a push that says no time; a name and a start told twice.
+    // Two names; a name and a push without a time; a name and a start given twice.
     for (other, words) in [
         ((4, "trace = \"tpo\""), "trace"),
         ((27, ""), "push.0: has no duration"),
@@ -651,14 +651,14 @@ fn every_mistake_is_told_at_once() {
         has_all(&both, ["push.0.point", words]);
         assert_eq!(both.lines().count(), 2, "{both}");
     }
-    // Where the body is wrong, nobody knows its points.
+    // If the body is invalid, its points are unknown.
     let of_body = mistakes(&[(24, "point = \"topp\""), (6, "points = 0")]);
     assert!(!of_body.contains("topp"), "{of_body}");
 }
 
-/// Of many wrong names the first hundred are told, and the nearest is sought for no other.
+/// Only the first hundred wrong names are reported, and a nearest name is searched only for them.
 #[test]
-fn thousands_of_wrong_names_are_refused_at_once() {
+fn thousands_of_wrong_names_are_reported_quickly() {
     let points: String = (0..2_500)
         .map(|index| format!("[[body.point]]\nname = \"p{index}\"\nat_m = [0, 0, 1]\n"))
         .collect();

@@ -1,5 +1,5 @@
-//! A run is its scenario and its journal: whatever the user does in whatever order, the saved run file replays it bit for
-//! bit, and returning to an earlier step and going forward again gives the same numbers.
+//! A run is its scenario and its journal: after any actions in any order, the saved run file replays the run bit for bit,
+//! and seeking back and forth gives the same numbers.
 
 use crate::support::desk::{Desk, commands};
 use crate::support::scenarios::preset;
@@ -14,7 +14,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// What a user may do.
+/// Possible actions of a user.
 const DEEDS: &[&str] = &[
     "run = true",
     "pause = true",
@@ -45,7 +45,7 @@ const DEEDS: &[&str] = &[
     "next_push = { for_s = 0.3 }",
 ];
 
-/// The bits of every number of a step.
+/// Returns the bits of every number of the current step.
 fn bits(simulation: &Simulation) -> Vec<u64> {
     let (state, sample) = (simulation.state(), simulation.sample());
     let numbers = state.orientation.iter().chain(state.momentum.iter());
@@ -63,7 +63,7 @@ fn bits(simulation: &Simulation) -> Vec<u64> {
 
 fn replayed(scenario: Scenario, step: u64) -> Vec<u64> {
     let mut simulation = Simulation::new(Arc::new(scenario));
-    let _ = simulation.step_to(step); // a run that ends stays where it ended, as the lab's does
+    let _ = simulation.step_to(step); // a run that ends stays at its last step, like in the lab
     bits(&simulation)
 }
 
@@ -71,7 +71,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(96))]
 
     #[test]
-    fn any_actions_are_replayed_from_their_run_file(
+    fn run_files_replay_any_actions_bit_for_bit(
         preset in prop::sample::select(vec!["method-2", "wobble-push", "wobble-push-accumulating", "cusps", "falling"]),
         scheme in prop::sample::select(scheme::names().to_vec()),
         deeds in prop::collection::vec(0..DEEDS.len(), 1..40),
@@ -82,7 +82,7 @@ proptest! {
         desk.commands(&format!("set = {{ 'motion.scheme' = '{scheme}' }}"));
         for deed in deeds {
             for command in commands(DEEDS[deed]) {
-                let _ = desk.carry_out(&command); // what cannot be done here is not done
+                let _ = desk.carry_out(&command); // impossible actions are skipped
             }
         }
         let here = bits(desk.simulation());
@@ -96,7 +96,7 @@ proptest! {
     }
 
     #[test]
-    fn back_and_forward_again_lead_through_the_same_numbers(
+    fn seeking_back_and_forth_gives_the_same_numbers(
         preset in prop::sample::select(vec!["method-2", "wobble-push", "wobble-push-accumulating", "loops"]),
         scheme in prop::sample::select(scheme::names().to_vec()),
         way in prop::collection::vec(0u64..3000, 2..30),
@@ -146,7 +146,7 @@ proptest! {
 }
 
 #[test]
-fn a_run_whose_numbers_have_ended_goes_on_once_it_is_mended() {
+fn a_run_that_broke_down_continues_after_a_fix() {
     let folder = tempfile::tempdir().unwrap();
     let mut desk = Desk::open("method-2");
     desk.lab.files_mut().work_in(folder.path());
@@ -161,7 +161,7 @@ fn a_run_whose_numbers_have_ended_goes_on_once_it_is_mended() {
 }
 
 #[test]
-fn an_edit_after_which_no_step_is_finite_is_taken_back_without_a_trace() {
+fn undoing_an_edit_that_breaks_the_run_restores_it_exactly() {
     let folder = tempfile::tempdir().unwrap();
     let mut desk = Desk::open("wobble-push");
     desk.lab.files_mut().work_in(folder.path());
@@ -175,7 +175,7 @@ fn an_edit_after_which_no_step_is_finite_is_taken_back_without_a_trace() {
 }
 
 #[test]
-fn the_traces_of_a_long_run_are_whole_and_fine_after_every_seek() {
+fn traces_of_a_long_run_are_complete_and_fine_after_every_seek() {
     let motion = ["motion.time_step_s=0.001", "motion.steps=400000"];
     let set = [&motion[..], &["push.0.steps=150000"]].concat();
     let scenario = Arc::new(preset("wobble-push", &set));

@@ -1,4 +1,4 @@
-//! What an edit by hand does: it begins the run again with the new value, and plays it to the same time.
+//! Edits in the lab: they rerun with the new value to the same time.
 
 use crate::support::desk::{Desk, commands};
 use crate::support::stage::{SMALL, Stage};
@@ -15,7 +15,7 @@ fn desk_at(name: &str, time: &str) -> Desk {
     desk
 }
 
-/// Selects the value `name` and types `text` into its field; `keys` end it.
+/// Selects the value `name`, types `text` into its field and presses `keys`.
 fn edit(desk: &mut Desk, name: &str, text: &str, keys: &[Key]) {
     desk.type_text("/");
     desk.type_text(name);
@@ -63,23 +63,23 @@ fn dt_scheme_gravity_body_and_start_rerun_to_the_same_time() {
 }
 
 #[test]
-fn tab_in_the_field_changes_the_value_from_now_on() {
+fn tab_in_the_field_applies_the_value_from_now_on() {
     let mut desk = desk_at("method-2", "40 s");
     edit(&mut desk, "dt", "0.05", &[Key::Tab, Key::Enter]);
     assert_eq!((desk.step(), previous_s(&desk)), (400, None));
     assert_eq!(desk.scenario().file.edit[0].step, 400);
     assert_eq!(desk.lab.player().motion().time_step_s, 0.05);
-    // A second Tab goes back to the start.
+    // A second Tab switches back to the start.
     edit(&mut desk, "gravity", "5", &[Key::Tab, Key::Tab, Key::Enter]);
     assert_eq!(previous_s(&desk), Some(40.0));
     let file = desk.scenario().file;
     assert_eq!(file.motion.gravity_m_per_s2, Some(5.0));
-    // What was changed on the way stays there.
+    // The edit at the later step stays there.
     assert_eq!((file.edit.len(), file.edit[0].step), (1, 400));
 }
 
 #[test]
-fn the_field_says_what_enter_and_tab_do() {
+fn the_field_explains_enter_and_tab() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.wait(2.0).commands("pause = true");
     stage.press("/dt\n");
@@ -94,14 +94,14 @@ fn the_field_says_what_enter_and_tab_do() {
 }
 
 #[test]
-fn pushes_stay_at_their_times() {
+fn pushes_keep_their_times_in_a_rerun() {
     let mut desk = desk_at("method-2", "10 s");
     desk.commands("push = { force_N = [0, 0, -50], for_s = 2 }\ngo_to = '40 s'");
     edit(&mut desk, "dt", "0.05", &[Key::Enter]);
     let push = &desk.scenario().file.push[0];
     assert_eq!((push.from_s, push.for_s), (Some(10.0), Some(2.0)));
     assert_eq!(time_s(&desk), 40.0);
-    // Those that are counted in steps keep their seconds too, and so does the run.
+    // Pushes counted in steps keep their seconds, and so does the run.
     let mut pushed = desk_at("wobble-push", "40 s");
     let end_s = pushed.lab.player().end_s;
     edit(&mut pushed, "dt", "0.05", &[Key::Enter]);
@@ -111,7 +111,7 @@ fn pushes_stay_at_their_times() {
 }
 
 #[test]
-fn a_push_of_the_scenario_is_edited_from_the_start() {
+fn editing_a_push_of_the_scenario_reruns_from_the_start() {
     let mut desk = desk_at("wobble-push", "40 s");
     edit(&mut desk, "push fz", "-50", &[Key::Enter]);
     assert_eq!(desk.scenario().file.push[0].force_N[2], -50.0);
@@ -119,7 +119,7 @@ fn a_push_of_the_scenario_is_edited_from_the_start() {
 }
 
 #[test]
-fn a_push_that_grows_by_steps_refuses_another_time_step_and_says_why() {
+fn an_accumulating_push_rejects_another_time_step_with_a_reason() {
     let mut desk = desk_at("wobble-push-accumulating", "2 s");
     let before = desk.scenario().file;
     desk.type_text("/dt");
@@ -134,7 +134,7 @@ fn a_push_that_grows_by_steps_refuses_another_time_step_and_says_why() {
 }
 
 #[test]
-fn nudges_by_keys_rerun_and_are_one_undo() {
+fn nudges_by_keys_rerun_and_are_undone_as_one() {
     let mut desk = desk_at("method-2", "40 s");
     desk.type_text("/gravity");
     desk.press(&[Key::Right, Key::Right, Key::Left, Key::Right]);
@@ -148,7 +148,7 @@ fn nudges_by_keys_rerun_and_are_one_undo() {
 }
 
 #[test]
-fn a_running_lab_goes_on_from_the_same_time() {
+fn a_running_lab_continues_from_the_same_time() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.wait(2.0);
     let stood = stage.lab.player().run().now().time_s;
@@ -159,7 +159,7 @@ fn a_running_lab_goes_on_from_the_same_time() {
 }
 
 #[test]
-fn files_of_commands_rerun_where_they_say_so() {
+fn command_files_rerun_only_on_request() {
     let text = "[[do]]\nset = { 'motion.time_step_s' = 0.05 }\nrerun = true\n";
     let read = |commands_text: &str| {
         let document = gyrolab::engine::scenario::Document::parse("a.toml", commands_text).unwrap();
@@ -181,7 +181,7 @@ fn files_of_commands_rerun_where_they_say_so() {
     );
     let written = Command::Rerun(toml::Table::from_iter([("title".to_owned(), "x".into())]));
     assert_eq!(written.to_table()["rerun"], toml::Value::Boolean(true));
-    // Without it, `set` acts from the next step on, as in a run file.
+    // Without `rerun`, `set` takes effect from the next step on, as in a run file.
     let mut edited = desk_at("method-2", "40 s");
     for command in commands("set = { 'motion.time_step_s' = 0.05 }") {
         edited.carry_out(&command).unwrap();
@@ -189,9 +189,9 @@ fn files_of_commands_rerun_where_they_say_so() {
     assert_eq!(edited.scenario().file.edit[0].step, 400);
 }
 
-/// The header, the line about the numbers and the journal state the same time step at every step, on both sides of an edit.
+/// Header, verdict and journal state the same time step on both sides of an edit.
 #[test]
-fn header_status_and_journal_agree_on_the_time_step() {
+fn header_verdict_and_journal_agree_on_the_time_step() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.commands("pause = true\ngo_to = 40\nset = { 'motion.time_step_s' = 0.05 }");
     for (place, time_step, turns) in [
@@ -229,7 +229,7 @@ fn a_restart_does_not_move_the_view() {
 }
 
 #[test]
-fn another_run_opened_over_an_edited_one_is_one_undo_away() {
+fn undo_returns_to_an_edited_run_after_opening_another() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.wait(2.0).commands("pause = true");
     stage.press("ocusps\n").shows_no("u returns to it");

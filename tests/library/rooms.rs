@@ -1,14 +1,13 @@
-//! The order of the folders: no import leads upward. The boundaries of the crates are held by the compiler; these are the
-//! modules within a crate.
+//! The order of the modules within a crate: no import leads upward. The compiler enforces the boundaries of the crates.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The modules of the program from the lowest to the highest: each may import those before it.
+/// The modules of the program from lowest to highest: each may import the earlier ones.
 const PROGRAM: [&str; 10] = [
     "physics", "engine", "plot", "studies", "report", "lab", "lessons", "class", "tui", "cli",
 ];
-/// The same of the engine.
+/// The modules of the engine, in the same order.
 const ENGINE: [&str; 11] = [
     "text",
     "cores",
@@ -34,7 +33,7 @@ fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
     }
 }
 
-/// The imports of the modules in `folder` that lead upward in `order`, a line each.
+/// Returns one line for each import in `folder` that leads upward in `order`.
 fn upward(folder: &Path, order: &[&str]) -> Vec<String> {
     let place = |name: &str| order.iter().position(|module| *module == name);
     let mut found = Vec::new();

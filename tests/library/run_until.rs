@@ -1,4 +1,4 @@
-//! `run_until`: the numbers that a condition can name, and the step at which the run stops.
+//! `run_until`: the numbers allowed in a condition, and the step at which the run stops.
 
 use crate::support::desk::{Desk, commands};
 use crate::support::scenarios::preset;
@@ -10,7 +10,7 @@ use gyrolab::lab::command;
 use gyrolab::lab::playback::live::LiveRun;
 use std::sync::Arc;
 
-/// The lab after a run of `name` until `condition`, without a clock.
+/// Plays `name` until `condition` in a lab without a clock.
 fn played(name: &str, condition: &str) -> (Desk, Result<(), String>) {
     let mut desk = Desk::open(name);
     let text = format!("[[do]]\nrun_until = \"{condition}\"");
@@ -22,7 +22,7 @@ fn played(name: &str, condition: &str) -> (Desk, Result<(), String>) {
     (desk, end)
 }
 
-/// Why a file with this condition is refused.
+/// Returns the error message for a command file with this condition.
 fn refusal(condition: &str) -> String {
     let text = format!("[[do]]\nrun_until = \"{condition}\"");
     let document = Document::parse("demo.toml", &text).unwrap();
@@ -30,7 +30,7 @@ fn refusal(condition: &str) -> String {
 }
 
 #[test]
-fn the_first_row_whose_running_maximum_is_above_the_limit() {
+fn run_until_stops_at_the_first_row_above_a_limit() {
     let (desk, end) = played("wobble-push", "measured_highest_tilt_deg > 50");
     assert_eq!(end, Ok(()));
     let tilt = CsvColumn::find("tilt_deg").unwrap();
@@ -48,7 +48,7 @@ fn the_first_row_whose_running_maximum_is_above_the_limit() {
 }
 
 #[test]
-fn numbers_of_theory_of_the_exact_motion_and_of_measuring() {
+fn conditions_may_use_theory_the_exact_motion_and_measurements() {
     for (name, condition) in [
         ("wobble-push", "distance_m > 0.05"),
         ("cusps", "measured_nutation_period_s > 0"),
@@ -84,7 +84,7 @@ fn numbers_of_theory_of_the_exact_motion_and_of_measuring() {
 }
 
 #[test]
-fn a_name_that_is_no_number_is_refused_with_the_nearest() {
+fn a_name_without_a_number_is_rejected_with_the_nearest_name() {
     for (condition, told) in [
         (
             "distance > 1",
@@ -108,7 +108,7 @@ fn a_name_that_is_no_number_is_refused_with_the_nearest() {
 }
 
 #[test]
-fn what_is_read_again_alone_is_what_is_read_with_everything() {
+fn a_readout_read_alone_equals_the_one_read_with_all() {
     for (name, steps) in [("wobble-push", 300), ("cusps", 500), ("method-2", 120)] {
         let mut run = LiveRun::new(Arc::new(preset(name, &[])));
         let first = run.readouts();

@@ -1,4 +1,4 @@
-//! From where the pictures in space are seen, and what they show after a scheme broke down.
+//! The camera of the 3-D view, and its contents after a scheme broke down.
 
 use crate::support::stage::{LARGE, SMALL, Stage};
 use gyrolab::lab::view::Pane;
@@ -7,7 +7,7 @@ use gyrolab::tui::keymap::Key;
 use gyrolab::tui::screen;
 use ratatui::layout::Rect;
 
-/// The length of the axle in the picture, of its own.
+/// Returns the projected length of the axle, relative to its true length.
 fn axle_in_picture(stage: &Stage) -> f64 {
     let axle = stage.lab.player().run().simulation().state().axle();
     let (right, up) = stage.lab.view().camera.project(&axle);
@@ -15,7 +15,7 @@ fn axle_in_picture(stage: &Stage) -> f64 {
 }
 
 #[test]
-fn the_axle_is_seen_aslant_where_a_run_opens_and_the_camera_stays() {
+fn the_camera_shows_the_axle_at_an_angle_and_does_not_move() {
     let mut stage = Stage::open("method-2", &[], LARGE);
     assert!(axle_in_picture(&stage) > 0.7);
     let opened = stage.lab.view().camera;
@@ -34,21 +34,21 @@ fn the_axle_is_seen_aslant_where_a_run_opens_and_the_camera_stays() {
     }
     stage.commands("open = 'cusps'");
     assert!(axle_in_picture(&stage) > 0.7);
-    // What was chosen stays.
+    // A chosen camera is kept.
     stage.press("d→");
     let chosen = stage.lab.view().camera;
     for step in (0..2300).step_by(100) {
         stage.commands(&format!("go_to = {step}"));
         assert_eq!(stage.lab.view().camera, chosen);
     }
-    // The usual direction is no choice.
+    // The default direction does not count as chosen.
     stage.commands("camera = { yaw_deg = 30, pitch_deg = 20 }\ngo_to = 0");
     assert_ne!(stage.lab.view().camera, chosen);
     assert!(axle_in_picture(&stage) > 0.7);
 }
 
 #[test]
-fn a_moving_picture_keeps_its_direction() {
+fn the_camera_does_not_move_during_playback() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.wait(0.2);
     let camera = stage.lab.view().camera;
@@ -65,7 +65,7 @@ fn a_moving_picture_keeps_its_direction() {
 }
 
 #[test]
-fn after_a_scheme_broke_down_the_last_whole_body_is_shown() {
+fn after_a_breakdown_the_last_valid_state_is_shown() {
     let set = ["motion.scheme=rk4", "motion.time_step_s=0.03"];
     let mut stage = Stage::open("method-2", &set, LARGE);
     stage.wait(2.0).shows("no longer finite at step 31");
@@ -90,13 +90,13 @@ fn after_a_scheme_broke_down_the_last_whole_body_is_shown() {
         stage.lab.player().reading.state,
         *stage.lab.player().run().simulation().state()
     );
-    // In a narrow pane the title is shorter, and whole.
+    // In a narrow pane, the title is shorter, but complete.
     let mut small = Stage::open("method-2", &set, SMALL);
     small.wait(2.0).shows("from above (m), step 29 ");
 }
 
 #[test]
-fn at_120_columns_the_round_pictures_share_a_column() {
+fn at_120_columns_the_3d_and_top_views_share_a_column() {
     let stage = Stage::open("method-2", &[], Rect::new(0, 0, 120, 40));
     let layout = screen::layout(&stage.lab, true, stage.size);
     let place = |wanted: Pane| {

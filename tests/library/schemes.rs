@@ -1,5 +1,5 @@
-//! What every scheme of the table must do: converge with the order it claims, be worth its cost, keep what it keeps, and
-//! take a run over from any other.
+//! Requirements for every scheme of the table: convergence with its stated order, conservation laws, and taking over a run
+//! from any other scheme.
 
 use crate::support::scenarios::{find_scheme, parse, preset};
 use gyrolab::engine::analysis::compare::compare;
@@ -12,10 +12,10 @@ use gyrolab::physics::{Loads, SchemeInfo, State};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-/// The textbook's wheel, and one that is heavier on one side.
+/// The textbook's wheel, and a wheel that is heavier on one side.
 const BODIES: [(&str, &str); 2] = [("symmetric", "0"), ("lopsided", "0.7")];
 
-/// Pushes that begin and end in mid-step at every time step that is tried: down, aside, and off the axle.
+/// Pushes that start and end within a step for every tested time step: downward, sideways, and off the axle.
 const PUSHES: &str = r"
 [[push]]
 point = 'top'
@@ -34,7 +34,7 @@ from_s = 0.9
 for_s = 0.3333333
 ";
 
-/// A wheel with one more mass on one side, tilted and spinning, for one second and a half.
+/// A tilted, spinning wheel with an additional mass on one side, for 1.5 s.
 fn scenario(side_kg: &str, rest: &str) -> Scenario {
     let text = format!(
         r"
@@ -63,7 +63,7 @@ steps = 15
     parse(&text)
 }
 
-/// The error at the end, m.
+/// Returns the error at the end, m.
 fn error(scenario: &Scenario, scheme: &'static SchemeInfo, time_step_s: f64) -> f64 {
     let rows = compare(scenario, &[scheme], &[time_step_s], |_, _| {
         ControlFlow::Continue(())
@@ -72,8 +72,8 @@ fn error(scenario: &Scenario, scheme: &'static SchemeInfo, time_step_s: f64) -> 
     rows[0].error_at_end_m.unwrap()
 }
 
-/// Time steps at which a scheme's error is its own: small enough for its order to show, and above rounding. Several, since
-/// where in a step a push begins differs from one to the next.
+/// Returns time steps at which the error of a scheme shows its order: small enough for convergence, and above rounding.
+/// Several, because a push starts at a different point within the step for each.
 fn steps_for(order: u32) -> [f64; 5] {
     match order {
         1 => [2048.0, 4096.0, 8192.0, 12288.0, 16384.0].map(f64::recip),
@@ -83,7 +83,7 @@ fn steps_for(order: u32) -> [f64; 5] {
     }
 }
 
-/// Slope of the straight line that fits the points best.
+/// Returns the slope of the least-squares line through the points.
 fn slope(points: &[(f64, f64)]) -> f64 {
     let n = points.len() as f64;
     let mean = |read: fn(&(f64, f64)) -> f64| points.iter().map(read).sum::<f64>() / n;
@@ -105,7 +105,7 @@ fn every_scheme_converges_with_its_order() {
                     steps_for(order).map(|step| (step.ln(), error(&scenario, scheme, step).ln()));
                 let measured = slope(&points);
                 let name = format!("{}, {body}, pushes {}", scheme.name, !pushes.is_empty());
-                // A scheme of another order would be off by one; the high order has few time steps to show in.
+                // Another order would be off by one. The high order shows at only a few time steps.
                 let within = if order > 4 { 0.25 } else { 0.02 };
                 let off = (measured - f64::from(order)).abs();
                 assert!(off < within, "{name}: {measured}");
@@ -115,7 +115,7 @@ fn every_scheme_converges_with_its_order() {
 }
 
 #[test]
-fn a_scheme_of_higher_order_has_the_smaller_error_at_the_same_time_step() {
+fn schemes_of_higher_order_have_smaller_errors() {
     for (body, side_kg) in BODIES {
         for pushes in ["", PUSHES] {
             let scenario = scenario(side_kg, pushes);
@@ -138,7 +138,7 @@ fn a_scheme_of_higher_order_has_the_smaller_error_at_the_same_time_step() {
     }
 }
 
-/// Largest |energy drift| in each tenth of a million steps.
+/// Returns the largest |energy drift| in each tenth of a million steps.
 fn drifts(side_kg: &str, scheme: &str, time_step_s: f64) -> Vec<f64> {
     const TENTH: u64 = 100_000;
     let scenario = resampled(&scenario(side_kg, ""), time_step_s, find_scheme(scheme));
@@ -156,7 +156,7 @@ fn drifts(side_kg: &str, scheme: &str, time_step_s: f64) -> Vec<f64> {
 
 fn is_bounded(side_kg: &str, scheme: &str, time_step_s: f64) {
     let drifts = drifts(side_kg, scheme, time_step_s);
-    // Large enough to be the scheme's and not rounding, and no larger at the end than at the beginning.
+    // Larger than rounding, and no larger at the end than at the start.
     assert!(drifts[0] > 1e-9 && drifts[0] < 1e-3);
     for drift in &drifts {
         assert!((drift / drifts[0] - 1.0).abs() < 0.02, "{drifts:?}");
@@ -179,7 +179,7 @@ fn srkn11b_bounds_the_energy_drift_over_a_million_steps() {
 }
 
 #[test]
-fn the_drift_of_rk4_grows_with_the_steps() {
+fn the_energy_drift_of_rk4_grows_linearly() {
     for (_, side_kg) in BODIES {
         let drifts = drifts(side_kg, "rk4", 0.005);
         assert!((drifts[9] / drifts[0] - 10.0).abs() < 0.2, "{drifts:?}");
@@ -200,7 +200,7 @@ steps = 4
 ";
 
 #[test]
-fn vertical_forces_conserve_the_bits_of_lz() {
+fn vertical_forces_conserve_lz_bit_for_bit() {
     for (body, side_kg) in BODIES {
         let scenario = scenario(side_kg, DOWN);
         for scheme in SCHEMES {
@@ -210,7 +210,7 @@ fn vertical_forces_conserve_the_bits_of_lz() {
             let last = simulation.state().momentum;
             assert!((last.x - first.x).abs() > 1.0, "L has moved");
             let name = format!("{}, {body}", scheme.name);
-            // The closed form turns L out of the frame of its vertical, and does not store it: rounding is left.
+            // The closed form rotates L from the frame of its vertical and does not store it, so rounding remains.
             let remark = simulation.remark().unwrap_or_default();
             if remark.contains("closed form") {
                 let off = (last.z - first.z).abs();
@@ -223,7 +223,7 @@ fn vertical_forces_conserve_the_bits_of_lz() {
     }
 }
 
-/// `state`, `steps` steps of 0.01 s further by a scheme that knows nothing of what was before.
+/// Returns the state after `steps` steps of 0.01 s from `state`, with a newly started scheme.
 fn alone(scenario: &Scenario, scheme: &str, mut state: State, steps: u64) -> State {
     let mut scheme = find_scheme(scheme).make(&scenario.body.mechanics);
     scheme.load(&Loads {
@@ -237,7 +237,7 @@ fn alone(scenario: &Scenario, scheme: &str, mut state: State, steps: u64) -> Sta
 }
 
 #[test]
-fn a_scheme_takes_over_where_another_left_off() {
+fn a_scheme_continues_from_the_state_of_another() {
     for (body, side_kg) in BODIES {
         for first in SCHEMES {
             for second in SCHEMES.iter().filter(|second| second.name != first.name) {
@@ -283,7 +283,7 @@ fn csv(simulation: &mut Simulation) -> Vec<u8> {
 }
 
 #[test]
-fn the_same_run_gives_the_same_bytes_and_so_does_a_clone_of_it() {
+fn runs_and_their_clones_are_reproducible_byte_for_byte() {
     for (body, side_kg) in BODIES {
         for scheme in SCHEMES {
             let scenario = Arc::new(resampled(&scenario(side_kg, PUSHES), 0.005, scheme));
@@ -292,7 +292,7 @@ fn the_same_run_gives_the_same_bytes_and_so_does_a_clone_of_it() {
             let mut same = Simulation::new(Arc::clone(&scenario));
             assert_eq!(csv(&mut simulation), csv(&mut same), "{name}");
             let mut half_way = Simulation::new(scenario);
-            half_way.step_to(77).unwrap(); // in the midst of a push
+            half_way.step_to(77).unwrap(); // during a push
             let mut clone = half_way.clone();
             assert_eq!(csv(&mut half_way), csv(&mut clone), "{name}");
             assert_eq!(clone.state(), simulation.state(), "{name}");
@@ -301,7 +301,7 @@ fn the_same_run_gives_the_same_bytes_and_so_does_a_clone_of_it() {
 }
 
 #[test]
-fn the_scheme_exact_ends_where_it_would_integrate_too_long() {
+fn the_scheme_exact_stops_before_too_long_an_integration() {
     let set = ["motion.scheme=exact", "motion.time_step_s=1e6"];
     let mut run = Simulation::new(Arc::new(preset("wing-nut", &set)));
     let told = run.step().unwrap_err().to_string();

@@ -1,4 +1,4 @@
-//! What is said on screens with few rows and columns can be read there to its end.
+//! Texts on screens with few rows and columns are shown completely.
 
 use crate::support::stage::Stage;
 use gyrolab::engine::scenario::presets::PRESETS;
@@ -11,7 +11,7 @@ const TEACHERS: Rect = Rect {
     width: 40,
     height: 12,
 };
-/// The words between the panes and the keys.
+/// Returns the words between the panes and the footer.
 fn said(stage: &Stage) -> String {
     let layout = screen::layout(&stage.lab, true, stage.size);
     let picture = stage.picture();
@@ -22,7 +22,7 @@ fn said(stage: &Stage) -> String {
 }
 
 #[test]
-fn the_note_says_whole_sentences() {
+fn the_note_shows_whole_sentences() {
     for preset in PRESETS {
         let mut stage = Stage::open(preset.name, &[], TEACHERS);
         stage.wait(0.3).commands("pause = true");
@@ -36,14 +36,14 @@ fn the_note_says_whole_sentences() {
 }
 
 #[test]
-fn a_warning_stands_beside_what_there_is_to_see() {
+fn a_warning_is_shown_together_with_the_look_at_text() {
     let mut stage = Stage::open("method-2", &[], TEACHERS);
     stage.wait(1.0).commands("pause = true");
     stage.wait(6.0).shows("NOT RELIABLE").shows("z swing by");
 }
 
 #[test]
-fn a_hidden_verdict_leaves_its_row_to_the_page() {
+fn a_hidden_verdict_frees_its_row_for_the_page() {
     let mut stage = Stage::open("method-2", &[], TEACHERS);
     stage.lesson("is-the-wobble-real", 10).arrive().wait(6.0);
     let rows = |shown: &Stage| {
@@ -57,7 +57,7 @@ fn a_hidden_verdict_leaves_its_row_to_the_page() {
 }
 
 #[test]
-fn a_form_says_how_it_is_left() {
+fn a_form_shows_how_to_cancel_it() {
     for key in ["g", "S", "X", "x"] {
         let mut stage = Stage::open("cusps", &[], TEACHERS);
         stage.wait(0.3).commands("pause = true");
@@ -66,7 +66,7 @@ fn a_form_says_how_it_is_left() {
 }
 
 #[test]
-fn a_long_message_has_the_rows_that_it_needs() {
+fn a_long_message_gets_the_rows_it_needs() {
     let mut stage = Stage::open("cusps", &[], TEACHERS);
     stage.wait(0.3).commands("pause = true");
     stage.wait(6.0).press("t");
@@ -75,7 +75,7 @@ fn a_long_message_has_the_rows_that_it_needs() {
         notice.len() > 38 && said(&stage).contains(&notice),
         "{notice}"
     );
-    // Without a note there is one row for it, and that of the verdict, which comes back.
+    // Without a note, the message has one row of its own and the row of the verdict, which is shown again afterwards.
     stage.commands("hide = ['look_at']").wait(6.0);
     stage.shows("reliable:").press("m");
     let alone = stage.lab.notice().unwrap();

@@ -1,4 +1,4 @@
-//! The pictures in space, from above and in 3-D: what a person must see at a glance.
+//! The views from above and in 3-D: what a reader must see at a glance.
 
 use crate::support::stage::Stage;
 use gyrolab::lab::view::View;
@@ -16,7 +16,7 @@ const COLORS: Theme = Theme {
     palette: Palette::TrueColor,
     background: Background::Dark,
 };
-/// The panes on screens of 80x24, 120x40 and 200x50.
+/// The sizes of the panes on screens of 80x24, 120x40 and 200x50.
 const SIZES: [(u16, u16); 3] = [(26, 16), (38, 15), (57, 30)];
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,7 +39,7 @@ impl Picture {
         self.0[(x, y)].symbol().chars().next().unwrap()
     }
 
-    /// The cells with dots or signs of `role`, below the rule.
+    /// Returns the cells with dots or characters of `role` below the rule.
     fn cells(&self, role: Role) -> Vec<(u16, u16)> {
         let color = COLORS.style(role).fg;
         let cells = self.0.area.positions().filter(|at| at.y > 0);
@@ -49,14 +49,14 @@ impl Picture {
             .collect()
     }
 
-    /// The cells of `role` that have dots.
+    /// Returns the cells of `role` with dots.
     fn dots(&self, role: Role) -> Vec<(u16, u16)> {
         let mut cells = self.cells(role);
         cells.retain(|at| ('\u{2801}'..='\u{28ff}').contains(&self.symbol(*at)));
         cells
     }
 
-    /// The first cell of `label`.
+    /// Returns the first cell of `label`.
     #[track_caller]
     fn label(&self, label: &str) -> (u16, u16) {
         let text = self.text();
@@ -68,7 +68,7 @@ impl Picture {
         found.unwrap_or_else(|| panic!("no {label} in\n{text}"))
     }
 
-    /// Checks that `label` is within a few cells of dots of `role`.
+    /// Asserts that `label` is within a few cells of dots of `role`.
     #[track_caller]
     fn is_labelled(&self, label: &str, role: Role) {
         let (x, y) = self.label(label);
@@ -100,7 +100,7 @@ fn draw(pane: Pane, stage: &Stage, size: (u16, u16)) -> Picture {
     draw_view(pane, stage, stage.lab.view(), size)
 }
 
-/// A paused lab with `preset` at `step`.
+/// Opens a paused lab with `preset` at `step`.
 fn stage(preset: &str, step: u64, more: &str) -> Stage {
     let mut stage = Stage::open(preset, &[], Rect::new(0, 0, 120, 40));
     stage.commands(&format!("pause = true\ngo_to = {step}\n{more}"));
@@ -112,7 +112,7 @@ fn stage(preset: &str, step: u64, more: &str) -> Stage {
 }
 
 #[test]
-fn from_above_one_sees_the_start_the_moment_and_meters() {
+fn the_view_from_above_labels_start_now_and_axes() {
     let stage = stage("method-2", 800, "");
     for size in SIZES {
         let picture = draw(Pane::Above, &stage, size);
@@ -129,20 +129,20 @@ fn from_above_one_sees_the_start_the_moment_and_meters() {
 }
 
 #[test]
-fn the_exact_path_is_dashed_and_named_with_every_marker() {
+fn the_exact_path_is_dashed_and_labeled_with_every_marker() {
     let stage = stage("wobble-push", 900, "exact = true");
     for size in SIZES {
         let picture = draw(Pane::Above, &stage, size);
         picture.is_labelled("exact", Role::Exact);
         let (exact, run) = (picture.dots(Role::Exact), picture.dots(Role::RunEarlier));
         assert!(exact.len() >= 10 && run.len() >= 10, "{}", picture.text());
-        // In the smallest scene the tops of both are in one cell.
+        // In the smallest scene, both tops are in one cell.
         if size != SIZES[0] {
             let scene = draw(Pane::Space, &stage, size);
             assert!(!scene.dots(Role::Exact).is_empty(), "{}", scene.text());
         }
     }
-    // Where dots are as large as cells, a letter tells it from the run without colors.
+    // If dots are as large as cells, a letter distinguishes it from the run without colors.
     let mut view = stage.lab.view().clone();
     for marker in [Marker::Dot, Marker::Ascii] {
         view.marker = marker;
@@ -155,7 +155,7 @@ fn the_exact_path_is_dashed_and_named_with_every_marker() {
 
 #[test]
 fn a_run_that_agrees_with_the_exact_motion_shows_both() {
-    // The second makes 200 turns, one over the other.
+    // The second run makes 200 turns on top of each other.
     for (preset, step, size) in [("cusps", 4000, SIZES[2]), ("method-1", 2000, SIZES[0])] {
         let stage = self::stage(preset, step, "exact = true");
         let picture = draw(Pane::Above, &stage, size);
@@ -166,9 +166,9 @@ fn a_run_that_agrees_with_the_exact_motion_shows_both() {
     }
 }
 
-/// Of a fast run the shown moment is that of the latest reading, and so is the exact motion's.
+/// A fast run is shown at its latest reading; the exact motion is marked at the same time.
 #[test]
-fn the_exact_motion_is_marked_at_the_shown_moment() {
+fn the_exact_motion_is_marked_at_the_shown_time() {
     let mut stage = Stage::open(
         "method-1",
         &["motion.scheme=exact"],
@@ -185,7 +185,7 @@ fn the_exact_motion_is_marked_at_the_shown_moment() {
 }
 
 #[test]
-fn a_run_that_covers_little_of_its_circle_shows_the_circle() {
+fn a_run_that_covers_a_small_arc_shows_the_whole_circle() {
     let mut stage = stage("method-2-slow", 10_000, "");
     let picture = draw(Pane::Above, &stage, SIZES[1]);
     assert!(picture.dots(Role::Exact).len() >= 20, "{}", picture.text());
@@ -196,7 +196,7 @@ fn a_run_that_covers_little_of_its_circle_shows_the_circle() {
 }
 
 #[test]
-fn the_cursor_is_marked_in_both_pictures() {
+fn the_cursor_is_marked_in_both_views() {
     let stage = stage("wobble-push", 900, "cursor = 863");
     for pane in [Pane::Above, Pane::Space] {
         for size in SIZES {
@@ -206,7 +206,7 @@ fn the_cursor_is_marked_in_both_pictures() {
 }
 
 #[test]
-fn from_above_the_scale_stays_while_the_run_keeps_to_theory() {
+fn the_scale_from_above_is_constant_while_theory_holds() {
     for (preset, steps, most) in [
         ("method-2", 2300, 1),
         ("cusps", 6000, 1),
@@ -219,7 +219,7 @@ fn from_above_the_scale_stays_while_the_run_keeps_to_theory() {
             let picture = draw(Pane::Above, &stage, SIZES[1]);
             places.push(picture.dots(Role::Rule));
         }
-        // The axis of x is in the row that has the most of its dots.
+        // The x axis is in the row with the most dots of its role.
         let rows: Vec<_> = places
             .iter()
             .map(|cells| {
@@ -234,7 +234,7 @@ fn from_above_the_scale_stays_while_the_run_keeps_to_theory() {
 }
 
 #[test]
-fn the_previous_and_the_pinned_run_are_named() {
+fn the_previous_and_the_pinned_run_are_labeled() {
     let mut stage = stage("method-2", 600, "pin = true");
     stage.commands("set = { 'start.tilt_deg' = 30 }\nset = { 'start.tilt_deg' = 60 }");
     stage.wait(2.0);
@@ -273,7 +273,7 @@ fn the_arrows_have_their_letters_and_colors() {
     }
 }
 
-/// The size of what is drawn in the picture, as shares of its area below the rule and above the legend.
+/// Returns the width and height of the drawing, relative to the area below the rule and above the legend.
 fn filled_share(picture: &Picture, has_legend: bool) -> (f64, f64) {
     let area = picture.0.area;
     let legend = u16::from(has_legend);
@@ -288,7 +288,7 @@ fn filled_share(picture: &Picture, has_legend: bool) -> (f64, f64) {
     )
 }
 
-/// What the body sweeps in a whole turn fits in: at one moment it takes most of the height, of a small pane of the width.
+/// The volume swept in a whole turn fits in. At one time, the body fills most of the height, or of the width in small panes.
 #[test]
 fn the_scene_fills_its_pane() {
     for (preset, step) in [
@@ -299,7 +299,7 @@ fn the_scene_fills_its_pane() {
         ("falling", 10_000),
     ] {
         let mut stage = stage(preset, 0, "");
-        // As where a lab opens at that step: the camera is turned to the axle.
+        // The camera is turned to the axle, as when a lab opens at that step.
         stage
             .lab
             .begin_at(step, |_, _| ControlFlow::Continue(()))
@@ -318,7 +318,7 @@ fn the_scene_fills_its_pane() {
 }
 
 #[test]
-fn the_scene_stands_still_while_the_body_moves() {
+fn the_scene_does_not_move_with_the_body() {
     let mut stage = stage("method-2", 0, "");
     let mut floors = Vec::new();
     for step in [0, 500, 1100, 1700, 2300] {
@@ -334,7 +334,7 @@ fn the_scene_stands_still_while_the_body_moves() {
 }
 
 #[test]
-fn the_foot_of_a_heavy_body_stands_on_the_floor() {
+fn the_foot_of_a_heavy_body_is_on_the_floor() {
     let set = "camera = { yaw_deg = 0, pitch_deg = 10 }";
     let mut free = Stage::open(
         "method-2",
@@ -366,7 +366,7 @@ fn near_masses_are_larger_than_far_ones() {
     let mut stage = Stage::open("method-2", &set, Rect::new(0, 0, 120, 40));
     stage.commands("pause = true\ncamera = { yaw_deg = 0, pitch_deg = 30 }");
     let picture = draw(Pane::Space, &stage, SIZES[2]);
-    // From above the horizontal, the near half of a level wheel is the lower one.
+    // Seen from above, the near half of a level wheel is the lower one.
     let rows = |role| {
         picture
             .dots(role)
@@ -394,7 +394,7 @@ fn near_masses_are_larger_than_far_ones() {
 }
 
 #[test]
-fn without_colors_and_braille_strokes_have_letters() {
+fn strokes_are_letters_without_colors_and_braille() {
     let stage = stage("method-2", 300, "");
     let mut view = stage.lab.view().clone();
     (view.marker, view.theme) = (Marker::Ascii, Theme::PLAIN);
@@ -405,7 +405,7 @@ fn without_colors_and_braille_strokes_have_letters() {
 }
 
 #[test]
-fn a_push_that_acts_is_an_arrow() {
+fn an_acting_push_is_shown_as_an_arrow() {
     let stage = stage("wobble-push", 120, "");
     for pane in [Pane::Above, Pane::Space] {
         draw(pane, &stage, SIZES[2]).label("F");
@@ -416,7 +416,7 @@ fn a_push_that_acts_is_an_arrow() {
     }
 }
 
-/// The columns and rows of dots between the outermost ones of `role`.
+/// Returns the number of dot columns and dot rows between the outermost dots of `role`.
 fn extent(picture: &Picture, role: Role) -> (usize, usize) {
     const ACROSS: [usize; 8] = [0, 0, 0, 1, 1, 1, 0, 1];
     const DOWN: [usize; 8] = [0, 1, 2, 0, 1, 2, 3, 3];
@@ -436,8 +436,8 @@ fn extent(picture: &Picture, role: Role) -> (usize, usize) {
 }
 
 #[test]
-fn a_circle_is_round_to_a_dot() {
-    // A whole turn takes 0.691 s.
+fn circles_are_round_to_within_two_dots() {
+    // A turn takes 0.691 s.
     let mut stage = stage("torque-free", 700, "");
     for zoom in [1.0, 0.5] {
         stage.commands(&format!("zoom = {{ above = {zoom:?} }}"));
@@ -453,7 +453,7 @@ fn a_circle_is_round_to_a_dot() {
 }
 
 #[test]
-fn a_circle_about_a_steady_momentum_fills_the_picture() {
+fn a_circle_about_a_constant_momentum_fills_the_picture() {
     let picture = draw(Pane::Above, &stage("method-1", 1000, ""), SIZES[2]);
     let (across, down) = extent(&picture, Role::Run);
     assert!(
@@ -464,7 +464,7 @@ fn a_circle_about_a_steady_momentum_fills_the_picture() {
 }
 
 #[test]
-fn the_moment_stays_in_the_picture_at_every_magnification() {
+fn the_current_position_is_visible_at_every_zoom() {
     for step in [0, 150, 333, 600] {
         let mut stage = stage("wobble-push", step, "");
         for zoom in [0.5, 1.0, 2.0, 5.0, 100.0] {

@@ -1,4 +1,4 @@
-//! The ways to state the start: tilt, turn and roll, momentum or spin, a steady precession.
+//! The start of a scenario: tilt, turn and roll; momentum, spin, angular velocity or Euler rates; steady precession; rotors.
 
 use crate::support::scenarios::changed;
 use crate::support::scenarios::{parse, preset, read};
@@ -14,7 +14,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 use toml::Value;
 
-/// The textbook's ring of 5 kg at 1 m (I1 = 6.6, I3 = 3.2 kg m², mgl = 49 N m) with `start` and `motion` more.
+/// The textbook's ring of 5 kg at 1 m (I1 = 6.6, I3 = 3.2 kg m², mgl = 49 N m), with additional text `start` and `motion`.
 fn text(start: &str, motion: &str) -> String {
     format!(
         "title = 'x'\n[body.rim]\npoints = 10\nradius_m = 0.8\nheight_m = 1\npoint_mass_kg = 0.5\n[[body.point]]\nname = 'top'\nat_m = [0, 0, 1.5]\n[start]\n{start}\n[motion]\nscheme = 'exact'\ntime_step_s = 0.01\nsteps = 1000\n{motion}\n"
@@ -38,7 +38,7 @@ fn omega(scenario: &Scenario) -> Vector3<f64> {
     angular_velocity(&scenario.body.mechanics, &scenario.start)
 }
 
-/// The farthest that the tilt goes from the start's, degrees.
+/// Returns the largest change of the tilt from its initial value, degrees.
 fn tilt_swing_deg(scenario: Scenario) -> f64 {
     let (tilt, steps) = (tilt_deg(&scenario.start), scenario.steps);
     let mut simulation = Simulation::new(Arc::new(scenario));
@@ -51,7 +51,7 @@ fn tilt_swing_deg(scenario: Scenario) -> f64 {
 }
 
 #[test]
-fn a_spin_is_the_rate_about_the_axle() {
+fn the_spin_is_the_rate_about_the_axle() {
     let scenario = ring("tilt_deg = 40\nspin_rad_per_s = 20");
     assert!((omega(&scenario) - 20.0 * scenario.start.axle()).amax() < 1e-13);
     assert!((scenario.start.momentum - 64.0 * scenario.start.axle()).amax() < 1e-12);
@@ -88,7 +88,7 @@ fn a_steady_start_keeps_its_tilt() {
                     let swing = tilt_swing_deg(scenario);
                     assert!(swing < 1e-9, "{start}, {gravity}: {swing}");
                 }
-                // Upside down for gravity, the hanging top that does not spin.
+                // With reversed gravity, a hanging top without spin has no steady precession.
                 Err(problems) => assert!(start.contains("rpm = 0") && gravity < 0.0, "{problems}"),
             }
         }
@@ -97,7 +97,7 @@ fn a_steady_start_keeps_its_tilt() {
 }
 
 #[test]
-fn a_steady_start_is_the_preset_s() {
+fn a_steady_start_equals_that_of_the_preset() {
     let preset = preset("steady-slow", &[]);
     let spin = omega(&preset).dot(&preset.start.axle());
     let start = format!("tilt_deg = 30\nspin_rad_per_s = {spin:?}\nsteady = true");
@@ -107,7 +107,7 @@ fn a_steady_start_is_the_preset_s() {
 }
 
 #[test]
-fn the_least_spin_that_is_told_is_enough() {
+fn the_minimum_spin_in_the_message_is_sufficient() {
     let start = |tilt: f64, rpm: f64| format!("tilt_deg = {tilt}\nspin_rpm = {rpm}\nsteady = true");
     for tilt in [1.0, 30.0, 89.0] {
         let refused = refusal(&start(tilt, 10.0));
@@ -122,7 +122,7 @@ fn the_least_spin_that_is_told_is_enough() {
 }
 
 #[test]
-fn two_ways_at_once_are_refused_with_the_remedy() {
+fn two_forms_of_a_start_at_once_are_rejected_with_a_remedy() {
     let mut told = String::new();
     for start in [
         "momentum_Js = [0, 0, 1]\nspin_rpm = 3",
@@ -150,7 +150,7 @@ fn two_ways_at_once_are_refused_with_the_remedy() {
 }
 
 #[test]
-fn set_takes_the_way_it_names() {
+fn set_switches_to_the_form_of_start_that_it_names() {
     let spun = preset("method-2", &["start.spin_rpm=300"]).file.start;
     assert_eq!((spun.momentum_Js, spun.momentum_frame), (None, None));
     let ways = [
@@ -211,14 +211,14 @@ fn spin_and_momentum_are_both_listed() {
     assert_near(value(&told, "start.momentum_Js.1"), 9.0, false);
 }
 
-/// `scenario` with another value, which must be possible.
+/// Returns `scenario` with `key` changed to `value`, which must be allowed.
 #[track_caller]
 fn with(scenario: &Scenario, key: &str, value: impl Into<Value>) -> Scenario {
     changed(&scenario.file, key, value.into()).unwrap_or_else(|problems| panic!("{problems}"))
 }
 
 #[test]
-fn a_change_tells_the_momentum_the_way_it_needs() {
+fn editing_a_value_converts_the_start_to_its_form() {
     let told = ring("tilt_deg = 40\nmomentum_Js = [0, 9, 64]\nmomentum_frame = 'body'");
     let spun = with(&told, "start.spin_rpm", 100.0);
     let in_rpm = &spun.file.start;
@@ -227,7 +227,7 @@ fn a_change_tells_the_momentum_the_way_it_needs() {
     let other = with(&spun, "start.spin_rad_per_s", 5.0);
     let in_rad = &other.file.start;
     assert_eq!((in_rad.spin_rpm, in_rad.spin_rad_per_s), (None, Some(5.0)));
-    // One number of L: the others stay as they are.
+    // Changing one component of L keeps the others.
     let back = with(&other, "start.momentum_Js.0", 3.0);
     let momentum = other.start.momentum;
     let known = Vector3::new(3.0, momentum.y, momentum.z);
@@ -235,12 +235,12 @@ fn a_change_tells_the_momentum_the_way_it_needs() {
     let told_by_momentum = &back.file.start;
     assert_eq!(told_by_momentum.spin_rad_per_s, None);
     assert_eq!(told_by_momentum.momentum_frame, None);
-    // The frame alone: the same L, told in it.
+    // Changing only the frame keeps L and converts its components.
     let turned = with(&other, "start.momentum_frame", "body");
     assert!((turned.start.momentum - momentum).amax() < 1e-13);
     let in_body = Vector3::from(turned.file.start.momentum_Js.unwrap());
     assert!((in_body - Vector3::new(0.0, 0.0, 16.0)).amax() < 1e-13);
-    // Steady: the same spin.
+    // A steady start keeps the spin.
     let steady = with(&told, "start.steady", true);
     assert!((steady.file.start.spin_rad_per_s.unwrap() - 20.0).abs() < 1e-13);
     assert!((omega(&steady).dot(&steady.start.axle()) - 20.0).abs() < 1e-13);
@@ -250,7 +250,7 @@ fn a_change_tells_the_momentum_the_way_it_needs() {
 }
 
 #[test]
-fn a_steady_start_that_cannot_be_is_refused_by_a_change() {
+fn editing_to_an_impossible_steady_start_is_rejected() {
     let slow = ring("tilt_deg = 40\nspin_rpm = 10");
     let problems = changed(&slow.file, "start.steady", Value::Boolean(true)).unwrap_err();
     let line = problems.in_one_line();
@@ -260,7 +260,7 @@ fn a_steady_start_that_cannot_be_is_refused_by_a_change() {
 
 proptest! {
     #[test]
-    fn whatever_the_start_nothing_panics(
+    fn no_start_panics_or_gives_non_finite_values(
         angles in prop::array::uniform3(prop_oneof![Just(0.0), Just(90.0), Just(180.0), -400.0..400.0f64]),
         spin in prop_oneof![Just(0.0), Just(-0.0), Just(1e-308), Just(1e308), -1e4..1e4f64],
         gravity in prop_oneof![Just(0.0), Just(1e-300), Just(1e308), -20.0..20.0f64],
@@ -277,7 +277,7 @@ proptest! {
 }
 
 #[test]
-fn an_angular_velocity_makes_the_momentum() {
+fn an_angular_velocity_determines_the_momentum() {
     let omega_told = Vector3::new(1.0, -2.0, 30.0);
     let world = ring("tilt_deg = 40\nturn_deg = 10\nomega_rad_per_s = [1, -2, 30]");
     assert!((omega(&world) - omega_told).amax() < 1e-13);
@@ -287,14 +287,14 @@ fn an_angular_velocity_makes_the_momentum() {
     // I1 = 6.6, I3 = 3.2 kg m².
     let in_body = body.start.orientation.tr_mul(&body.start.momentum);
     assert!((in_body - Vector3::new(6.6, -13.2, 96.0)).amax() < 1e-12);
-    // A spin is the angular velocity along the axle.
+    // The spin is the angular velocity along the axle.
     let spun = ring("tilt_deg = 40\nspin_rad_per_s = 20");
     let told = ring("tilt_deg = 40\nomega_rad_per_s = [0, 0, 20]\nomega_frame = 'body'");
     assert!((told.start.momentum - spun.start.momentum).amax() < 1e-13);
 }
 
 #[test]
-fn the_editor_keeps_the_way_in_which_the_start_is_told() {
+fn the_editor_keeps_the_form_of_the_start() {
     let scenario = ring("tilt_deg = 40\nomega_rad_per_s = [1, -2, 30]\nomega_frame = 'body'");
     let listed = parameters(&table_of(&scenario.file), &scenario);
     let shown = |key: &str| {
@@ -303,13 +303,13 @@ fn the_editor_keeps_the_way_in_which_the_start_is_told() {
     };
     assert_eq!(shown("start.omega_rad_per_s.2").as_deref(), Some("30"));
     assert_eq!(shown("start.omega_frame").as_deref(), Some("body"));
-    // Its own numbers, and those of the body, change nothing of that.
+    // Editing its components or the body keeps this form.
     let faster = with(&scenario, "start.omega_rad_per_s.2", 60.0);
     assert_eq!(faster.file.start.omega_rad_per_s, Some([1.0, -2.0, 60.0]));
     let wider = with(&scenario, "body.rim.radius_m", 1.6);
     assert_eq!(wider.file.start, scenario.file.start);
     assert!(wider.start.momentum.norm() > 3.0 * scenario.start.momentum.norm());
-    // Another way to tell it takes its place, and says what was there.
+    // Another form replaces it, with the values converted.
     let momentum = with(&scenario, "start.momentum_Js.0", 0.0);
     assert_eq!(momentum.file.start.omega_rad_per_s, None);
     assert_eq!(momentum.file.start.omega_frame, None);
@@ -318,7 +318,7 @@ fn the_editor_keeps_the_way_in_which_the_start_is_told() {
     assert_eq!(spun.file.start.omega_rad_per_s, None);
     let steady = with(&scenario, "start.steady", true);
     assert!((steady.file.start.spin_rad_per_s.unwrap() - 30.0).abs() < 1e-12);
-    // And the other way round.
+    // The conversion also works in the other direction.
     let told = with(&spun, "start.omega_rad_per_s.0", 0.5)
         .file
         .start
@@ -332,7 +332,7 @@ fn the_editor_keeps_the_way_in_which_the_start_is_told() {
     assert!(off < 1e-13, "{in_body}");
 }
 
-/// A ring that spins in a frame: a hoop of another plane does not, and both are on an axle of 2 kg.
+/// A gyroscope in a frame: a spinning wheel and a hoop in another plane that does not spin, on an axle of 2 kg.
 fn gyroscope(start: &str) -> String {
     format!(
         "title = 'x'\n[[body.point]]\nname = 'top'\nat_m = [0, 0, 0.3]\n\
@@ -347,7 +347,7 @@ fn gyroscope(start: &str) -> String {
 const WHEEL: f64 = 0.5 * 0.01;
 
 #[test]
-fn a_rotor_has_the_spin_and_the_rest_has_none() {
+fn only_the_rotor_has_the_spin() {
     let spun = parse(&gyroscope(
         "tilt_deg = 30\nspin_rpm = 3000\nrotor = 'wheel'",
     ));
@@ -359,7 +359,7 @@ fn a_rotor_has_the_spin_and_the_rest_has_none() {
     let listed = parameters(&table_of(&spun.file), &spun);
     let row = listed.iter().find(|row| row.key == "start.rotor").unwrap();
     assert_eq!((row.shown().as_str(), row.choices.len()), ("wheel", 3));
-    // The same L told as it is: the spin that the list shows is the rotor's.
+    // With the same L given directly, the list shows the spin of the rotor.
     let told = parse(&gyroscope(
         "tilt_deg = 30\nmomentum_Js = [0, 0, 1]\nmomentum_frame = 'body'\nrotor = 'wheel'",
     ));
@@ -369,7 +369,7 @@ fn a_rotor_has_the_spin_and_the_rest_has_none() {
         .find(|rate| rate.key == "start.spin_rad_per_s")
         .unwrap();
     assert!((rate.value.as_float().unwrap() - 1.0 / WHEEL).abs() < 1e-9);
-    // And by an angular velocity: along the axle it is the rotor's, across it that of all that tilts.
+    // An angular velocity is that of the rotor along the axle, and that of the whole body across it.
     let turning = parse(&gyroscope("omega_rad_per_s = [2, 0, 100]\nrotor = 'wheel'"));
     let across = turning.body.mechanics.inertia()[(0, 0)];
     assert!(
@@ -378,8 +378,8 @@ fn a_rotor_has_the_spin_and_the_rest_has_none() {
 }
 
 #[test]
-fn a_rotor_precesses_by_its_momentum_alone() {
-    // Steady: I1 cos(tilt) w² − C spin w + M g c = 0 with the wheel's C and the I1 and M c of all of it.
+fn precession_depends_on_the_rotor_momentum_alone() {
+    // Steady precession: I1 cos(tilt) w² − C spin w + M g c = 0, with C of the wheel, and I1 and M c of the whole body.
     let steady = parse(&gyroscope(
         "tilt_deg = 30\nspin_rpm = 6000\nrotor = 'wheel'\nsteady = true",
     ));
@@ -393,7 +393,7 @@ fn a_rotor_precesses_by_its_momentum_alone() {
     let rest = across * cosine * rate * rate - WHEEL * spin * rate + load;
     assert!(rest.abs() < 1e-9 * load, "{rest}");
     assert!((rate / (load / (WHEEL * spin)) - 1.0).abs() < 0.1);
-    // The run from here on keeps the rotor.
+    // A scenario saved from the current state keeps the rotor.
     let state = steady.start;
     let again = gyrolab::engine::journal::restart::scenario_from(&steady, &state, 0).unwrap();
     assert_eq!(again.rotor(), steady.rotor());
@@ -401,7 +401,7 @@ fn a_rotor_precesses_by_its_momentum_alone() {
 }
 
 #[test]
-fn what_cannot_be_a_rotor_is_refused() {
+fn invalid_rotors_are_rejected() {
     let start = "spin_rpm = 3000\nrotor = 'wheel'";
     let good = gyroscope(start);
     let across = ("radius_m = 0.1\n", "radius_m = 0.1\naxis = [1, 0, 0]\n");
@@ -412,7 +412,7 @@ fn what_cannot_be_a_rotor_is_refused() {
     let lying = good.replace(across.0, across.1);
     texts.push(lying.replace("shape = 'cylinder'", "shape = 'ball'"));
     texts.push(lying);
-    // Two rods crossed are even, one of them is not; two balls are even about the axle, each of them is off it.
+    // Two crossed rods are symmetric, one rod is not. Two balls are symmetric about the axle, but each is off it.
     let crossed = |a: &str, b: &str| {
         gyroscope("spin_rpm = 3000\nrotor = 'one'").replace("[start]", &format!("{a}{b}[start]"))
     };
@@ -445,8 +445,8 @@ fn what_cannot_be_a_rotor_is_refused() {
     insta::assert_snapshot!("rotors", told.collect::<String>());
 }
 
-/// The angular velocity, world frame, rad/s, of the turn Rz(turn) Rx(tilt) Rz(roll) whose angles change at `rates`, rad/s,
-/// by central differences.
+/// Computes by central differences the angular velocity (world frame, rad/s) of the rotation Rz(turn) Rx(tilt) Rz(roll)
+/// with angles that change at `rates`, rad/s.
 fn by_differences(degrees: [f64; 3], rates: [f64; 3]) -> Vector3<f64> {
     let axes = [Vector3::z_axis(), Vector3::x_axis(), Vector3::z_axis()];
     let at = |time: f64| {
@@ -479,11 +479,11 @@ fn euler_rates_are_the_rates_of_turn_tilt_and_roll() {
         let known = by_differences([turn, tilt, roll], [precession, nutation, psi_dot]);
         let off = (omega(&scenario) - known).amax();
         assert!(off < 1e-8, "{turn}, {tilt}, {roll}: {off}");
-        // omega_3 is not psi-dot.
+        // omega_3 differs from psi-dot.
         let along = scenario.spin_rad_per_s(&scenario.start);
         let spin = psi_dot + precession * f64::to_radians(tilt).cos();
         assert!((along - spin).abs() < 1e-13, "{along}, not {spin}");
-        // In the body frame it is I (p, q, r): I1 = 6.6, I3 = 3.2 kg m².
+        // In the body frame, L = I (p, q, r) with I1 = 6.6, I3 = 3.2 kg m².
         let momentum = scenario.start.orientation.tr_mul(&scenario.start.momentum);
         let in_body = scenario.start.orientation.tr_mul(&known);
         let expected = Vector3::new(6.6 * in_body.x, 6.6 * in_body.y, 3.2 * in_body.z);
@@ -493,7 +493,7 @@ fn euler_rates_are_the_rates_of_turn_tilt_and_roll() {
 }
 
 #[test]
-fn euler_rates_that_are_left_out_are_zero() {
+fn missing_euler_rates_are_zero() {
     let spun = ring("tilt_deg = 40\nspin_rad_per_s = 20");
     let psi_dot = ring("tilt_deg = 40\npsi_dot_rad_per_s = 20");
     assert!((psi_dot.start.momentum - spun.start.momentum).amax() < 1e-13);
@@ -502,7 +502,7 @@ fn euler_rates_that_are_left_out_are_zero() {
 }
 
 #[test]
-fn steady_precession_by_euler_rates_is_the_preset_s() {
+fn steady_precession_in_euler_rates_equals_the_preset() {
     for (name, sign) in [("steady-slow", -1.0), ("steady-fast", 1.0)] {
         let preset = preset(name, &[]);
         let cosine = 30.0_f64.to_radians().cos();
@@ -520,7 +520,7 @@ fn steady_precession_by_euler_rates_is_the_preset_s() {
 }
 
 #[test]
-fn euler_rates_are_a_start_of_their_own() {
+fn euler_rates_cannot_be_combined_with_other_forms() {
     for (way, value) in [
         ("momentum_Js", "[0, 0, 1]"),
         ("omega_rad_per_s", "[0, 0, 1]"),
@@ -549,7 +549,7 @@ fn euler_rates_are_a_start_of_their_own() {
 }
 
 #[test]
-fn set_takes_euler_rates_for_a_start_and_never_loses_a_spin() {
+fn set_switches_to_euler_rates_without_losing_the_spin() {
     let rates = [
         "start.precession_rad_per_s=0.5",
         "start.psi_dot_rad_per_s=18",
@@ -591,14 +591,14 @@ fn the_editor_lists_euler_rates_and_converts_them() {
     let spun = ring("tilt_deg = 40\nspin_rad_per_s = 18");
     let rows = parameters(&table_of(&spun.file), &spun);
     assert!(!rows.iter().any(|row| row.key.contains("psi_dot")));
-    // One rate: the others stay, and the tilt may change under them.
+    // Changing one rate keeps the others, and the tilt may change too.
     let faster = with(&scenario, "start.nutation_rad_per_s", 0.1);
     let file = &faster.file.start;
     assert_eq!(file.nutation_rad_per_s, Some(0.1));
     assert_eq!(file.precession_rad_per_s, Some(0.5));
     let leaning = with(&scenario, "start.tilt_deg", 50.0);
     assert_eq!(leaning.file.start.psi_dot_rad_per_s, Some(18.0));
-    // Any start in rates, and back.
+    // Any start can be converted to rates and back.
     let told = ring("tilt_deg = 40\nroll_deg = 9\nturn_deg = 5\nmomentum_Js = [3, 9, 64]");
     let rates = with(&told, "start.nutation_rad_per_s", 0.0);
     let by_hand = {
@@ -625,7 +625,7 @@ fn the_editor_lists_euler_rates_and_converts_them() {
 }
 
 #[test]
-fn a_vertical_axle_has_euler_rates_where_it_can() {
+fn euler_rates_of_a_vertical_axle_are_converted_if_possible() {
     let spun = ring("spin_rad_per_s = 18");
     let rates = with(&spun, "start.precession_rad_per_s", 1.0).file.start;
     assert_eq!(rates.psi_dot_rad_per_s, Some(18.0));

@@ -1,4 +1,4 @@
-//! The step pane: a time step phase by phase. Its numbers are the run's.
+//! The step pane: a time step phase by phase, with the numbers of the run.
 
 use crate::support::scenarios::{parse, preset, resumed};
 use crate::support::stage::{LARGE, SMALL, Stage};
@@ -21,7 +21,7 @@ const WIDE: Rect = Rect {
     height: 40,
 };
 
-/// The phases of the first step of method-2.
+/// Returns the phases of the first step of method-2.
 fn first_step() -> Vec<Phase> {
     let mut run = Simulation::new(Arc::new(preset("method-2", &[])));
     run.keep_workings(true);
@@ -29,7 +29,7 @@ fn first_step() -> Vec<Phase> {
     workings.phases().cloned().collect()
 }
 
-/// Every number of `phase` under `symbol`, row by row.
+/// Returns every number of `phase` under `symbol`, row by row.
 fn numbers(phase: &Phase, symbol: &str) -> Vec<f64> {
     match phase.value(symbol).unwrap() {
         WorkedValue::Number(number) => vec![*number],
@@ -39,7 +39,7 @@ fn numbers(phase: &Phase, symbol: &str) -> Vec<f64> {
     }
 }
 
-/// The picture of `pane` alone.
+/// Returns the picture of `pane` alone.
 fn picture_of(stage: &Stage, pane: Pane) -> String {
     let layout = screen::layout(&stage.lab, true, stage.size);
     let place = layout.place_of(pane).expect("the pane is on the screen");
@@ -55,13 +55,13 @@ fn picture_of(stage: &Stage, pane: Pane) -> String {
     .collect()
 }
 
-/// The panes on the screen.
+/// Returns the panes on the screen.
 fn panes(stage: &Stage) -> Vec<Pane> {
     let layout = screen::layout(&stage.lab, true, stage.size);
     layout.panes.iter().map(|(pane, _)| *pane).collect()
 }
 
-/// The numbers behind `symbol` in the picture of the pane.
+/// Returns the numbers after `symbol` in the picture of the pane.
 #[track_caller]
 fn printed(stage: &Stage, symbol: &str) -> Vec<String> {
     let picture = picture_of(stage, Pane::Step);
@@ -74,7 +74,7 @@ fn printed(stage: &Stage, symbol: &str) -> Vec<String> {
 }
 
 #[test]
-fn the_numbers_printed_are_the_records() {
+fn the_shown_numbers_equal_those_of_the_run() {
     for size in [SMALL, LARGE] {
         let mut stage = Stage::open("wobble-push", &[], size);
         stage.commands("show = ['3d', 'step']\ngo_to = 12\nphase = 'new momentum'");
@@ -98,7 +98,7 @@ fn the_numbers_printed_are_the_records() {
 }
 
 #[test]
-fn all_rows_add_up_to_the_schemes_own_sums() {
+fn the_rows_add_up_to_the_sums_of_the_scheme() {
     let phases = first_step();
     let Some(WorkedValue::Table(points)) = phases[0].value("X") else {
         panic!("a table")
@@ -114,7 +114,7 @@ fn all_rows_add_up_to_the_schemes_own_sums() {
     assert_eq!(moment_sums, numbers(&phases[5], "Σ m X"));
 }
 
-/// Step and number of the phase that the pane is at, with how many there are.
+/// Returns the step, the number of the shown phase and the number of phases.
 #[track_caller]
 fn place(stage: &Stage) -> (u64, usize, usize) {
     let lab = &stage.lab;
@@ -125,7 +125,7 @@ fn place(stage: &Stage) -> (u64, usize, usize) {
 }
 
 #[test]
-fn v_shows_the_step_and_takes_it_away_again() {
+fn v_toggles_the_step_pane() {
     for size in [SMALL, LARGE] {
         let mut stage = Stage::open("method-2", &[], size);
         stage.commands("pause = true");
@@ -145,7 +145,7 @@ fn v_shows_the_step_and_takes_it_away_again() {
         assert_eq!(panes(&stage), before);
         stage.press("v\u{1b}");
         assert_eq!(panes(&stage), before, "Esc takes it away too");
-        // From a pane that fills the screen, too.
+        // This also works from a full-screen pane.
         stage.press("fv");
         assert_eq!(stage.focus(), "step");
         stage.press("f");
@@ -156,7 +156,7 @@ fn v_shows_the_step_and_takes_it_away_again() {
 }
 
 #[test]
-fn the_keys_go_by_phase_and_on_to_the_next_step() {
+fn the_keys_move_by_phase_and_on_to_the_next_step() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.commands("pause = true").press("v,");
     stage.shows("the run begins here");
@@ -180,10 +180,10 @@ fn the_keys_go_by_phase_and_on_to_the_next_step() {
     stage.press("99,");
     assert_eq!(stage.step(), 0);
     stage.shows("No time step has been taken yet");
-    // Without the focus they are time steps, as ever.
+    // Without the focus, the keys advance by time steps as usual.
     stage.press(".\t..");
     assert_eq!(stage.step(), 3);
-    // While the run goes on they stop it first.
+    // While the run plays, the keys pause it first.
     stage.press("\t ");
     stage.wait(1.0).press(".");
     assert!(!stage.lab.player().is_running());
@@ -191,7 +191,7 @@ fn the_keys_go_by_phase_and_on_to_the_next_step() {
 }
 
 #[test]
-fn the_points_add_up_one_by_one() {
+fn points_can_be_added_up_one_by_one() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.commands("pause = true").press("v.");
     stage.shows("10 more: press Down to add them up");
@@ -204,13 +204,13 @@ fn the_points_add_up_one_by_one() {
     stage.press("↓↓").shows("the first 14 of 14");
     stage.press("↓").shows_no("add up to");
     stage.press("↑").shows("the first 13 of 14");
-    // Another phase begins with all of its rows again.
+    // Another phase shows all its rows.
     stage.press(".").shows_no("add up to");
     stage.press("↓").shows("no table here");
 }
 
 #[test]
-fn the_chosen_point_is_written_out_and_massless_ones_share_a_row() {
+fn the_selected_point_is_expanded_and_massless_points_share_a_row() {
     let mut stage = Stage::open("method-2", &[], WIDE);
     stage.commands("pause = true\nstep = 3").press("v");
     stage.commands("phase = 'torque'");
@@ -231,7 +231,7 @@ fn the_chosen_point_is_written_out_and_massless_ones_share_a_row() {
         ));
     }
     stage.shows("rim 1: ").shows("hub, top, foot");
-    // Each of the points without mass can be chosen.
+    // Every massless point can be selected.
     stage.commands("sum_to = 12");
     stage.shows("top has no mass").shows_no("hub, top, foot");
     stage.commands("phase = 'new momentum'");
@@ -239,7 +239,7 @@ fn the_chosen_point_is_written_out_and_massless_ones_share_a_row() {
 }
 
 #[test]
-fn commands_and_files_say_it_too() {
+fn commands_and_files_control_the_step_pane() {
     let set = ["view.show=['step', 'above']", "view.phase='torque'"];
     let mut stage = Stage::open("method-2", &set, WIDE);
     stage.commands("pause = true\nstep = 3");
@@ -269,7 +269,7 @@ fn commands_and_files_say_it_too() {
 }
 
 #[test]
-fn why_comes_back_to_where_it_was_asked() {
+fn why_returns_to_the_previous_page() {
     let mut stage = Stage::open("cusps", &[], SMALL);
     stage.commands("pause = true\nstep = 300").press("v...");
     let place = stage.lab.view().look.phase;
@@ -282,7 +282,7 @@ fn why_comes_back_to_where_it_was_asked() {
 }
 
 #[test]
-fn a_dip_of_rounding_is_none() {
+fn a_dip_of_the_size_of_rounding_is_ignored() {
     let mut stage = Stage::open("cusps", &["motion.scheme='report'"], SMALL);
     stage.commands("pause = true\nstep = 1\nshow = ['step', '3d']\nphase = 'why'");
     stage.shows("no motion yet").commands("step = 200");
@@ -291,7 +291,7 @@ fn a_dip_of_rounding_is_none() {
 }
 
 #[test]
-fn why_speaks_of_the_forces_that_act() {
+fn why_describes_the_acting_forces() {
     for (preset, set, words) in [
         ("cusps", "motion.scheme='report'", "The forces pull down"),
         ("torque-free", "motion.scheme='report'", "No torque acts"),
@@ -310,7 +310,7 @@ fn why_speaks_of_the_forces_that_act() {
 }
 
 #[test]
-fn the_slope_of_the_momentum_names_friction_where_it_is_in_its_number() {
+fn the_slope_of_the_momentum_mentions_friction_if_present() {
     for (preset, is_rubbed) in [("first-dip", true), ("cusps", false)] {
         let mut stage = Stage::open(preset, &["motion.scheme='rk4'"], LARGE);
         stage.commands("pause = true\nstep = 5\nfill = 'step'\nphase = 1");
@@ -338,7 +338,7 @@ fn every_phase_of_every_scheme_has_a_page() {
 }
 
 #[test]
-fn no_size_is_too_small() {
+fn the_step_pane_is_drawn_at_every_size() {
     let mut stage = Stage::open("wobble-push", &[], SMALL);
     stage.commands("pause = true\nstep = 5\nshow = ['step', '3d']\nsum_to = 5");
     for page in ["1", "3", "5", "6", "'why'"] {
@@ -356,7 +356,7 @@ fn no_size_is_too_small() {
 }
 
 #[test]
-fn it_has_a_fixed_share_of_the_screen() {
+fn the_step_pane_has_a_fixed_share_of_the_screen() {
     let widths = |stage: &Stage| -> Vec<(&'static str, u16)> {
         let panes = screen::layout(&stage.lab, true, stage.size).panes;
         let widths = panes.iter().map(|(pane, place)| (pane.id(), place.width));
@@ -364,7 +364,7 @@ fn it_has_a_fixed_share_of_the_screen() {
     };
     let mut stage = Stage::open("method-2", &["view.show=['above', '3d', 'step']"], SMALL);
     stage.commands("pause = true");
-    // Its tables need all of 80 columns; Tab leads to the run.
+    // Its tables need all 80 columns; Tab switches to the run.
     assert_eq!(widths(&stage), [("step", 80)]);
     stage.press("\t");
     let beside = stage.focus();
@@ -381,7 +381,7 @@ fn it_has_a_fixed_share_of_the_screen() {
 }
 
 #[test]
-fn a_phase_shows_its_own_arrows_in_space() {
+fn a_phase_shows_its_own_arrows_in_3d() {
     let set = ["motion.scheme='report'", "motion.time_step_s=0.2"];
     let mut stage = Stage::open("falling", &set, LARGE);
     stage.commands("pause = true\nstep = 2\nshow = ['3d', 'step']");
@@ -397,7 +397,7 @@ fn a_phase_shows_its_own_arrows_in_space() {
         has_all(&scene, shown.split('|'));
         hidden.split('|').for_each(|words| has_no(&scene, words));
     }
-    // Without the step pane it shows the usual ones.
+    // Without the step pane, the 3-D view shows the usual arrows.
     stage.commands("show = ['3d', 'above']");
     let scene = picture_of(&stage, Pane::ThreeD);
     has_all(
@@ -408,7 +408,7 @@ fn a_phase_shows_its_own_arrows_in_space() {
 }
 
 #[test]
-fn under_friction_the_change_of_momentum_is_not_said_to_be_along_the_torque() {
+fn with_friction_the_change_of_momentum_is_not_along_the_torque() {
     let mut stage = Stage::open("first-dip", &["motion.scheme='rk4'"], LARGE);
     stage.commands("pause = true\nstep = 5\nshow = ['3d', 'step']\nphase = 7");
     let scene = picture_of(&stage, Pane::ThreeD);
@@ -417,7 +417,7 @@ fn under_friction_the_change_of_momentum_is_not_said_to_be_along_the_torque() {
 }
 
 #[test]
-fn a_large_body_is_shown_as_any_other() {
+fn a_body_with_100_000_points_is_shown() {
     let scenario = parse(
         "title = 'x'\n[body.rim]\npoints = 99999\nradius_m = 0.8\nheight_m = 0.5\npoint_mass_kg = 0.00005\n\
          [[body.point]]\nname = 'top'\nat_m = [0, 0, 1]\n[start]\ntilt_deg = 30\nmomentum_Js = [0, 0, 100]\n\
@@ -441,7 +441,7 @@ fn a_large_body_is_shown_as_any_other() {
 }
 
 #[test]
-fn it_comes_back_with_the_session() {
+fn the_step_pane_is_restored_with_the_session() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.commands("pause = true\nstep = 4").press("v....");
     stage.commands("phase = 'torque'\nsum_to = 3");
@@ -455,7 +455,7 @@ fn it_comes_back_with_the_session() {
 }
 
 #[test]
-fn a_file_may_hold_the_page_of_the_step_pane() {
+fn a_file_may_set_the_page_of_the_step_pane() {
     let text = "title = 'x'\n[view]\nphase = 3\nsum_to = 'all'\nshow = ['step', 'above']";
     let document = Document::parse("x.toml", text).unwrap();
     let told = document.scenario().unwrap_err().to_string();
@@ -463,7 +463,7 @@ fn a_file_may_hold_the_page_of_the_step_pane() {
 }
 
 #[test]
-fn pictures_of_the_step() {
+fn pages_of_the_step_pane_match_their_snapshots() {
     let pages = [
         ("inertia", "phase = 1"),
         ("inertia_adds_up", "phase = 1\nsum_to = 4"),
@@ -475,7 +475,7 @@ fn pictures_of_the_step() {
     for (size, name) in [(SMALL, "small"), (LARGE, "large")] {
         let mut stage = Stage::open("wobble-push", &[], size);
         stage.commands("pause = true\nstep = 12\nshow = ['3d', 'step']");
-        // The tables are what a large screen shows otherwise.
+        // Only tables look different on a large screen, so one page of them is enough.
         let shown = if size == SMALL {
             &pages[..]
         } else {

@@ -1,4 +1,4 @@
-//! Sweeps in the library: those that are shipped, and the rows computed again.
+//! Sweeps in the library: the shipped sweeps, shards, and verification of rows.
 
 use gyrolab::engine::scenario::Document;
 use gyrolab::studies::sweep::{SWEEPS, Shard, Sweep, find};
@@ -33,7 +33,7 @@ fn csv(sweep: &Sweep) -> String {
 }
 
 #[test]
-fn the_table_of_sweeps_is_the_folder() {
+fn every_sweep_in_the_folder_is_in_the_table() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("presets/sweeps");
     let files: BTreeSet<_> = fs::read_dir(folder)
         .unwrap()
@@ -55,9 +55,9 @@ fn the_table_of_sweeps_is_the_folder() {
     }
 }
 
-/// The claims that the files make, each at a few of their points.
+/// Checks the claims of the sweep files at a few of their points.
 #[test]
-fn the_shipped_sweeps_show_what_they_say() {
+fn shipped_sweeps_support_their_claims() {
     let cells = |sweep: &Sweep, row: u64| -> Vec<f64> {
         let row = sweep.row(row, &|| true).unwrap();
         assert!(!row.has_failed);
@@ -66,7 +66,7 @@ fn the_shipped_sweeps_show_what_they_say() {
     };
     let wobble = shipped("wobble-over-time-step");
     assert_eq!(wobble.rows(), 219);
-    // 0.1 s is 4.97 turns a step, 0.0905 s is 4.50: a tooth, and the gap before it.
+    // 0.1 s is 4.97 turns per step, 0.0905 s is 4.50: a tooth of the comb, and the gap before it.
     let [tooth, gap] = [198, 179].map(|row| cells(&wobble, row));
     assert!((tooth[0] - 0.1).abs() < 1e-12 && (gap[0] - 0.0905).abs() < 1e-12);
     assert!((tooth[1] - 4.974).abs() < 1e-2 && (gap[1] - 4.501).abs() < 1e-2);
@@ -89,14 +89,14 @@ fn the_shipped_sweeps_show_what_they_say() {
 
     let tilt = shipped("precession-over-tilt");
     let rate = |row| cells(&tilt, row)[2];
-    // Tilts of 15 and 75 degrees, by the report's scheme and by the exact motion.
+    // Tilts of 15 and 75 degrees, with the report's scheme and the exact motion.
     let [report, exact] = [[2, 14], [19, 31]].map(|[low, high]| rate(low) / rate(high) - 1.0);
     assert!((exact / 5e-5 - 1.0).abs() < 0.3, "{exact}");
     assert!(report < -5e-3, "{report}");
 }
 
 #[test]
-fn shards_are_the_rows_of_the_whole() {
+fn shards_contain_the_rows_of_the_whole_sweep() {
     let whole = parsed(SMALL);
     let rows: Vec<_> = (0..6)
         .map(|row| whole.row(row, &|| true).unwrap().line)
@@ -116,7 +116,7 @@ fn shards_are_the_rows_of_the_whole() {
 }
 
 #[test]
-fn a_line_counts_as_a_row_only_if_every_field_is_a_value_of_its_readout() {
+fn a_row_needs_a_valid_value_in_every_field() {
     let sweep = parsed(&SMALL.replace(
         "\"z_m\", \"path\"",
         "\"z_m\", \"steps\", \"nutation_is_resolved\", \"path\", \"scheme\"",
@@ -151,10 +151,10 @@ fn a_line_counts_as_a_row_only_if_every_field_is_a_value_of_its_readout() {
             assert!(!is_row(&with(place, cell)), "{cell:?} at {place}");
         }
     }
-    // A torn line, one without its end, and two in one.
+    // A truncated line, a line without its end, and two lines in one.
     for end in 0..good.len() - 1 {
         let torn = format!("{}\n", &good[..end]);
-        // An empty field is a readout that cannot be stated.
+        // An empty field means that the readout could not be determined.
         let is_empty = torn.ends_with(",\n") && torn.matches(',').count() == 6;
         assert!(!is_row(&good[..end]) && is_row(&torn) == is_empty, "{torn}");
     }
@@ -163,7 +163,7 @@ fn a_line_counts_as_a_row_only_if_every_field_is_a_value_of_its_readout() {
 }
 
 #[test]
-fn verification_finds_one_changed_digit() {
+fn verification_detects_one_changed_digit() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("small.csv");
     let good = csv(&parsed(SMALL));
@@ -210,7 +210,7 @@ fn verification_finds_one_changed_digit() {
 }
 
 #[test]
-fn a_row_that_begins_as_the_header_does_is_a_row() {
+fn a_row_that_looks_like_a_header_line_is_a_row() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("small.csv");
     let good = csv(&parsed(

@@ -1,4 +1,4 @@
-//! Figures of sweeps: what was measured, theory, and what is neither are told apart, and so are the curves.
+//! Figures of sweeps: measurements, theory, other readouts and curves are distinguishable.
 
 use crate::figures::{is_tidy, says, table, words};
 use gyrolab::plot::COLUMN_PT;
@@ -7,14 +7,14 @@ use gyrolab::plot::ink::PointMark;
 use gyrolab::report::figure::of_table::{self, TableView};
 
 #[test]
-fn a_line_of_theory_with_gaps_says_where_they_are_explained() {
+fn gaps_in_a_theory_line_are_explained() {
     let gappy = SWEEP.replace("0.000001,0.84,", "0.000001,,");
     let told = |text: &str| of_table::warning(&table(text), &chart(text));
     let said = |text: &str| told(text).unwrap_or_default();
     assert!(said(&gappy).starts_with("2 of 8 values have no point: "));
     let whole = SWEEP.replace("30,,,0.87,\n", "");
     assert_eq!(told(&whole), None);
-    // A logarithmic axis does not show 0.
+    // A logarithmic axis cannot show 0.
     let zero = whole
         .replace("0.90,0.01", "0,0.01")
         .replace("0.88,0.02", "900,0.02");
@@ -25,7 +25,7 @@ fn a_line_of_theory_with_gaps_says_where_they_are_explained() {
 }
 
 #[test]
-fn two_theories_of_one_quantity_have_two_marks() {
+fn two_theories_of_one_quantity_have_different_marks() {
     let both = SWEEP
         .replace(
             "predicted_precession_rad_per_s,path",
@@ -57,7 +57,7 @@ start.tilt_deg,measured_precession_rad_per_s,measured_precession_uncertainty_rad
 ";
 
 #[test]
-fn a_sweep_shows_measured_points_with_bars_on_the_predicted_line() {
+fn a_sweep_shows_measurements_with_error_bars_and_the_predicted_line() {
     let chart = of_table::chart(&table(SWEEP), &TableView::of_columns(&[], COLUMN_PT)).unwrap();
     let [panel] = &chart.panels[..] else {
         panic!("{chart:?}")
@@ -89,7 +89,7 @@ fn names(series: &[ChartSeries]) -> Vec<&str> {
     series.iter().map(|series| series.name.as_str()).collect()
 }
 
-/// A sweep of two keys, the first of which has curves: its names, and the columns of theory and measurement.
+/// The CSV of a sweep over two keys with one curve per value of `key`, with columns of theory and measurement.
 fn two_keys(key: &str, rows: &str) -> String {
     format!(
         "# [[vary]]\n# key = \"{key}\"\n# values = [1]\n# [[vary]]\n# key = \"start.tilt_deg\"\n# values = [1]\n\
@@ -99,7 +99,7 @@ fn two_keys(key: &str, rows: &str) -> String {
 }
 
 #[test]
-fn theory_is_drawn_once_with_what_was_measured() {
+fn theory_is_drawn_once_for_several_measured_curves() {
     let rows =
         "report,10,0.9,0.8,0.1\nreport,20,0.8,0.7,0.1\nrk4,10,0.91,0.8,0.1\nrk4,20,0.81,0.7,0.1\n";
     let chart = chart(&two_keys("motion.scheme", rows));
@@ -113,7 +113,7 @@ fn theory_is_drawn_once_with_what_was_measured() {
     );
     assert_eq!(precession.series[0].style.mark, Some(PointMark::Cross));
     assert_eq!(precession.series[1].style.mark, Some(PointMark::Dot));
-    // What is neither has no mark of what was measured, and a name of its own.
+    // A readout that is neither has no mark of a measurement, and its own name.
     assert_eq!(
         names(&turns.series),
         ["simulated, without error", "simulated, without error"]
@@ -122,7 +122,7 @@ fn theory_is_drawn_once_with_what_was_measured() {
 }
 
 #[test]
-fn theory_that_differs_between_the_curves_has_a_line_for_each_and_one_name() {
+fn theories_that_differ_have_one_line_per_curve_and_one_name() {
     let rows =
         "60.0,10,0.9,0.8,0.1\n60.0,20,0.8,0.7,0.1\n-80.5,10,0.91,0.6,0.1\n-80.5,20,0.81,0.5,0.1\n";
     let chart = chart(&two_keys("start.momentum_Js.2", rows));
@@ -140,7 +140,7 @@ fn theory_that_differs_between_the_curves_has_a_line_for_each_and_one_name() {
 }
 
 #[test]
-fn a_curve_is_named_by_symbol_value_and_unit_of_its_key() {
+fn curves_are_named_by_symbol_value_and_unit() {
     for (key, name) in [
         ("start.azimuth_deg", "simulated, *φ*_{0} = −100°"),
         ("push.0.force_N.2", "simulated, push 0 force *z* = −100 N"),
@@ -153,7 +153,7 @@ fn a_curve_is_named_by_symbol_value_and_unit_of_its_key() {
 }
 
 #[test]
-fn a_curve_whose_runs_all_failed_says_so() {
+fn a_curve_of_failed_runs_is_labeled_as_such() {
     let rows = "report,10,0.9,0.8,0.1\nreport,20,0.8,0.7,0.1\nrk4,10,,,\nrk4,20,,,\n";
     let text = two_keys("motion.scheme", rows);
     let scene = chart(&text).scene();
@@ -163,7 +163,7 @@ fn a_curve_whose_runs_all_failed_says_so() {
 }
 
 #[test]
-fn many_rows_of_theory_are_a_line() {
+fn many_rows_of_theory_are_drawn_as_a_line() {
     let rows: String = (0..60)
         .map(|row| format!("report,{row},0.9,0.8,0.1\n"))
         .collect();
@@ -173,7 +173,7 @@ fn many_rows_of_theory_are_a_line() {
 }
 
 #[test]
-fn too_many_quantities_say_which_option_chooses_some() {
+fn too_many_quantities_are_rejected_with_the_option_to_choose() {
     let names = ["x_m", "y_m", "z_m", "Lx_Js", "Ly_Js", "Lz_Js", "tilt_deg"];
     let text = format!(
         "# [[vary]]\n# key = \"motion.steps\"\nmotion.steps,{},measured_lowest_z_m\n1,1,1,1,1,1,1,1,1\n",

@@ -1,5 +1,5 @@
-//! The textbook's top (ring of 5 kg at 1 m: I1 = 6.6, I3 = 3.2, mgl = 49), measured on runs of the shipped presets
-//! and held against figures from elliptic integrals (30 digits) that know nothing of any stepping.
+//! The textbook's top (ring of 5 kg at 1 m: I1 = 6.6, I3 = 3.2, mgl = 49), measured in runs of the shipped presets and
+//! compared with values from elliptic integrals (30 digits), which are independent of any integration.
 
 use crate::support::scenarios::preset as preset_with;
 use gyrolab::engine::run::{Sample, Simulation};
@@ -52,7 +52,7 @@ fn turn(w: &[Sample]) -> Turn {
     }
 }
 
-/// Nutation period (s) and mean precession (rad/s) between the first turning point at the top and the last.
+/// Returns the nutation period (s) and mean precession (rad/s) between the first and the last upper turning point.
 fn period_and_precession(samples: &[Sample]) -> (f64, f64) {
     let tops = turns(samples, true);
     let (first, last) = (&tops[0], &tops[tops.len() - 1]);
@@ -70,7 +70,7 @@ fn close(what: &str, measured: f64, expected: f64, within: f64) {
 }
 
 #[test]
-fn tilt_range_nutation_and_precession() {
+fn tilt_range_nutation_and_precession_match_elliptic_integrals() {
     // preset, lowest and highest tilt (degrees), nutation period (s), mean precession (rad/s)
     let table = [
         ("cusps", 30.0, 36.6891215715, 0.822521087585, 0.886032863298),
@@ -124,12 +124,12 @@ fn tilt_range_nutation_and_precession() {
 }
 
 #[test]
-fn small_nutation_about_steady_precession() {
+fn small_nutation_about_steady_precession_has_the_known_period() {
     for (preset, momentum, period) in [
         ("steady-slow", 2.9454441985424347, 0.83131382),
         ("steady-fast", 31.695571952835103, 0.70252998),
     ] {
-        // A nudge moves the mean tilt too, and with it the period, to first order: nudges both ways cancel that.
+        // To first order, a nudge also changes the mean tilt and thus the period. Nudges in both directions cancel this.
         let nudged = |nudge: f64| {
             let set = format!("start.momentum_Js.1={}", momentum + nudge);
             let samples = samples(
@@ -143,8 +143,8 @@ fn small_nutation_about_steady_precession() {
 }
 
 #[test]
-fn without_torque_the_report_turns_the_axle_onto_l() {
-    // κ = 0.485 is below 1: the scheme damps the free nutation, and the more the larger the step.
+fn without_torque_the_report_scheme_aligns_the_axle_with_l() {
+    // κ = 0.485 is below 1: the scheme damps the free nutation, more strongly with larger steps.
     for (dt, steps, tilt, within) in [("0.001", 20_000, 13.5, 0.05), ("0.01", 2_000, 0.005, 5e-4)] {
         let set = [
             "motion.scheme=report".to_owned(),

@@ -1,4 +1,4 @@
-//! What theory says of the textbook's tops, and what the instruments measure on their runs.
+//! Theory for the textbook's tops, and the measurements in their runs.
 
 use crate::support::scenarios::preset as opened;
 use crate::support::words::{has, has_all, has_no};
@@ -22,7 +22,7 @@ fn theory(scenario: &Arc<Scenario>, time_s: f64) -> Option<Theory> {
     Monitor::new(simulation.now()).theory(time_s)
 }
 
-/// A run to its end, and what has followed it.
+/// Plays a run to its end, and returns it with the monitor that recorded it.
 fn followed(scenario: &Arc<Scenario>) -> (Simulation, Monitor) {
     let mut simulation = Simulation::new(Arc::clone(scenario));
     let mut monitor = Monitor::new(simulation.now());
@@ -33,7 +33,7 @@ fn followed(scenario: &Arc<Scenario>) -> (Simulation, Monitor) {
     (simulation, monitor)
 }
 
-/// What elliptic integrals and L_z / L3 say of a preset.
+/// Values of a preset from elliptic integrals and L_z / L3.
 struct Row {
     name: &'static str,
     tilts_deg: [f64; 2],
@@ -89,7 +89,7 @@ fn close(what: &str, seen: f64, known: f64, within: f64) {
 }
 
 #[test]
-fn theory_is_that_of_the_textbook() {
+fn theory_agrees_with_the_textbook() {
     for row in table() {
         let scenario = preset(row.name, &[]);
         for time in [0.0, 3.7] {
@@ -141,7 +141,7 @@ fn theory_is_that_of_the_textbook() {
 }
 
 #[test]
-fn steady_roots_are_those_of_the_present_tilt() {
+fn steady_roots_belong_to_the_current_tilt() {
     // 6.6 cos(tilt) w^2 - 60 w + 49 = 0.
     let mut monitor = Monitor::new(Simulation::new(preset("cusps", &[])).now());
     let mut truth = Truth::new(preset("cusps", &[]));
@@ -166,7 +166,7 @@ fn steady_roots_are_those_of_the_present_tilt() {
 }
 
 #[test]
-fn words_for_paths_are_what_the_azimuth_does() {
+fn path_names_match_the_azimuth() {
     for Row { name, path, .. } in table() {
         let theory = theory(&preset(name, &[]), 0.0).unwrap();
         let Some(period) = theory
@@ -176,7 +176,7 @@ fn words_for_paths_are_what_the_azimuth_does() {
             continue;
         };
         let mut truth = Truth::new(preset(name, &[]));
-        // By differences, through one whole nutation.
+        // By finite differences over one nutation.
         let mut azimuth = |time: f64| {
             let axle = truth.state_at(time).axle();
             axle.y.atan2(axle.x)
@@ -199,7 +199,7 @@ fn words_for_paths_are_what_the_azimuth_does() {
 }
 
 #[test]
-fn the_axle_stands_still_at_the_cusp_tilt() {
+fn the_azimuth_reverses_at_the_cusp_tilt() {
     let mut truth = Truth::new(preset("loops", &[]));
     let theory = theory(&preset("loops", &[]), 0.0).unwrap();
     let look = |motion: &mut Truth, time: f64| {
@@ -220,7 +220,7 @@ fn the_axle_stands_still_at_the_cusp_tilt() {
 }
 
 #[test]
-fn special_motions_have_their_words() {
+fn special_motions_have_their_own_path_names() {
     let free = theory(&preset("torque-free", &[]), 1.0).unwrap();
     assert_eq!(
         (free.path, free.nutation_period_s, free.cusp_tilt_deg),
@@ -276,7 +276,7 @@ fn under_a_sideways_push_theory_is_about_the_tilted_vertical() {
     let cusp = state.momentum.angle(&-load).cos() * state.momentum.norm() / spin;
     let seen = during.cusp_tilt_deg.unwrap();
     close("cusp", seen, cusp.acos().to_degrees(), 1e-9);
-    // Before, after, and before again.
+    // Before the push, after it, before it again, and during it.
     for time in [1.0, 7.0, 1.0, 3.0] {
         let load = if time == 3.0 { load.norm() } else { 49.0 };
         close("load", monitor.theory(time).unwrap().load, load, 1e-12);
@@ -291,7 +291,7 @@ fn summary(scenario: &Arc<Scenario>) -> RunSummary {
 }
 
 #[test]
-fn where_the_theory_does_not_hold_it_says_nothing_or_lopsided() {
+fn theory_is_absent_or_explained_where_it_does_not_apply() {
     let [place, mass] = LOPSIDED;
     let lopsided = preset("cusps", &[place, mass, "motion.steps=2000"]);
     assert_eq!(theory(&lopsided, 1.0), None);
@@ -308,13 +308,13 @@ fn where_the_theory_does_not_hold_it_says_nothing_or_lopsided() {
     let push = "push.0={point='side',force_N=[0,0,-1],from_s=1,for_s=1}";
     let off_axle = preset("cusps", &[side, push, "motion.steps=1500"]);
     assert!(theory(&off_axle, 0.5).is_some() && theory(&off_axle, 2.5).is_some());
-    // While the push is off the axle.
+    // During a push off the axle.
     assert_eq!(theory(&off_axle, 1.5), None);
     let pushed = summary(&off_axle).to_string();
     has(&pushed, "precession    none by theory, ");
     has_no(&pushed, "lopsided");
 
-    // A nutation that is there and cannot be stated is not said to be none.
+    // An existing nutation that cannot be determined is not reported as none.
     let told = |file: &str, steps: u64| {
         let mut document = Document::parse("lopsided.toml", file).unwrap();
         document.set(&format!("motion.steps={steps}")).unwrap();
@@ -338,7 +338,7 @@ fn where_the_theory_does_not_hold_it_says_nothing_or_lopsided() {
     has(&cusps, "nutation      0.822521 s by theory, 0.822521 +- ");
 }
 
-/// Difference from theory, and what is allowed for it.
+/// Returns the difference from theory and its tolerance.
 fn off(measured: Option<MeasuredNumber>, theory: f64, scheme: f64) -> (f64, f64) {
     let measured = measured.unwrap();
     let allowed = 5.0 * measured.uncertainty + scheme * theory.abs();
