@@ -5,7 +5,7 @@ use super::args::DisplayArgs;
 use super::class::unread;
 use super::new_lab::{new_lab, refused};
 use super::progress::Interruption;
-use super::{print, progress, tell};
+use super::{print, progress, tell, warn};
 use crate::class::folder::ClassFolder;
 use crate::class::login;
 use crate::class::votes::{SeatStatus, seat_statuses};
@@ -116,7 +116,7 @@ fn seat_answers(
         let lesson = match opening::open_again(name) {
             Ok(lesson) => lesson,
             Err(problems) => {
-                tell(format_args!(
+                warn(format_args!(
                     "gyrolab: {word}: answers are missing: {}",
                     printable(&problems.in_one_line())
                 ));

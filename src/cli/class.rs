@@ -4,7 +4,7 @@ use super::args::{ClassArgs, DisplayArgs, WorkbenchArgs};
 use super::lesson::admit;
 use super::new_lab::{DEFAULT, of_workbench};
 use super::workbench::{furnish, open_at};
-use super::{answers, print, rehearsal, sessions, settings, tell};
+use super::{answers, print, rehearsal, sessions, settings, tell, warn};
 use crate::class::folder::{ClassFolder, ClassState};
 use crate::class::projector::Projector;
 use crate::class::student::Student;
@@ -208,7 +208,7 @@ fn print_csv(
 pub(super) fn unread(seats: &[SeatStatus]) -> ExitCode {
     let mut code = ExitCode::SUCCESS;
     for trouble in seats.iter().filter_map(|seat| seat.trouble.as_ref()) {
-        tell(format_args!("gyrolab: {}", printable(trouble)));
+        warn(format_args!("gyrolab: {}", printable(trouble)));
         code = ExitCode::FAILURE;
     }
     code

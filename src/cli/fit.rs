@@ -5,7 +5,7 @@ mod throws;
 use super::args::{LengthArgs, MapArgs, STDIN, STDIN_WORDS, SetArgs, change, change_length, open};
 use super::argument_values::{positive, time};
 use super::progress::{self, Interrupted, Interruption, Meter};
-use super::{one_on_stdout, print, print_result, refuse, tell, tell_notes, tell_of_rows};
+use super::{one_on_stdout, print, print_result, refuse, tell_notes, tell_of_rows, warn};
 use crate::engine::data::{self, DataKind, MeasuredData};
 use crate::engine::export::Destination;
 use crate::engine::scenario::{Document, Problem, Problems, csv};
@@ -198,7 +198,7 @@ fn fit_each(args: &FitArgs, task: &Task, throws: &[Throw]) -> anyhow::Result<Exi
             Err(error) => {
                 code = ExitCode::FAILURE;
                 all.push(json!({ "flight": throw.json(), "error": format!("{error:#}") }));
-                tell(format_args!("gyrolab: flight {}: {error:#}", throw.number));
+                warn(format_args!("gyrolab: flight {}: {error:#}", throw.number));
             }
         }
     }

@@ -1,6 +1,6 @@
 //! The commands that print information: presets, schemes, keys, readouts, check.
 
-use super::{lesson, print, tell};
+use super::{lesson, print, warn};
 use crate::engine::analysis::readouts::READOUTS;
 use crate::engine::data;
 use crate::engine::export::summary::steps_in_words;
@@ -118,9 +118,9 @@ pub(super) fn check(files: &[PathBuf]) -> anyhow::Result<ExitCode> {
                 print(&format!("{}: {described}\n", PrintablePath(file)))?;
             }
             Err(problems) => {
-                tell(printable_lines(&problems.to_string()));
+                warn(printable_lines(&problems.to_string()));
                 if let Some(hint) = hint_of_preset(file) {
-                    tell(hint);
+                    warn(hint);
                 }
                 code = ExitCode::FAILURE;
             }

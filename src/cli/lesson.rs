@@ -2,7 +2,7 @@
 
 use super::args::{DisplayArgs, LessonArgs};
 use super::new_lab::{new_lab, paper_format, refused, write};
-use super::{notes, print, progress, sessions, tell, workbench};
+use super::{notes, print, progress, sessions, tell, warn, workbench};
 use crate::engine::scenario::Problems;
 use crate::engine::text::number::counted;
 use crate::engine::text::printable::{PrintablePath, printable_lines};
@@ -211,7 +211,7 @@ pub(super) fn checked(file: &Path) -> anyhow::Result<Result<String, Problems>> {
     Ok(played.map(|unstated| {
         for problem in unstated {
             let told = Problems::one(lesson.origin.clone(), problem).to_string();
-            tell(printable_lines(&told));
+            warn(printable_lines(&told));
         }
         described(&lesson)
     }))

@@ -48,6 +48,7 @@ use std::fmt::Display;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A terminal lab for the precession of a gyroscope: a report's stepper, better schemes, and any run as CSV.
 #[derive(Debug, Parser)]
@@ -61,6 +62,10 @@ use std::process::ExitCode;
 struct Cli {
     #[command(subcommand)]
     command: Option<CliCommand>,
+
+    /// Print only errors and warnings on stderr: no summary, no notes, no progress
+    #[arg(short, long, global = true)]
+    quiet: bool,
 
     #[command(flatten)]
     workbench: WorkbenchArgs,
@@ -137,10 +142,13 @@ pub fn main() -> ExitCode {
         .try_get_matches()
         .and_then(|matches| Cli::from_arg_matches(&matches));
     match parsed.map_err(explained) {
-        Ok(cli) => ended(execute(cli)),
+        Ok(cli) => {
+            IS_QUIET.store(cli.quiet, Ordering::Relaxed);
+            ended(execute(cli))
+        }
         Err(Ok(error)) => misused(&error),
         Err(Err(meant)) => {
-            tell(format_args!("gyrolab: {}", printable_lines(&meant)));
+            warn(format_args!("gyrolab: {}", printable_lines(&meant)));
             ExitCode::from(MISUSED)
         }
     }
@@ -338,8 +346,22 @@ fn print_result<T: Display + Serialize>(
     Ok(())
 }
 
-/// Prints `text` on stderr and ignores errors there.
+/// Set by `--quiet`.
+static IS_QUIET: AtomicBool = AtomicBool::new(false);
+
+fn is_quiet() -> bool {
+    IS_QUIET.load(Ordering::Relaxed)
+}
+
+/// Prints a message on stderr, unless `--quiet` was given.
 fn tell(text: impl Display) {
+    if !is_quiet() {
+        warn(text);
+    }
+}
+
+/// Prints an error or a warning on stderr, and ignores errors there.
+fn warn(text: impl Display) {
     let _ = writeln!(io::stderr(), "{text}");
 }
 
@@ -366,7 +388,7 @@ fn ended_by(error: Option<anyhow::Error>) -> ExitCode {
 
 fn complain(error: &anyhow::Error) {
     let error = format!("{error:#}");
-    tell(format_args!("gyrolab: {}", printable_lines(&error)));
+    warn(format_args!("gyrolab: {}", printable_lines(&error)));
 }
 
 /// True if the reader of the output has closed the pipe, as in `gyrolab run ... -o - | head`, which is not a failure.

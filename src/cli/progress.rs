@@ -1,12 +1,13 @@
 //! Progress of a long command on stderr, and the signals that end it.
 
-use super::INTERRUPTED;
+use super::{INTERRUPTED, is_quiet};
 use crate::engine::export::Destination;
 use crate::engine::export::temporary;
 use indicatif::{HumanCount, HumanDuration};
 use signal_hook::consts::{SIGHUP, TERM_SIGNALS};
 use signal_hook::flag;
 use signal_hook::iterator::Signals;
+use std::env;
 use std::io::{self, IsTerminal, Stderr, Write};
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -177,6 +178,29 @@ const PROGRESS_INTERVAL: Duration = Duration::from_millis(250);
 /// The columns of a line that changes: a longer one would be wrapped, and its first part would stay.
 const PROGRESS_WIDTH: usize = 79;
 
+/// Makes a command write its progress for a program that reads stderr.
+const PROGRESS_VARIABLE: &str = "GYROLAB_PROGRESS";
+
+/// Who reads the progress, and how it is written for them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Watcher {
+    /// A person: each text replaces the one before.
+    Person,
+    /// A program: each text is a line after a carriage return; the last one is empty.
+    Program,
+}
+
+/// Returns who watches the progress on stderr.
+fn watcher() -> Option<Watcher> {
+    if is_quiet() {
+        None
+    } else if env::var_os(PROGRESS_VARIABLE).is_some_and(|value| value == "lines") {
+        Some(Watcher::Program)
+    } else {
+        io::stderr().is_terminal().then_some(Watcher::Person)
+    }
+}
+
 /// The last line of a terminal, which is written anew. indicatif's bar is not used: it computes its rate with the C
 /// library's `exp` and `pow`, and nothing in this program shall.
 pub(super) struct LiveLine<T>
@@ -184,6 +208,7 @@ where
     for<'a> &'a T: Write,
 {
     terminal: T,
+    watcher: Watcher,
     written: Mutex<Option<Instant>>,
 }
 
@@ -191,9 +216,15 @@ impl<T> LiveLine<T>
 where
     for<'a> &'a T: Write,
 {
+    /// A line on a terminal.
     pub(super) fn new(terminal: T) -> Self {
+        Self::watched_by(Watcher::Person, terminal)
+    }
+
+    fn watched_by(watcher: Watcher, terminal: T) -> Self {
         Self {
             terminal,
+            watcher,
             written: Mutex::default(),
         }
     }
@@ -215,7 +246,11 @@ where
     /// What cannot be shown is not worth an error.
     fn write(&self, text: &str) {
         let mut terminal = &self.terminal;
-        let _ = write!(terminal, "\r\x1b[K{text}").and_then(|()| terminal.flush());
+        let _ = match self.watcher {
+            Watcher::Person => write!(terminal, "\r\x1b[K{text}"),
+            Watcher::Program => writeln!(terminal, "\r{text}"),
+        }
+        .and_then(|()| terminal.flush());
     }
 
     fn is_shown(&self) -> bool {
@@ -238,7 +273,7 @@ where
 /// Does `work`, which says nothing of how far it is. Meanwhile shows `what` it is and how long it has taken so far, after a
 /// second and for somebody who watches.
 pub(super) fn with_clock<T>(what: &str, work: impl FnOnce() -> T) -> T {
-    if !io::stderr().is_terminal() {
+    if watcher().is_none() {
         return work();
     }
     let (working, is_done) = mpsc::channel::<()>();
@@ -260,49 +295,57 @@ pub(super) fn with_clock<T>(what: &str, work: impl FnOnce() -> T) -> T {
 /// What is going on, on stderr: after a second, for somebody who watches.
 pub(super) struct Meter {
     of: &'static str,
+    /// How many an earlier command has done. They say nothing about the time that the others take.
+    done_before: u64,
     begin: Instant,
-    line: LiveLine<Stderr>,
+    /// `None` if nobody watches.
+    line: Option<LiveLine<Stderr>>,
 }
 
 impl Meter {
     /// A meter of steps, rows and the like.
     pub(super) fn counting(of: &'static str) -> Self {
+        let line = watcher().map(|watcher| LiveLine::watched_by(watcher, io::stderr()));
         Self {
             of,
+            done_before: 0,
             begin: Instant::now(),
-            line: LiveLine::new(io::stderr()),
+            line,
         }
     }
 
-    /// Shows at once that there are `steps` to come, and none done.
-    pub(super) fn begin(&self, steps: u64) {
-        if io::stderr().is_terminal() {
-            self.line.show(&self.count(0, steps));
+    /// Shows at once that `done_before` of `steps` are done, by an earlier command, and the others are to come.
+    pub(super) fn begin(&mut self, done_before: u64, steps: u64) {
+        self.done_before = done_before;
+        if let Some(line) = &self.line {
+            line.show(&self.count(done_before, steps));
         }
     }
 
     /// Shows how many there are, with rate and time left.
     pub(super) fn show(&self, step: u64, steps: u64) {
-        if self.is_wanted() {
-            self.line.show(&self.count(step, steps));
+        if let Some(line) = self.due_line() {
+            line.show(&self.count(step, steps));
         }
     }
 
     /// Shows `text`; for work of unknown length.
     pub(super) fn say(&self, text: &str) {
-        if self.is_wanted() {
-            self.line.show(text);
+        if let Some(line) = self.due_line() {
+            line.show(text);
         }
     }
 
-    fn is_wanted(&self) -> bool {
-        let is_late = self.line.is_shown() || self.begin.elapsed() >= QUIET;
-        is_late && io::stderr().is_terminal()
+    /// Returns the line if somebody watches and the work has taken a while.
+    fn due_line(&self) -> Option<&LiveLine<Stderr>> {
+        let line = self.line.as_ref()?;
+        (line.is_shown() || self.begin.elapsed() >= QUIET).then_some(line)
     }
 
     fn count(&self, step: u64, steps: u64) -> String {
         let left = steps.saturating_sub(step);
-        let pace = rate_and_rest(self.of, step, left, self.begin.elapsed());
+        let done = step.saturating_sub(self.done_before);
+        let pace = rate_and_rest(self.of, done, left, self.begin.elapsed());
         let (of, step, steps) = (self.of, HumanCount(step), HumanCount(steps));
         format!("{of} {step} of {steps}{pace}")
     }
@@ -350,5 +393,18 @@ mod tests {
         assert_eq!(told(5, 5, 2.0), ", 2.5/s, 2s left");
         assert_eq!(told(2, 98, 11.0), ", 5.5 s a row, 9m left");
         assert_eq!(told(10, 0, 20.0), ", 2.0 s a row, 0s left");
+    }
+
+    #[test]
+    fn a_resumed_count_has_the_whole_and_the_pace_of_the_rest() {
+        let resumed = Meter {
+            done_before: 990,
+            begin: Instant::now() - Duration::from_secs(10),
+            ..Meter::counting("row")
+        };
+        assert_eq!(
+            resumed.count(995, 1000),
+            "row 995 of 1,000, 2.0 s a row, 10s left"
+        );
     }
 }

@@ -3,7 +3,7 @@
 
 use super::args::{DisplayArgs, WorkbenchArgs};
 use super::new_lab::{DEFAULT, marker, of_workbench, theme_for};
-use super::{print, tell};
+use super::{print, tell, warn};
 use crate::engine::text::printable::{PrintablePath, printable};
 use crate::lab::storage::confined::Confined;
 use crate::lab::storage::session::{self, LeftAlone, ListedSession, Session};
@@ -110,14 +110,14 @@ pub(super) fn tell_of_session(
     };
     let trouble = why.as_deref().map(printable);
     let Some(summary) = kept.and_then(|content| SessionSummary::read(&content).ok()) else {
-        tell(format_args!(
+        warn(format_args!(
             "gyrolab: there is no session to resume: {}",
             trouble.unwrap_or_else(|| "nothing was saved".into())
         ));
         return Ok(());
     };
     if let Some(trouble) = trouble {
-        tell(format_args!(
+        warn(format_args!(
             "gyrolab: the last changes are lost: {trouble}"
         ));
     }

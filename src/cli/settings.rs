@@ -2,7 +2,7 @@
 
 use super::args::{DisplayArgs, WorkbenchArgs};
 use super::new_lab::variable;
-use super::tell;
+use super::warn;
 use crate::engine::scenario::Problems;
 use crate::engine::text::printable::printable_lines;
 use crate::lab::Lab;
@@ -56,7 +56,7 @@ impl Chosen {
                 .keep_saying_first(&format!("{all}: ignored until you choose it again; "));
         }
         if let Some(problems) = &self.config.problems {
-            tell(format_args!(
+            warn(format_args!(
                 "gyrolab: {}\ngyrolab: wrong settings are ignored; gyrolab man lists all settings",
                 printable_lines(&problems.to_string())
             ));

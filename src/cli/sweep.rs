@@ -267,8 +267,8 @@ fn add_rows(
     interruption: &Interruption,
 ) -> Result<(), SweepFileError> {
     let (begin, all) = (part.rows, sweep.rows());
-    let meter = Meter::counting("row");
-    meter.begin(all - begin);
+    let mut meter = Meter::counting("row");
+    meter.begin(begin, all);
     let mut added = Ok(());
     in_order(
         begin..all,
@@ -280,8 +280,7 @@ fn add_rows(
             if added.is_err() {
                 return ControlFlow::Break(());
             }
-            // The rows of an earlier command say nothing about the time that the others take.
-            meter.show(part.rows - begin, all - begin);
+            meter.show(part.rows, all);
             interruption.go_on()
         },
     );

@@ -3,7 +3,7 @@
 
 use super::argument_values::{one_or_more, setting};
 use super::progress::{self, Interrupted, Interruption};
-use super::{fit, print, reproduce, tell, writeup};
+use super::{fit, print, reproduce, warn, writeup};
 use crate::engine::export::OutputFolder;
 use crate::engine::scenario::csv::{self, Renaming, renaming};
 use crate::engine::scenario::{Document, Problems, Scenario};
@@ -96,7 +96,7 @@ fn report_result(file: &Path, result: anyhow::Result<bool>) -> anyhow::Result<bo
             if problems.origin.is_empty() {
                 problems.origin = file.display().to_string();
             }
-            tell(printable_lines(&problems.to_string()));
+            warn(printable_lines(&problems.to_string()));
             Ok(false)
         }
     })

@@ -321,6 +321,26 @@ fn a_file_size_limit_fails_the_write() {
 }
 
 #[test]
+fn quiet_silences_all_but_errors() {
+    let lab = Ground::new();
+    for command in [
+        "run method-2 --steps 9 -o run.csv",
+        "sweep cusps --steps 2 --vary start.tilt_deg=10,20 --measure z_m -o sweep.csv",
+        "figure cusps -o figure.svg",
+        "fit heidelberg-nutation --in heidelberg --free body.part.0.moments_kg_m2.2 -o fit.csv",
+    ] {
+        assert_ne!(lab.stderr(command), "", "{command}");
+        assert_eq!(
+            lab.stderr(&format!("{command} --force -q")),
+            "",
+            "{command}"
+        );
+    }
+    lab.refused("run nothing --quiet", 1, &["nothing"]);
+    lab.refused("check run.toml --quiet", 1, &["run.toml"]);
+}
+
+#[test]
 fn a_closed_pipe_ends_the_program_silently() {
     let lab = Ground::new();
     for command in [

@@ -646,6 +646,22 @@ fn progress_is_shown_from_the_beginning() {
     assert_eq!(terminal.wait_for_end().exit_code(), 130);
 }
 
+/// A program that asks for it gets the progress as lines. Rows of an earlier command count.
+#[test]
+fn the_progress_of_a_resumed_sweep_counts_the_whole() {
+    let ground = Ground::new();
+    let args = "cusps --set=motion.steps=2 --vary=start.tilt_deg=10,20,30 --measure=z_m";
+    make(&ground, args, "out.csv");
+    let whole = ground.read("out.csv");
+    let begun: Vec<&str> = whole.split_inclusive('\n').collect();
+    ground.write("out.csv.part", &begun[..begun.len() - 2].concat());
+    remove(&ground, "out.csv");
+    let mut command = ground.command(&sweep(args, "out.csv"));
+    let told = made(&command.env("GYROLAB_PROGRESS", "lines").output().unwrap());
+    has(&told, "\rrow 1 of 3\n\r\ngyrolab: 3 rows in out.csv\n");
+    assert_eq!(ground.read("out.csv"), whole);
+}
+
 #[test]
 fn a_value_may_be_an_empty_string() {
     let ground = Ground::new();
