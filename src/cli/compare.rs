@@ -115,7 +115,7 @@ fn chosen_schemes(
     if let Some((name, why)) = unable {
         let names: Vec<_> = able.map(|scheme| scheme.name).collect();
         bail!(
-            "{}: --schemes {name} does not support this friction: it {why}; choose from {}",
+            "{}: --schemes {name} does not support this friction: it {why}; use one of {}",
             args.scenario.scenario,
             names.join(", ")
         );
