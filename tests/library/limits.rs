@@ -124,7 +124,7 @@ fn problems_beyond_a_limit_are_counted() {
 }
 
 #[test]
-fn hundreds_of_edited_pushes_are_parsed() {
+fn each_of_many_edits_changes_only_its_own_push() {
     const COUNT: usize = 900;
     let mut text = GOOD.to_owned() + &PUSH.repeat(COUNT);
     for index in 0..COUNT {

@@ -367,7 +367,7 @@ fn measurement_is_theory(name: &str, scenario: &Arc<Scenario>, scheme: f64) {
 }
 
 #[test]
-fn what_is_measured_on_exact_motion_is_what_theory_says() {
+fn measurements_of_the_exact_motion_agree_with_theory() {
     let names = table()
         .map(|row| row.name)
         .chain(["torque-free", "fast-top"]);
@@ -378,8 +378,8 @@ fn what_is_measured_on_exact_motion_is_what_theory_says() {
             let scenario = resampled(&scenario, step, SchemeInfo::find(scheme).unwrap());
             measurement_is_theory(name, &Arc::new(scenario), 1e-13);
         }
-        // rk4, as they are shipped, falls behind by psi^4/120 of every radian and damps by psi^5/144 a step, psi that of
-        // a time step's turning.
+        // The shipped rk4 runs lag by psi^4/120 per radian and are damped by psi^5/144 per step, where psi is the turn in
+        // a time step.
         let shipped = preset(name, &[]);
         let psi = shipped.start.momentum.norm() / 3.2 * step;
         measurement_is_theory(name, &shipped, psi.powi(4) / 24.0);
@@ -387,9 +387,9 @@ fn what_is_measured_on_exact_motion_is_what_theory_says() {
 }
 
 #[test]
-fn uncertainty_is_honest_where_few_steps_make_a_nutation() {
+fn uncertainties_are_right_with_few_steps_per_nutation() {
     let exact = SchemeInfo::find("exact").unwrap();
-    // Of nutation and of precession.
+    // For nutation and for precession.
     let (mut worst, mut precise) = ([0.0_f64; 2], [0; 2]);
     for (name, cases) in [
         ("cusps", 50),
@@ -425,8 +425,8 @@ fn uncertainty_is_honest_where_few_steps_make_a_nutation() {
 }
 
 #[test]
-fn uncertainty_is_that_of_repeated_measurements() {
-    // An aliased run, and one without any period: what one half shows, the other must, within both uncertainties.
+fn uncertainties_match_repeated_measurements() {
+    // An aliased run, and one without any period: both halves must agree within their uncertainties.
     let aliased = preset("method-2", &["motion.steps=4600"]);
     let motion = [
         "motion.steps=200000",
@@ -456,7 +456,7 @@ fn uncertainty_is_that_of_repeated_measurements() {
     }
 }
 
-/// The ball of Heidelberg with these moments about its center, g m².
+/// The Heidelberg ball with `moments` about its center, g m².
 fn ball(moments: [f64; 3]) -> Arc<Scenario> {
     let moments = moments.map(|moment| 1e-3 * moment);
     let moments = format!("body.part.0.moments_kg_m2={moments:?}");
@@ -472,12 +472,12 @@ fn ball(moments: [f64; 3]) -> Arc<Scenario> {
 }
 
 #[test]
-fn a_nearly_symmetric_body_has_the_theory_of_its_mean_moment() {
+fn theory_of_a_nearly_symmetric_body_uses_its_mean_moment() {
     for [a, b] in [[4.0, 4.001], [4.01, 4.0], [4.0, 4.04]] {
         let scenario = ball([a, b, 3.0]);
         let (simulation, mut monitor) = followed(&scenario);
         let theory = monitor.theory(simulation.now().time_s()).unwrap();
-        // The weight adds 0.00985 kg 15.55 cm up the axle.
+        // The weight adds 0.00985 kg at 15.55 cm along the axle.
         let weight = 0.00985 * 0.1555 * 0.1555 * 1e3;
         let asymmetry = (a - b).abs() / (0.5 * (a + b) + weight);
         close("asymmetry", theory.asymmetry, asymmetry, 1e-12);
@@ -519,12 +519,12 @@ fn followed_theory(scenario: &Arc<Scenario>) -> Theory {
 }
 
 #[test]
-fn theory_ends_where_the_asymmetry_decides_the_motion() {
+fn there_is_no_theory_for_a_large_asymmetry() {
     let has_theory = |moments| theory(&ball(moments), 0.0).is_some();
     assert!(has_theory([4.0, 4.042, 3.0]) && !has_theory([4.0, 4.044, 3.0]));
-    // The moment along the axle is between the two, or near to them.
+    // The moment along the axle is between the other two, or close to them.
     assert!(!has_theory([4.0, 4.01, 4.24]) && !has_theory([4.0, 4.01, 4.2]));
-    // Off the axle by 1e-7 and by 10 % of the radius of gyration.
+    // A mass off the axle by 1e-7 and by 10 % of the radius of gyration.
     let aside = |x: &str| preset("cusps", &["body.point.2.mass_kg=0.5", x]);
     let aside = |x: &str| theory(&aside(&format!("body.point.2.at_m=[{x},0,0]")), 0.0);
     assert!(aside("1e-6").unwrap().asymmetry > 0.0);

@@ -1,4 +1,4 @@
-//! A phone that is thrown: from the noise of its gyroscope the fit finds the ratios of its moments, from values of its own.
+//! A thrown phone: the fit recovers the ratios of its moments from a noisy gyroscope recording and other initial values.
 
 use crate::support::dice::Dice;
 use crate::support::scenarios::preset;
@@ -15,11 +15,11 @@ const FREE: [&str; 5] = [
     "start.omega_rad_per_s.1",
     "start.omega_rad_per_s.2",
 ];
-/// The moments of the phone that is thrown; the preset's are 2 and 13 % off in the first two.
+/// The moments of the thrown phone, kg m². The first two of the preset are 2 and 13 % off.
 const MOMENTS: [f64; 3] = [3.0e-4, 8.5e-5, 3.7957e-4];
 const NOISE: f64 = 0.01;
 
-/// The rates without noise, 100 a second for 4 s.
+/// The rates without noise at 100 Hz for 4 s.
 fn flight() -> &'static MeasuredData {
     static FLIGHT: OnceLock<MeasuredData> = OnceLock::new();
     FLIGHT.get_or_init(|| {
@@ -45,7 +45,7 @@ fn flight() -> &'static MeasuredData {
     })
 }
 
-/// The fit of that flight with the noise of a phone.
+/// Fits that flight with the noise of a phone.
 fn thrown(seed: u64) -> Fit {
     let mut dice = Dice(seed);
     for _ in 0..10 {
@@ -66,11 +66,11 @@ fn thrown(seed: u64) -> Fit {
     fit(&model, &|| true, &|_, _| {}).unwrap_or_else(|error| panic!("seed {seed}: {error}"))
 }
 
-/// How many of so many fits have each ratio within two of its uncertainties.
+/// Counts, for each ratio, the fits out of `trials` with the ratio within two of its uncertainties.
 fn covered(trials: u64) -> [usize; 2] {
     let seeds = (1..=trials).into_par_iter();
     let fits: Vec<Fit> = seeds.map(|seed| thrown(seed * 0x9E37_79B9)).collect();
-    // The third moment is held, so the first two are the ratios.
+    // The third moment is fixed, so the first two determine the ratios.
     [0, 1].map(|axis| {
         fits.iter()
             .filter(|fit| {
@@ -82,7 +82,7 @@ fn covered(trials: u64) -> [usize; 2] {
 }
 
 #[test]
-fn the_ratios_of_moments_come_back_from_a_noisy_recording() {
+fn ratios_of_moments_are_recovered_from_a_noisy_recording() {
     for count in covered(100) {
         assert!((90..=99).contains(&count), "{count}");
     }
@@ -90,7 +90,7 @@ fn the_ratios_of_moments_come_back_from_a_noisy_recording() {
 
 #[test]
 #[ignore = "a thousand fits"]
-fn the_ratios_of_moments_lie_within_two_sigma_as_often_as_they_should() {
+fn two_sigma_intervals_cover_the_ratios_at_the_expected_rate() {
     for count in covered(1000) {
         assert!((930..=980).contains(&count), "{count}");
     }

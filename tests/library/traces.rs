@@ -1,4 +1,4 @@
-//! The strips of the traces and the overview: what a person sees of a run.
+//! The strips of the traces and the overview.
 
 use crate::support::stage::{LARGE, SMALL, Stage};
 use gyrolab::engine::data::QUANTITIES;
@@ -25,7 +25,7 @@ const COLORS: Theme = Theme {
     background: Background::Dark,
 };
 
-/// A preset, paused at `step`.
+/// Opens a preset, paused at `step`.
 fn at(preset: &str, set: &[&str], step: u64, size: Rect) -> Stage {
     let mut stage = Stage::open(preset, set, size);
     stage.commands(&format!("pause = true\ngo_to = {step}"));
@@ -36,7 +36,7 @@ fn at(preset: &str, set: &[&str], step: u64, size: Rect) -> Stage {
     stage
 }
 
-/// The whole screen with colors.
+/// Draws the whole screen with colors.
 fn colored(stage: &mut Stage) -> Buffer {
     stage.lab.view_mut().theme = COLORS;
     let mut buf = Buffer::empty(stage.size);
@@ -53,7 +53,7 @@ fn overview(stage: &Stage) -> Rect {
     screen::layout(&stage.lab, true, stage.size).overview
 }
 
-/// The cells of `area` with dots of `role`.
+/// Returns the cells of `area` with dots of `role`.
 fn cells_of(role: Role, area: Rect, buf: &Buffer) -> Vec<(u16, u16)> {
     let color = COLORS.style(role).fg;
     let cells = area.positions().filter(|at| {
@@ -67,7 +67,7 @@ fn first(symbol: &str) -> char {
     symbol.chars().next().unwrap_or(' ')
 }
 
-/// The area of the curves of each strip: its rules begin with its name.
+/// Returns the area of the curves of each strip, found by the rule that begins with its name.
 fn strips(area: Rect, buf: &Buffer) -> Vec<Rect> {
     let rules: Vec<u16> = (area.top()..area.bottom())
         .filter(|y| {
@@ -85,7 +85,7 @@ fn strips(area: Rect, buf: &Buffer) -> Vec<Rect> {
         .collect()
 }
 
-/// How many peaks touch the first row of `strip`.
+/// Counts the peaks that touch the first row of `strip`.
 fn peaks(strip: Rect, buf: &Buffer) -> usize {
     let is_dotted = |x: u16| {
         !matches!(
@@ -101,7 +101,7 @@ fn peaks(strip: Rect, buf: &Buffer) -> usize {
 }
 
 #[test]
-fn method_1_oscillates_in_every_strip_and_is_no_block() {
+fn method_1_shows_separate_swings_in_every_strip() {
     for (size, swings) in [(SMALL, 4), (MEDIUM, 8), (LARGE, 8)] {
         let mut stage = at("method-1", &[], 2000, size);
         let buf = colored(&mut stage);
@@ -131,7 +131,7 @@ fn method_1_oscillates_in_every_strip_and_is_no_block() {
 }
 
 #[test]
-fn a_short_time_step_makes_method_2_calm() {
+fn method_2_is_smooth_at_a_short_time_step() {
     let mut stage = at(
         "method-2",
         &["motion.time_step_s=0.002", "motion.steps=115000"],
@@ -149,7 +149,7 @@ fn a_short_time_step_makes_method_2_calm() {
     let rows = cells_of(Role::Run, z, &buf).into_iter().map(|(_, y)| y);
     let (top, bottom) = (rows.clone().min().unwrap(), rows.max().unwrap());
     assert!(bottom - top <= 1, "{}", stage.picture());
-    // The whole run is in the strips: x and y go once round.
+    // The strips show the whole run, in which x and y go through one circle.
     let window = &stage.lab.view().window;
     assert_eq!(
         (window.begin_s, window.end_s, window.has_overview),
@@ -158,7 +158,7 @@ fn a_short_time_step_makes_method_2_calm() {
 }
 
 #[test]
-fn swings_that_columns_cannot_resolve_are_an_envelope() {
+fn unresolved_swings_are_drawn_as_an_envelope() {
     let mut stage = at("method-1", &[], 2000, MEDIUM);
     stage.press("w");
     assert!(!stage.lab.view().window.has_overview);
@@ -185,13 +185,13 @@ fn swings_that_columns_cannot_resolve_are_an_envelope() {
             assert!(edge > 35, "{edge}\n{}", stage.picture());
         }
     }
-    // Again the swings one by one.
+    // The swings are shown one by one again.
     stage.press("w");
     assert!(stage.lab.view().window.has_overview);
 }
 
 #[test]
-fn a_window_that_passes_too_fast_is_held_for_a_second() {
+fn a_fast_window_is_updated_once_per_second() {
     let mut stage = Stage::open("wobble-push", &[], SMALL);
     stage.wait(4.0);
     let shown = |of: &Stage| {
@@ -207,7 +207,7 @@ fn a_window_that_passes_too_fast_is_held_for_a_second() {
         .filter(|pair| pair[0] != pair[1])
         .count();
     assert!((1..=2).contains(&changes), "{changes}");
-    // Each ends at a maximum of z, so that successive pictures match.
+    // Each window ends at a maximum of z, so that successive pictures match.
     let window = stage.lab.view().window;
     let recording = stage.lab.player().run().recording();
     let z = |begin_s, end_s| {
@@ -218,7 +218,7 @@ fn a_window_that_passes_too_fast_is_held_for_a_second() {
     let last = z(window.end_s, window.end_s).max;
     let swing = z(window.end_s - window.swing_s.unwrap(), window.end_s);
     assert!(last > swing.max - 0.05 * (swing.max - swing.min));
-    // Paused, the present is in the window.
+    // When paused, the window contains the current time.
     stage.press(" ").shows_no("every 1 s");
     let now_s = stage.lab.player().run().now().time_s;
     assert!(stage.lab.view().window.contains(now_s));
@@ -244,7 +244,7 @@ fn ranges_are_tight_and_labeled() {
 }
 
 #[test]
-fn an_axis_of_a_run_with_few_swings_begins_at_its_start() {
+fn the_axis_of_a_run_with_few_swings_starts_at_0() {
     for (step, end_s) in [(0, 5.0), (4000, 5.0), (6000, 10.0), (10_000, 10.0)] {
         let stage = at("cusps", &[], step, MEDIUM);
         let window = &stage.lab.view().window;
@@ -254,14 +254,14 @@ fn an_axis_of_a_run_with_few_swings_begins_at_its_start() {
 }
 
 #[test]
-fn the_exact_motion_is_dashed_and_named() {
+fn the_exact_motion_is_dashed_and_labeled() {
     let mut stage = at("wobble-push", &["view.exact=true"], 900, MEDIUM);
     let buf = colored(&mut stage);
     let area = place(&stage, Pane::Traces);
     for strip in &strips(area, &buf)[..3] {
         let exact = cells_of(Role::Exact, *strip, &buf);
         assert!(exact.len() >= 8, "{}", stage.picture());
-        // Dashes: of three neighboring cells one is empty.
+        // A dashed line has at least one empty cell in three neighboring ones.
         let x: Vec<_> = exact.iter().map(|(x, _)| *x).collect();
         let longest = x
             .windows(3)
@@ -276,7 +276,7 @@ fn the_exact_motion_is_dashed_and_named() {
 }
 
 #[test]
-fn without_colors_the_exact_motion_has_its_own_sign() {
+fn without_colors_the_exact_motion_has_its_own_character() {
     for (marker, sign) in [
         (Marker::HalfBlock, '─'),
         (Marker::Dot, '╌'),
@@ -285,7 +285,7 @@ fn without_colors_the_exact_motion_has_its_own_sign() {
         let mut stage = at("wobble-push", &["view.exact=true"], 900, MEDIUM);
         (stage.lab.view_mut().marker, stage.lab.view_mut().theme) = (marker, Theme::PLAIN);
         let picture = stage.picture();
-        // The curves, without the rules and the ticks.
+        // Only the curves, without rules and ticks.
         let lines = picture.lines().skip(2).take(28);
         let curves = lines.filter(|line| !line.contains("(m)"));
         let cells = curves.flat_map(|line| line.chars().take(50).skip(8));
@@ -296,9 +296,9 @@ fn without_colors_the_exact_motion_has_its_own_sign() {
     }
 }
 
-/// A swing is seen after some steps only: what is known of the run stays known at its start.
+/// The swing is known only after some steps; it stays known after a jump back to the start.
 #[test]
-fn going_back_to_the_start_keeps_the_overview() {
+fn jumping_back_to_the_start_keeps_the_overview() {
     let mut stage = at("method-2", &[], 900, MEDIUM);
     let before = stage.lab.view().window;
     assert!(before.has_overview);
@@ -311,7 +311,7 @@ fn going_back_to_the_start_keeps_the_overview() {
 }
 
 #[test]
-fn a_distance_from_the_exact_motion_is_not_negative() {
+fn the_axis_of_the_distance_from_exact_has_no_negative_ticks() {
     let mut stage = at("falling", &["view.exact=true"], 9000, LARGE);
     let picture = stage.shows("off exact (m)").picture();
     let below = picture
@@ -325,7 +325,7 @@ fn a_distance_from_the_exact_motion_is_not_negative() {
 }
 
 #[test]
-fn a_magnified_strip_says_where_the_exact_motion_is() {
+fn a_magnified_strip_points_to_the_exact_motion() {
     let mut stage = at("wobble-push", &["view.exact=true"], 900, MEDIUM);
     stage.press("zzz");
     let picture = stage.picture();
@@ -397,7 +397,7 @@ fn the_overview_shows_window_push_and_edit() {
 }
 
 #[test]
-fn few_swings_have_a_scrub_line_instead() {
+fn runs_with_few_swings_have_a_scrub_line_instead_of_the_overview() {
     let stage = at("cusps", &[], 4000, MEDIUM);
     let area = overview(&stage);
     assert_eq!(area.height, 1);
@@ -410,7 +410,7 @@ fn few_swings_have_a_scrub_line_instead() {
 }
 
 #[test]
-fn four_keys_zoom_and_capitals_undo() {
+fn four_keys_zoom_and_capitals_reverse() {
     let mut stage = at("wobble-push", &[], 900, MEDIUM);
     let usual = stage.lab.view().window;
     stage.press("\t\t\t\t");
@@ -460,7 +460,7 @@ fn the_wheel_zooms_about_the_pointer() {
 }
 
 #[test]
-fn a_click_on_the_overview_goes_there() {
+fn a_click_on_the_overview_jumps_there() {
     let mut stage = at("wobble-push", &[], 900, MEDIUM);
     let area = overview(&stage);
     let press = Mouse {
@@ -504,7 +504,7 @@ fn the_previous_run_is_dotted_behind_the_run() {
 }
 
 #[test]
-fn columns_have_the_extremes_of_their_steps() {
+fn columns_show_the_extremes_of_their_steps() {
     let stage = at("wobble-push", &[], 2300, SMALL);
     let strip = Strip::new(0.0, 230.0, 50);
     let run = stage.lab.player().run();
@@ -521,7 +521,7 @@ fn columns_have_the_extremes_of_their_steps() {
 }
 
 #[test]
-fn any_column_of_the_csv_takes_the_place_of_a_strip() {
+fn any_csv_column_can_be_shown_as_a_strip() {
     let mut stage = at("method-2", &[], 400, LARGE);
     stage.commands("detail_of = 'energy_J'").wait(1.0);
     stage.arrive().shows("energy (J) ").shows_no("tilt (°)");
@@ -530,7 +530,7 @@ fn any_column_of_the_csv_takes_the_place_of_a_strip() {
         column.recording().whole().unwrap().samples()
     };
     assert_eq!(recorded(&stage), 401);
-    // It follows the run back, and another run from its start.
+    // The column follows the run backward, and is recorded from the start for another run.
     stage.commands("go_to = 'start'\nstep = 3");
     stage.arrive().wait(0.5);
     stage.press("/dt\n0.05\n").arrive().wait(1.0);
@@ -545,7 +545,7 @@ fn every_column_can_be_chosen_as_a_strip() {
     let of_strips: Vec<_> = RecordedCurve::ALL.map(RecordedCurve::column).into();
     let others = of_run.filter(|name| !of_strips.contains(name));
     assert_eq!(others.collect::<Vec<_>>(), DETAILS[7..]);
-    // j goes through them all and comes back.
+    // j cycles through all of them.
     let mut stage = at("method-2", &[], 10, LARGE);
     let first = stage.lab.view().look.detail_of;
     for _ in 0..4 + DETAILS[7..].len() {
@@ -556,11 +556,11 @@ fn every_column_can_be_chosen_as_a_strip() {
 }
 
 #[test]
-fn a_strip_keeps_the_range_that_is_chosen_for_it() {
+fn a_strip_keeps_its_chosen_range() {
     let mut stage = at("wobble-push", &["motion.time_step_s=0.002"], 100, LARGE);
     stage.commands("z_range_m = [0.5, 1]\ndetail_of = 'tilt'\ndetail_range = [0, 90]");
     stage.wait(1.0).shows("1.000").shows("0.500").shows("90.0");
-    // Another column has a range of its own.
+    // Another column has its own range.
     stage.commands("detail_of = 'energy_J'");
     assert_eq!(stage.lab.view().look.detail_range, None);
     stage

@@ -1,5 +1,5 @@
-//! The exact motion of whole scenarios, by `Truth` and by the scheme `exact`, against an independent integration
-//! (Dormand-Prince 8(5,3), tolerance 1e-15) that reads the same numbers and shares no code with either.
+//! The exact motion of whole scenarios, from `Truth` and from the scheme `exact`, compared with an independent integration
+//! (Dormand-Prince 8(5,3), tolerance 1e-15) that uses the same numbers and shares no code with them.
 
 use crate::support::dice::Dice;
 use crate::support::scenarios::{find_scheme, parse, preset};
@@ -15,13 +15,13 @@ use std::fmt::Write;
 use std::sync::Arc;
 
 const TIMES: [f64; 6] = [0.7, 2.3, 4.0, 5.9, 8.1, 10.0];
-/// m, and as a part of the largest |L| for L.
+/// Tolerance: m for positions, relative to the largest |L| for L.
 const WITHIN: f64 = 1e-10;
 
-/// What a scenario's file says, as plain numbers.
+/// The contents of a scenario file as plain numbers.
 #[derive(Clone)]
 struct Told {
-    /// Name, place in the upright pose (m), mass (kg).
+    /// Name, position in the upright pose (m), mass (kg).
     points: Vec<(String, Vector3<f64>, f64)>,
     tilt_deg: f64,
     /// World frame, J s.
@@ -32,7 +32,7 @@ struct Told {
     gravity: f64,
 }
 
-/// A place in the upright pose (m) and the force there (N).
+/// A position in the upright pose (m) and the force there (N).
 type PointForce = (Vector3<f64>, Vector3<f64>);
 
 #[derive(Clone)]
@@ -45,9 +45,9 @@ struct Pushed {
 
 #[derive(Clone, Copy)]
 enum Window {
-    /// From, and for how long.
+    /// Start and duration, s.
     Seconds(f64, f64),
-    /// First and count.
+    /// First step and number of steps.
     Steps(u64, u64),
 }
 
@@ -125,7 +125,7 @@ impl Told {
         (*turn.matrix(), self.momentum)
     }
 
-    /// The times of the edits, s.
+    /// Returns the times of the edits, s.
     fn edit_times(&self) -> Vec<f64> {
         let (mut step, mut time, mut dt) = (0, 0.0, self.time_step_s);
         self.edits
@@ -141,7 +141,7 @@ impl Told {
             .collect()
     }
 
-    /// Every moment at which a force changes.
+    /// Returns every time at which a force changes, s.
     fn moments(&self) -> Vec<f64> {
         let mut moments = self.edit_times();
         for push in &self.pushes {
@@ -164,7 +164,7 @@ impl Told {
         }
     }
 
-    /// Gravity, and the forces beside it with the places on which they act, at a moment at which none changes.
+    /// Returns gravity and the other forces with their points of application at a time at which none changes.
     fn forces(&self, time: f64) -> (f64, Vec<PointForce>) {
         let mut gravity = self.gravity;
         let mut pushes = self.pushes.clone();
@@ -192,7 +192,7 @@ fn array(v: &Vector3<f64>) -> String {
     format!("[{:?}, {:?}, {:?}]", v.x, v.y, v.z)
 }
 
-/// Point masses under their weight and further forces. y: three body axes and L, world frame.
+/// Point masses under their weight and other forces. y: three body axes and L, world frame.
 struct Turning<'a> {
     told: &'a Told,
     inverse: Matrix3<f64>,
@@ -217,7 +217,7 @@ impl<'a> Turning<'a> {
         }
     }
 
-    /// The motion on to `to`, from change to change of the forces.
+    /// Integrates from `from` to `to`, from one change of the forces to the next.
     fn go(&mut self, from: f64, to: f64, mut y: [f64; 12]) -> [f64; 12] {
         let mut stops = self.told.moments();
         stops.push(to);
@@ -258,8 +258,8 @@ impl ODE<f64, [f64; 12]> for Turning<'_> {
     }
 }
 
-/// The states at `TIMES`, and how many times farther apart neighbours get on the way from one of them to a later one:
-/// what no computation can do better than.
+/// Returns the states at `TIMES`, and the largest factor by which nearby states separate between two of them: a lower bound
+/// on the error of any computation.
 fn integrated(told: &Told) -> (Vec<Known>, f64) {
     let (q, l) = told.start();
     let mut start = [0.0; 12];
@@ -269,7 +269,7 @@ fn integrated(told: &Told) -> (Vec<Known>, f64) {
     let mut growth = 1.0_f64;
     let begins = std::iter::once(&start).chain(&path).take(TIMES.len());
     for (first, begin) in begins.enumerate() {
-        // Turned a little, and L with it or not.
+        // Rotates the body slightly, with or without L.
         for push in [1.0, 0.0] {
             let near = follow(told, first, neighbour(begin, push));
             for (one, known) in near.iter().zip(&path[first..]) {
@@ -302,7 +302,7 @@ fn neighbour(y: &[f64; 12], push: f64) -> [f64; 12] {
     near
 }
 
-/// From the time before `TIMES[first]` on, the states at the times from there.
+/// Returns the states from `TIMES[first]` on, integrated from the time before it.
 fn follow(told: &Told, first: usize, mut y: [f64; 12]) -> Vec<[f64; 12]> {
     let mut turning = Turning::new(told);
     let mut now = if first == 0 { 0.0 } else { TIMES[first - 1] };
@@ -316,7 +316,7 @@ fn follow(told: &Told, first: usize, mut y: [f64; 12]) -> Vec<[f64; 12]> {
         .collect()
 }
 
-/// Distance of the farthest point (m), and of L as a part of `size`.
+/// Returns the distance of the farthest point (m) or that of L relative to `size`, whichever is larger.
 fn apart(told: &Told, size: f64, seen: &State, known: &(Matrix3<f64>, Vector3<f64>)) -> f64 {
     let arm = told
         .points
@@ -345,7 +345,7 @@ fn error_of_truth(told: &Told, known: &[(Matrix3<f64>, Vector3<f64>)]) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// A wheel of `n` points or more; without the top the inertia is symmetric all the same.
+/// A wheel of at least `n` points, with a symmetric inertia even without the top.
 fn wheel(n: u64, radius: f64, height: f64, mass: f64) -> Vec<(String, Vector3<f64>, f64)> {
     let rim = (0..n).map(|j| {
         let angle = std::f64::consts::TAU * j as f64 / n as f64;
@@ -446,9 +446,8 @@ fn random(dice: &mut Dice) -> Told {
     told
 }
 
-/// 1e-10, or where neighbours part by more than 1000 times, what the motion makes of the integration's own 1e-13. (It is
-/// the integration that errs there: closed form and Taylor series, of which neither knows the other, agree to a
-/// hundredth of that.)
+/// Returns the tolerance: 1e-10, or the integration's own error of 1e-13 times `growth` if that is larger than 1000. (The
+/// integration dominates: closed form and Taylor series, which are independent, agree to a hundredth of that.)
 fn allowed(growth: f64) -> f64 {
     WITHIN.max(1e-13 * growth)
 }
@@ -464,7 +463,7 @@ fn random_scenarios_agree_with_an_independent_integration() {
         let error = error_of_truth(&told, &known);
         println!("{number}: {error:.1e}, neighbours part {growth:.0e} times");
         if growth > 1e6 {
-            wild += 1; // no two computations of such a motion need agree
+            wild += 1; // computations of such a motion need not agree
             continue;
         }
         tame += usize::from(allowed(growth) == WITHIN);
@@ -479,7 +478,7 @@ fn random_scenarios_agree_with_an_independent_integration() {
     assert!(tame > 200 && wild < 10 && errors[150] < 1e-12);
 }
 
-/// The textbook's wheel (I1 = 6.6, I3 = 3.2, mgl = 49) or another, at a tilt and with L in the body frame.
+/// The textbook's wheel (I1 = 6.6, I3 = 3.2, mgl = 49) or another one, with a tilt and L in the body frame.
 fn named(height: f64, tilt_deg: f64, momentum: [f64; 3]) -> Told {
     let told = Told {
         points: wheel(10, 0.8, height, 0.5),
@@ -590,8 +589,8 @@ fn degenerate_scenarios_agree_with_an_independent_integration() {
 }
 
 #[test]
-fn a_top_exactly_upright_or_hanging_stays_there() {
-    // Whatever its spin; no integration could hold the unstable ones.
+fn a_top_exactly_upright_or_hanging_stays_in_place() {
+    // For any spin; no integration could keep the unstable ones upright.
     for (tilt, height, spin) in [
         (0.0, 1.0, 20.0),
         (0.0, 1.0, 0.0),
@@ -603,7 +602,7 @@ fn a_top_exactly_upright_or_hanging_stays_there() {
         let axle = truth.state_at(0.0).axle();
         for time in [1.0, 10.0, 1e3, 1e6] {
             let off = (truth.state_at(time).axle() - axle).norm();
-            // 180 degrees is not exactly so in radians: 1.2e-16 off, and there it is stable.
+            // 180 degrees in radians is 1.2e-16 off, but this position is stable.
             assert!(off < 1e-14, "tilt {tilt}, spin {spin}: {off:e} at {time} s");
         }
     }
@@ -622,12 +621,12 @@ fn without_bookkeeping(told: &Told) -> Told {
 }
 
 #[test]
-fn edits_of_time_step_and_scheme_do_not_touch_the_truth() {
+fn edits_of_time_step_and_scheme_do_not_change_the_exact_motion() {
     let mut dice = Dice(23);
     for _ in 0..100 {
         let mut told = without_bookkeeping(&random(&mut dice));
         let plain = told.scenario("report");
-        // After the other edits, whose times would else count by the new step.
+        // After the other edits, whose times would otherwise depend on the new time step.
         let last = told.edits.last().map_or(0, |edit| edit.step);
         for (later, change) in [
             (0, Change::TimeStep(0.123)),
@@ -649,7 +648,7 @@ fn edits_of_time_step_and_scheme_do_not_touch_the_truth() {
 }
 
 #[test]
-fn going_back_in_time_and_forward_again_gives_the_same() {
+fn the_exact_motion_does_not_depend_on_query_order() {
     let mut dice = Dice(24);
     for _ in 0..60 {
         let told = random(&mut dice);
@@ -670,7 +669,7 @@ fn going_back_in_time_and_forward_again_gives_the_same() {
     }
 }
 
-/// Runs by the scheme `exact` at `time_step_s` and gives the greatest distance from `Truth` at any of its steps.
+/// Runs the scheme `exact` at `time_step_s` and returns the maximum distance from `Truth` over its steps.
 fn exact_scheme_off(told: &Told, time_step_s: f64) -> f64 {
     let exact = find_scheme("exact");
     let scenario = Arc::new(resampled(&told.scenario("exact"), time_step_s, exact));
@@ -688,7 +687,7 @@ fn exact_scheme_off(told: &Told, time_step_s: f64) -> f64 {
 }
 
 #[test]
-fn the_scheme_exact_gives_the_truth_whatever_its_time_step() {
+fn the_scheme_exact_gives_the_exact_motion_at_every_time_step() {
     let mut dice = Dice(25);
     let random = (0..60).map(|_| ("random", random(&mut dice)));
     for (name, told) in degenerate().into_iter().chain(random) {
@@ -703,7 +702,7 @@ fn the_scheme_exact_gives_the_truth_whatever_its_time_step() {
 }
 
 #[test]
-fn the_exact_scheme_says_which_kind_it_was() {
+fn the_scheme_exact_names_its_method() {
     let kind = |told: &Told| {
         let mut simulation = Simulation::new(told.scenario("exact"));
         assert_eq!(simulation.remark(), None);
@@ -723,7 +722,7 @@ fn the_exact_scheme_says_which_kind_it_was() {
     assert_eq!(kind(&lopsided), "integration held to 1e-12");
 }
 
-/// z/z0 of the traced point, least and greatest over all steps; `position` is asked for every step.
+/// Returns the minimum and maximum of z/z0 of the traced point over all steps, with z from `position`.
 fn heights(scenario: &Arc<Scenario>, position: impl FnMut(&Simulation) -> f64) -> [String; 2] {
     let mut simulation = Simulation::new(Arc::clone(scenario));
     let mut position = position;
@@ -764,7 +763,7 @@ fn the_wobble_is_made_by_the_time_step() {
     assert_eq!(seen, ["0.99936", "1.00010"], "the truth");
 }
 
-/// The scenario with an edit of gravity at this step.
+/// Returns the scenario with an edit of gravity at `step`.
 fn with_less_gravity(mut file: ScenarioFile, step: u64) -> Arc<Scenario> {
     let gravity = ("motion.gravity_m_per_s2".to_owned(), 3.0.into());
     let set = toml::Table::from_iter([gravity]);
@@ -773,11 +772,11 @@ fn with_less_gravity(mut file: ScenarioFile, step: u64) -> Arc<Scenario> {
     Arc::new(edited.scenario().unwrap())
 }
 
-/// What the random scenarios are looked at for, s.
+/// Duration of the random scenarios, s.
 const LENGTH_S: f64 = 10.0;
 
 #[test]
-fn an_edit_on_the_way_leads_to_the_truth_that_was_edited_from_the_start() {
+fn a_later_edit_gives_the_exact_motion_of_the_edited_scenario() {
     let mut dice = Dice(99);
     for _ in 0..60 {
         let mut told = random(&mut dice);
@@ -801,7 +800,7 @@ fn an_edit_on_the_way_leads_to_the_truth_that_was_edited_from_the_start() {
         on_the_way.branch(&edited);
         let mut from_the_start = Truth::new(edited);
         for share in [0.2, 0.5, 1.0] {
-            let at_s = here_s + 0.3 * share * LENGTH_S; // not long: chaos would make much of rounding
+            let at_s = here_s + 0.3 * share * LENGTH_S; // a short time, since chaos would amplify rounding
             let (a, b) = (on_the_way.state_at(at_s), from_the_start.state_at(at_s));
             let off = (a.orientation - b.orientation).amax();
             assert!(off < 1e-9, "{off:e} at {at_s} s of {}", told.toml("strang"));
@@ -810,7 +809,7 @@ fn an_edit_on_the_way_leads_to_the_truth_that_was_edited_from_the_start() {
 }
 
 #[test]
-fn an_edit_at_the_start_is_in_force_from_the_start() {
+fn an_edit_at_the_start_takes_effect_from_the_start() {
     let plain = Arc::new(preset("method-2", &[]));
     let edited = with_less_gravity(plain.file.clone(), 0);
     for (from, to) in [(&plain, &edited), (&edited, &plain)] {

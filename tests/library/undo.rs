@@ -1,4 +1,4 @@
-//! Undo and redo, where several edits interact.
+//! Undo and redo of interacting edits.
 
 use crate::support::desk::Desk;
 use gyrolab::engine::journal::{Act, Journal};
@@ -11,7 +11,7 @@ use std::time::Duration;
 use toml::{Table, Value};
 
 #[test]
-fn a_length_taken_back_is_in_seconds_what_it_was() {
+fn undoing_an_edit_of_the_length_restores_its_seconds() {
     fn end(desk: &Desk) -> u64 {
         desk.lab.player().end_step()
     }
@@ -25,7 +25,7 @@ fn a_length_taken_back_is_in_seconds_what_it_was() {
 }
 
 #[test]
-fn a_run_passed_on_the_way_back_is_left_where_it_stood() {
+fn runs_skipped_by_undo_keep_their_steps() {
     let mut desk = Desk::open("method-2");
     desk.commands("go_to = 100\nset = { 'start.tilt_deg' = 40 }");
     desk.commands("go_to = 200000\nset = { 'start.tilt_deg' = 30 }\ngo_to = 7");
@@ -39,7 +39,7 @@ fn a_run_passed_on_the_way_back_is_left_where_it_stood() {
 }
 
 #[test]
-fn a_push_that_an_edit_of_the_file_adds_is_listed() {
+fn a_push_added_by_an_edit_in_the_file_is_listed() {
     let mut file = gyrolab::engine::scenario::presets::find("method-2")
         .unwrap()
         .text
@@ -69,10 +69,10 @@ fn a_push_that_an_edit_of_the_file_adds_is_listed() {
 }
 
 #[test]
-fn steps_of_a_push_to_come_are_those_of_now() {
+fn steps_of_the_next_push_use_the_current_time_step() {
     let mut desk = Desk::open("method-2");
     desk.commands("go_to = 10\nset = { 'motion.time_step_s' = 0.05 }");
-    // Only what is typed can be in steps.
+    // Only typed values can be in steps.
     desk.press(&[Key::Char('P'), Key::Down, Key::Down, Key::Enter]);
     desk.type_text("20 steps");
     desk.press(&[Key::Enter]);
@@ -81,7 +81,7 @@ fn steps_of_a_push_to_come_are_those_of_now() {
 }
 
 #[test]
-fn a_push_is_over_by_its_seconds() {
+fn a_push_ends_by_its_seconds() {
     let mut desk = Desk::open("wobble-push");
     desk.commands("go_to = 40\nset = { 'motion.time_step_s' = 0.05 }\ngo_to = 250");
     let said = desk.commands("set = { 'push.0.force_N.0' = 1 }").unwrap();
@@ -95,7 +95,7 @@ fn one(key: &str, value: Value) -> Table {
     Table::from_iter([(key.to_owned(), value)])
 }
 
-/// An act of one of four kinds, with the number `value`.
+/// Returns an action of one of four kinds, with the number `value`.
 fn act(kind: u8, value: f64) -> Act {
     match kind {
         0 => Act::Edit(one("motion.gravity_m_per_s2", value.into())),
@@ -112,9 +112,9 @@ fn act(kind: u8, value: f64) -> Act {
 }
 
 proptest! {
-    /// Kinds 0 to 3 are acts, 4 and 5 undo, 6 and 7 redo.
+    /// Kinds 0 to 3 are actions, 4 and 5 undo, 6 and 7 redo.
     #[test]
-    fn undo_and_redo_lead_through_the_same_files(
+    fn undo_and_redo_pass_through_the_same_files(
         ways in prop::collection::vec((0..8u8, 0..100u64, 1..50u32), 1..30)
     ) {
         let edits = "\n[[edit]]\nstep = 60\nset = { 'motion.gravity_m_per_s2' = 1 }\n\
@@ -149,7 +149,7 @@ proptest! {
 }
 
 #[test]
-fn a_time_with_a_sign_counts_from_here() {
+fn a_time_with_a_sign_is_relative_to_the_current_step() {
     let mut desk = Desk::open("method-2");
     desk.commands("go_to = 100");
     for (to, step) in [
@@ -159,7 +159,7 @@ fn a_time_with_a_sign_counts_from_here() {
         ("1e2", 100),
         ("-30", 70),
     ] {
-        desk.type_text("g"); // a command has no sign before a step or time
+        desk.type_text("g"); // typed, since the command accepts no sign
         desk.type_text(to);
         desk.press(&[Key::Enter]);
         assert_eq!(desk.lab.popups().mode, Mode::Lab, "{to}");
@@ -168,7 +168,7 @@ fn a_time_with_a_sign_counts_from_here() {
 }
 
 #[test]
-fn nudges_that_belong_together_are_one_undo_and_later_ones_another() {
+fn consecutive_nudges_are_undone_together_and_later_ones_separately() {
     fn gravity(desk: &Desk) -> f64 {
         desk.lab.player().motion().gravity
     }

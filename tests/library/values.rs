@@ -1,4 +1,4 @@
-//! The values pane: what a person sees of the run, the exact motion and the scenario, and how values are set there.
+//! The values pane: its contents, and setting values in it.
 
 use crate::support::scenarios::preset;
 use crate::support::stage::{LARGE, SMALL, Stage};
@@ -15,7 +15,7 @@ use ratatui::layout::Rect;
 
 const ESC: &str = "\u{1b}";
 
-/// The values pane of `stage` alone, drawn on `width` columns and `height` rows.
+/// Draws the values pane of `stage` alone on `width` columns and `height` rows.
 fn pane(stage: &Stage, width: u16, height: u16) -> (Vec<String>, Buffer) {
     let mut buf = Buffer::empty(Rect::new(0, 0, width, height));
     (PARAMETERS_ROW.draw)(&stage.lab, buf.area, &mut buf);
@@ -26,7 +26,7 @@ fn pane(stage: &Stage, width: u16, height: u16) -> (Vec<String>, Buffer) {
     (text, buf)
 }
 
-/// The words of the row that begins with `label`.
+/// Returns the words of the row that begins with `label`.
 #[track_caller]
 fn row(rows: &[String], label: &str) -> Vec<String> {
     let found = rows.iter().find(|row| row.starts_with(label));
@@ -44,7 +44,7 @@ fn wobble(size: Rect) -> Stage {
 }
 
 #[test]
-fn run_and_exact_motion_are_beside_each_other_without_t() {
+fn run_and_exact_motion_are_shown_side_by_side_without_t() {
     let stage = wobble(SMALL);
     assert!(!stage.lab.player().run().shows_exact());
     let (rows, _) = pane(&stage, 24, 16);
@@ -77,7 +77,7 @@ fn run_and_exact_motion_are_beside_each_other_without_t() {
 }
 
 #[test]
-fn a_wide_pane_shows_how_far_off_and_more_rows() {
+fn a_wide_pane_shows_differences_and_more_rows() {
     let (rows, _) = pane(&wobble(LARGE), 115, 13);
     assert!(rows[0].contains("now") && rows[0].contains("exact") && rows[0].contains("off by"));
     assert!(rows[0].contains("start and motion") && rows[0].contains("body"));
@@ -86,7 +86,7 @@ fn a_wide_pane_shows_how_far_off_and_more_rows() {
 }
 
 #[test]
-fn what_disagrees_is_marked_and_what_can_be_edited_is_underlined() {
+fn deviations_are_marked_and_editable_values_underlined() {
     let mut stage = wobble(SMALL);
     let style_of = |shown: &Stage, label: &str| {
         let (rows, buf) = pane(shown, 24, 16);
@@ -106,7 +106,7 @@ fn what_disagrees_is_marked_and_what_can_be_edited_is_underlined() {
 }
 
 #[test]
-fn the_moment_at_the_cursor_is_shown_and_said() {
+fn values_at_the_cursor_are_shown_with_their_time() {
     let mut stage = wobble(LARGE);
     stage.commands("cursor = 863");
     let (narrow, _) = pane(&stage, 30, 31);
@@ -120,7 +120,7 @@ fn the_moment_at_the_cursor_is_shown_and_said() {
 }
 
 #[test]
-fn the_size_of_l_is_set_with_its_direction_kept_and_so_is_its_tilt() {
+fn setting_the_size_of_l_keeps_its_direction() {
     let mut stage = Stage::open("method-1-steeper", &[], SMALL);
     stage
         .press("/|L|\n")
@@ -144,7 +144,7 @@ fn the_size_of_l_is_set_with_its_direction_kept_and_so_is_its_tilt() {
 }
 
 #[test]
-fn a_value_that_follows_from_several_keys_can_be_set_to_itself_and_to_another() {
+fn derived_values_can_be_set() {
     for name in ["method-1", "wobble-push", "falling", "cusps", "torque-free"] {
         let scenario = preset(name, &[]);
         for derived in DerivedValue::ALL {
@@ -168,7 +168,7 @@ fn a_value_that_follows_from_several_keys_can_be_set_to_itself_and_to_another() 
 }
 
 #[test]
-fn the_value_is_typed_in_its_row_and_the_lab_keeps_its_keys() {
+fn a_value_is_typed_in_its_row_while_the_lab_keeps_its_keys() {
     let mut stage = Stage::open("wobble-push", &[], SMALL);
     stage.press("e").press(".");
     assert_eq!(stage.focus(), Pane::Parameters.id());
@@ -181,7 +181,7 @@ fn the_value_is_typed_in_its_row_and_the_lab_keeps_its_keys() {
 }
 
 #[test]
-fn the_selected_value_is_seen_in_every_size() {
+fn the_selected_value_is_visible_at_every_size() {
     let mut stage = Stage::open("wobble-push", &[], SMALL);
     stage.press("e");
     for (width, height) in [
@@ -208,7 +208,7 @@ fn the_selected_value_is_seen_in_every_size() {
 }
 
 #[test]
-fn four_digits_fit_and_are_right() {
+fn four_digit_numbers_fit_and_are_right() {
     for (number, width, text) in [
         (0.0, 6, "0"),
         (9.99999, 6, "10.00"),
@@ -224,7 +224,7 @@ fn four_digits_fit_and_are_right() {
 }
 
 #[test]
-fn a_click_selects_a_value_and_a_double_click_types_it() {
+fn a_click_selects_a_value_and_a_double_click_edits_it() {
     let mut stage = Stage::open("wobble-push", &[], SMALL);
     let place = screen::layout(&stage.lab, true, SMALL).place_of(Pane::Parameters);
     let place = place.unwrap();

@@ -1,4 +1,4 @@
-//! The wobble that the report's scheme makes: its prediction by the theory of the frozen L, and the swing that is measured.
+//! The wobble caused by the report's scheme: its prediction with frozen L, and the measured swing.
 
 use crate::support::dice::Dice;
 use crate::support::scenarios::preset;
@@ -28,10 +28,10 @@ fn at(time_step_s: f64) -> Readouts {
     played(&preset("method-2", &sets.each_ref().map(String::as_str)))
 }
 
-/// Method 2 by hand: kappa = 1, I = 3.2 kg m², |L| = 1000 J s, so |Omega| = 312.5 rad/s; the torque at 45 degrees is
-/// 5 kg · 9.8 m/s² · 0.4 m = 19.6 N m; |1 - A| = 2 |sin(psi/2)|.
+/// Method 2 computed by hand: kappa = 1, I = 3.2 kg m², |L| = 1000 J s, so |Omega| = 312.5 rad/s; the torque at 45 degrees
+/// is 5 kg · 9.8 m/s² · 0.4 m = 19.6 N m; |1 - A| = 2 |sin(psi/2)|.
 #[test]
-fn lag_and_swing_are_those_of_the_formula_by_hand() {
+fn lag_and_swing_match_a_calculation_by_hand() {
     for (time_step_s, lag_deg) in [
         // psi = 0.3125: 1.96e-5 / 0.311232 rad
         (0.001, 0.003_608_2),
@@ -44,7 +44,7 @@ fn lag_and_swing_are_those_of_the_formula_by_hand() {
         let number = |name| readouts.number(name);
         let lag = number("predicted_lag_deg").unwrap();
         assert!((lag / lag_deg - 1.0).abs() < 1e-4, "{time_step_s}: {lag}");
-        // Once around the lag: twice its size, but at 0.05 s, where the steps meet two phases of the swing only.
+        // A full swing about the lag is twice its size, except at 0.05 s, where the steps sample only two phases of the swing.
         match number("predicted_tilt_swing_deg") {
             Some(swing) => assert!((swing / (2.0 * lag) - 1.0).abs() < 2e-2, "{swing}"),
             None => assert_eq!(time_step_s, 0.05),
@@ -53,7 +53,7 @@ fn lag_and_swing_are_those_of_the_formula_by_hand() {
 }
 
 #[test]
-fn what_is_predicted_comes_out_and_what_cannot_be_is_null() {
+fn predicted_swings_are_measured_and_unpredictable_ones_are_null() {
     let (mut predicted, mut least, mut most) = (0, f64::INFINITY, 0.0_f64);
     for index in 1..=60 {
         let time_step_s = 0.01 + 0.0015 * f64::from(index);
@@ -73,7 +73,7 @@ fn what_is_predicted_comes_out_and_what_cannot_be_is_null() {
     }
     assert!(predicted > 45, "{predicted}");
     assert!(most > 10.0 * least, "the comb has teeth: {least} to {most}");
-    // At five turns a step the swing detunes itself: linear theory says nothing.
+    // At five turns per step, the swing changes its own frequency, and linear theory does not apply.
     let resonant = at(0.100_531);
     assert_eq!(resonant.number("predicted_lag_deg"), None);
     assert_eq!(resonant.number("predicted_tilt_swing_deg"), None);
@@ -81,7 +81,7 @@ fn what_is_predicted_comes_out_and_what_cannot_be_is_null() {
 }
 
 #[test]
-fn it_speaks_of_the_reports_scheme_and_of_a_nutation_that_lasts() {
+fn predictions_need_the_report_scheme_and_a_lasting_nutation() {
     let null = |name: &str, set: &[&str]| {
         let readouts = played(&preset(name, set));
         let of = |readout| readouts.number(readout);
@@ -91,14 +91,14 @@ fn it_speaks_of_the_reports_scheme_and_of_a_nutation_that_lasts() {
         )
     };
     assert_eq!(null("method-2", &["motion.scheme=exact"]), (true, true));
-    // kappa 0.38: each step damps the nutation.
+    // kappa = 0.38: each step damps the nutation.
     let damped = [
         "motion.scheme=report",
         "motion.time_step_s=0.001",
         "motion.steps=20000",
     ];
     assert_eq!(null("fast-top", &damped), (false, true));
-    // kappa 1.4: each step feeds it, until the axle lies across L.
+    // kappa = 1.4: each step amplifies the nutation until the axle is perpendicular to L.
     let fed = ["body.rim.height_m=0.3", "motion.time_step_s=0.003"];
     assert_eq!(null("method-2", &fed), (true, true));
     let sideways = "push.0={point='top',force_N=[5,0,0],from_s=0,for_s=1e3}";
@@ -110,9 +110,9 @@ fn it_speaks_of_the_reports_scheme_and_of_a_nutation_that_lasts() {
     );
 }
 
-/// Against the exact motion, at 6 to 60 rows a nutation.
+/// Compares with the exact motion at 6 to 60 rows per nutation.
 #[test]
-fn the_uncertainty_of_the_swing_covers_what_is_not_seen_of_it() {
+fn the_uncertainty_of_the_swing_covers_sampling() {
     let mut dice = Dice(20);
     let mut ratios = Vec::new();
     while ratios.len() < 1000 {

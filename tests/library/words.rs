@@ -1,4 +1,4 @@
-//! What the lab says, read by one who has never seen it.
+//! Texts of the lab from the viewpoint of a new user.
 
 use crate::support::scenarios::preset;
 use crate::support::stage::{LARGE, SMALL, Stage};
@@ -9,7 +9,7 @@ use ratatui::layout::Rect;
 use std::path::Path;
 
 #[test]
-fn esc_turns_from_the_values_back_to_the_run() {
+fn esc_returns_from_the_values_to_the_run() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     for key in ["e", "P"] {
         stage.press(key);
@@ -25,7 +25,7 @@ fn esc_turns_from_the_values_back_to_the_run() {
 }
 
 #[test]
-fn what_was_changed_is_told_of_a_preset_as_of_a_file() {
+fn changes_to_a_preset_are_listed_like_those_to_a_file() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.press("p.");
     stage.shows("differs from the preset method-2: one more push");
@@ -34,9 +34,9 @@ fn what_was_changed_is_told_of_a_preset_as_of_a_file() {
     cusps.shows("differs from the preset cusps: friction.swing_viscous_Nms 0.1");
 }
 
-/// The words of a preset hold for its own motion, and not for that of a run which was made from it.
+/// The texts of a preset describe its own motion, not that of a run derived from it.
 #[test]
-fn words_about_another_motion_are_marked_in_what_is_saved() {
+fn texts_about_another_motion_are_marked_in_saved_files() {
     let folder = tempfile::tempdir().unwrap();
     let mut stage = Stage::open("fast-top", &[], SMALL);
     stage.lab.files_mut().work_in(folder.path());
@@ -57,7 +57,7 @@ fn words_about_another_motion_are_marked_in_what_is_saved() {
     let path = folder.path().join("changed.toml");
     let mut reopened = Stage::open(path.to_str().unwrap(), &[], SMALL);
     reopened.shows("start.momentum_Js [0, 0, 1000], not [0, 0,");
-    // Changed and saved again, it is marked once.
+    // Changed and saved again, the text is marked only once.
     reopened.lab.files_mut().work_in(folder.path());
     reopened.commands(
         "set = { 'motion.gravity_m_per_s2' = 5 }\nsave = { path = 'again.toml', to_step = 9 }",
@@ -72,9 +72,9 @@ fn words_about_another_motion_are_marked_in_what_is_saved() {
     );
 }
 
-/// `run --set` writes the words as they stand in the file.
+/// `run --set` copies the texts of the file.
 #[test]
-fn words_of_a_preset_are_known_in_a_file_of_another_motion() {
+fn texts_of_a_preset_are_recognized_in_files_of_another_motion() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.toml");
     let changed = preset("fast-top", &["start.momentum_Js=[0,0,1000]"]);
@@ -87,12 +87,12 @@ fn words_of_a_preset_are_known_in_a_file_of_another_motion() {
 }
 
 #[test]
-fn what_keys_do_without_a_picture_is_said() {
+fn keys_without_a_visible_effect_show_a_message() {
     let mut stage = Stage::open("method-2", &[], LARGE);
     stage.commands("pause = true\ngo_to = 100");
-    // Arrows act on the pane that has the focus, or say what does.
+    // Arrow keys act on the pane in focus, or say which keys do.
     stage.press("\t↓").shows("z and Z zoom here");
-    // A step beyond the end is said to be one; on the way to it as well as there.
+    // A step beyond the end is reported as such, also during the seek.
     stage.press("g2400\n").wait(2.0);
     stage.shows("step 2,400 is beyond the end of the run, step 2,300");
     stage.press("g2350\n").wait(0.5);
@@ -100,7 +100,7 @@ fn what_keys_do_without_a_picture_is_said() {
 }
 
 #[test]
-fn what_to_try_next_is_not_on_the_screen_already() {
+fn the_suggested_next_step_is_not_done_already() {
     let mut stage = Stage::open("method-2", &[], LARGE);
     stage.commands("pause = true\ngo_to = 2290\nrun = true");
     stage.wait(2.0);
@@ -113,7 +113,7 @@ fn what_to_try_next_is_not_on_the_screen_already() {
 }
 
 #[test]
-fn a_long_message_and_a_warning_are_both_read_on_a_small_screen() {
+fn a_small_screen_shows_a_long_message_and_a_warning() {
     let mut stage = Stage::open("method-2", &[], Rect::new(0, 0, 40, 12));
     stage.commands("pause = true\ngo_to = 100");
     stage.shows("NOT RELIABLE").press("e");
@@ -124,16 +124,16 @@ fn a_long_message_and_a_warning_are_both_read_on_a_small_screen() {
 }
 
 #[test]
-fn esc_leaves_the_values_where_they_fill_the_screen() {
+fn esc_closes_full_screen_values() {
     let mut stage = Stage::open("method-2", &[], Rect::new(0, 0, 40, 12));
     stage.press("e").shows(" values ").press("\u{1b}");
     assert_eq!(stage.focus(), "traces");
     stage.shows_no(" values ");
 }
 
-/// The clock tells the steps before an edit from one another too, which were shorter.
+/// The clock also distinguishes the shorter steps before an edit.
 #[test]
-fn the_clock_has_the_digits_of_the_shortest_step() {
+fn the_clock_has_enough_digits_for_the_shortest_step() {
     let mut stage = Stage::open("cusps", &[], SMALL);
     stage.commands("pause = true\ngo_to = 1468").wait(0.5);
     stage.shows("t  1.468 s");
@@ -143,7 +143,7 @@ fn the_clock_has_the_digits_of_the_shortest_step() {
 }
 
 #[test]
-fn esc_leads_from_a_value_that_was_found_to_the_page() {
+fn esc_returns_from_a_found_value_to_the_page() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.lesson("does-a-faster-spin-precess-faster", 6);
     stage.arrive();
@@ -153,10 +153,10 @@ fn esc_leads_from_a_value_that_was_found_to_the_page() {
 }
 
 #[test]
-fn esc_leads_out_of_the_lessons() {
+fn esc_closes_the_lessons() {
     let mut stage = Stage::open("method-2", &[], LARGE);
     stage.lesson("halve-the-step", 1).wait(6.0);
-    // First it stops what the page is doing, and takes messages away.
+    // First, Esc stops the actions of the page and clears messages.
     for _ in 0..3 {
         stage.press("\u{1b}");
     }
@@ -166,7 +166,7 @@ fn esc_leads_out_of_the_lessons() {
 }
 
 #[test]
-fn the_list_of_files_has_those_that_hold_a_run() {
+fn the_list_of_files_shows_only_files_with_a_run() {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
     let preset = gyrolab::engine::scenario::presets::find("cusps")
@@ -189,7 +189,7 @@ fn the_list_of_files_has_those_that_hold_a_run() {
 }
 
 #[test]
-fn the_browser_goes_into_folders_and_comes_back() {
+fn the_browser_enters_and_leaves_folders() {
     let root = tempfile::tempdir().unwrap();
     let inner = root.path().join("runs").join("june");
     std::fs::create_dir_all(&inner).unwrap();
@@ -199,7 +199,7 @@ fn the_browser_goes_into_folders_and_comes_back() {
         .text;
     std::fs::write(inner.join("mine.toml"), preset).unwrap();
     std::fs::write(root.path().join("first.toml"), preset).unwrap();
-    // As a lab that stays in its folder.
+    // Like a lab confined to its folder.
     let may_be_read = |path: &Path| path.starts_with(root.path());
     let mut browser = Browser::default();
     browser.begin(root.path(), "", may_be_read);
@@ -210,7 +210,7 @@ fn the_browser_goes_into_folders_and_comes_back() {
             .map(|entry| entry.name.replace(root.path().to_str().unwrap(), ""))
             .collect()
     };
-    // No way out of it.
+    // There is no entry that leads out of the folder.
     assert_eq!(shown(&browser), ["/runs/", "/first.toml"]);
     assert!(!browser.enter(may_be_read), "a preset is no folder");
     let enter = |list: &mut gyrolab::lab::browser::Browser, name: &str| {
@@ -219,7 +219,7 @@ fn the_browser_goes_into_folders_and_comes_back() {
     };
     assert!(enter(&mut browser, "runs/"));
     assert_eq!(shown(&browser), ["../", "/runs/june/"]);
-    // What is in the folder is selected.
+    // The first entry of the folder is selected.
     assert!(browser.enter(may_be_read));
     assert_eq!(shown(&browser), ["../", "/runs/june/mine.toml"]);
     assert!(browser.choice().unwrap().is_file);
@@ -231,7 +231,7 @@ fn the_browser_goes_into_folders_and_comes_back() {
         assert!(browser.choice().unwrap().is_folder, "the one that was left");
     }
     assert_eq!(shown(&browser), ["/runs/", "/first.toml"]);
-    // Where it may go anywhere, the way leads up from the first folder too.
+    // An unconfined lab can also go up from the first folder.
     let runs = root.path().join("runs");
     browser.begin(&runs, "", |_| true);
     assert_eq!(shown(&browser)[0], "../");
@@ -270,7 +270,7 @@ fn a_file_in_a_folder_is_opened_with_enter() {
 }
 
 #[test]
-fn keys_that_play_on_are_not_offered_where_no_further_step_is_finite() {
+fn keys_that_play_are_not_offered_after_a_breakdown() {
     let mut stage = Stage::open("method-2", &["motion.scheme='rk4'"], LARGE);
     stage.commands("pause = true");
     stage.shows("space run").shows(", step");
@@ -281,7 +281,7 @@ fn keys_that_play_on_are_not_offered_where_no_further_step_is_finite() {
 }
 
 #[test]
-fn the_next_page_is_offered_where_there_is_one() {
+fn the_next_page_is_offered_only_with_an_open_lesson() {
     let mut stage = Stage::open("method-2", &[], LARGE);
     stage.lesson("halve-the-step", 1).wait(6.0);
     stage.shows("n next").press("L");

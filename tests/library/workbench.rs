@@ -1,5 +1,5 @@
-//! The lab without a terminal, from keys to pictures: pictures of every mode, journeys, and properties at random sizes
-//! and states.
+//! The lab without a terminal, from keys to pictures: snapshots of every mode, complete sessions, and properties at random
+//! sizes and states.
 
 use crate::support::stage::{LARGE, SMALL, Stage, picture};
 use crate::support::words::has_all;
@@ -14,15 +14,14 @@ use ratatui::layout::Rect;
 use std::time::Duration;
 
 #[test]
-fn pictures_of_the_lab() {
+fn the_lab_matches_its_snapshots() {
     for (name, size) in [("small", SMALL), ("large", LARGE)] {
         let shown = picture("wobble-push", size, 5.0, "t");
         insta::assert_snapshot!(format!("wobble_push_exact_{name}"), shown);
     }
 }
 
-/// Presets that show something which the others do not: the report's method, a push, no weight, friction, a body of parts,
-/// a flat block.
+/// Presets with special features: the report's method, a push, no weight, friction, a body of parts, a flat block.
 const FIRST_SIGHTS: [&str; 6] = [
     "method-2",
     "wobble-push",
@@ -33,7 +32,7 @@ const FIRST_SIGHTS: [&str; 6] = [
 ];
 
 #[test]
-fn presets_at_first_sight() {
+fn opened_presets_match_their_snapshots() {
     for preset in FIRST_SIGHTS {
         let sizes = [SMALL, LARGE].map(|size| picture(preset, size, 6.0, ""));
         insta::assert_snapshot!(format!("first_sight_{preset}"), sizes.join("\n"));
@@ -41,7 +40,7 @@ fn presets_at_first_sight() {
 }
 
 #[test]
-fn a_strip_that_stands_still_at_high_speed_says_so() {
+fn a_strip_updated_once_per_second_says_so() {
     for size in [SMALL, Rect::new(0, 0, 120, 40), LARGE] {
         let mut stage = Stage::open("wobble-push", &["view.speed=1"], size);
         stage.wait(4.0).shows_no("every 1 s");
@@ -53,29 +52,29 @@ fn a_strip_that_stands_still_at_high_speed_says_so() {
 }
 
 #[test]
-fn pictures_of_what_lies_on_top() {
+fn windows_match_their_snapshots() {
     insta::assert_snapshot!("help_small", picture("method-2", SMALL, 1.0, "?"));
     insta::assert_snapshot!("help_large", picture("method-2", LARGE, 1.0, "?"));
-    // The list of files is left out, because it depends on the folder.
+    // The list of files is excluded because it depends on the folder.
     insta::assert_snapshot!("filter_small", picture("method-2", SMALL, 1.0, "ocus"));
     insta::assert_snapshot!("filter_large", picture("method-2", LARGE, 1.0, "ocus"));
 }
 
 #[test]
-fn pictures_of_one_pane() {
+fn full_screen_panes_match_their_snapshots() {
     insta::assert_snapshot!("traces_fill", picture("loops", SMALL, 4.0, "f"));
     insta::assert_snapshot!("from_above_fill", picture("loops", SMALL, 4.0, "\tf"));
     insta::assert_snapshot!("three_d_fill", picture("loops", SMALL, 4.0, "d"));
     insta::assert_snapshot!("three_d_turned", picture("loops", SMALL, 4.0, "d9↑"));
 }
 
-/// The keys that choose other dots: the setting is changed so many times.
+/// Returns the keys that change the marker setting `times` times.
 fn dots(times: usize) -> String {
     format!("c↓↓↓{}\u{1b}", "→".repeat(times))
 }
 
 #[test]
-fn pictures_of_markers_and_small_screens() {
+fn markers_and_small_screens_match_their_snapshots() {
     insta::assert_snapshot!("octants", picture("cusps", SMALL, 3.0, &dots(1)));
     insta::assert_snapshot!("half_blocks", picture("cusps", SMALL, 3.0, &dots(2)));
     insta::assert_snapshot!("points", picture("cusps", SMALL, 3.0, &dots(3)));
@@ -87,7 +86,7 @@ fn pictures_of_markers_and_small_screens() {
 }
 
 #[test]
-fn a_teacher_stops_steps_and_goes_on() {
+fn the_run_can_be_paused_stepped_and_resumed() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.wait(1.0);
     assert_eq!(stage.step(), 200);
@@ -107,7 +106,7 @@ fn a_teacher_stops_steps_and_goes_on() {
 }
 
 #[test]
-fn round_pictures_are_zoomed_where_they_have_the_focus() {
+fn the_view_in_focus_is_zoomed() {
     let mut stage = Stage::open("cusps", &[], SMALL);
     stage.press("\tz").shows("from above (m) ×2").press("2z");
     stage.shows("from above (m) ×10");
@@ -122,7 +121,7 @@ fn round_pictures_are_zoomed_where_they_have_the_focus() {
 }
 
 #[test]
-fn a_note_that_may_not_hold_any_more_is_not_shown() {
+fn a_note_is_hidden_when_it_may_no_longer_apply() {
     let set = ["motion.time_step_s=0.01", "start.tilt_deg=30"];
     let mut stage = Stage::open("method-2", &set, SMALL);
     stage.shows("differs from the preset method-2: dt 0.01 s, not 0.1, start.tilt_deg 30, not");
@@ -134,7 +133,7 @@ fn a_note_that_may_not_hold_any_more_is_not_shown() {
 }
 
 #[test]
-fn speed_is_apart_from_the_time_step() {
+fn playback_speed_does_not_depend_on_the_time_step() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.press("+").shows("×50").wait(1.0);
     assert_eq!(stage.step(), 500);
@@ -157,15 +156,15 @@ fn the_run_pauses_once_at_its_end() {
 }
 
 #[test]
-fn top_speed_is_as_fast_as_there_is_time_for() {
+fn top_speed_uses_all_available_time() {
     let mut stage = Stage::open("method-2", &["motion.steps=100000000"], SMALL);
     stage.commands("speed = 'top'").wait(0.5).shows("top ×");
-    // A slice lasts 25 ms and each reading of the clock 50 µs: 500 readings, with some hundred steps between two.
+    // A time slice lasts 25 ms and each reading of the clock 50 µs: 500 readings, with some hundred steps between them.
     assert!(stage.step() > 100_000, "{}", stage.step());
 }
 
 #[test]
-fn steps_asked_for_by_the_million_do_not_hold_up_the_keys() {
+fn millions_of_requested_steps_do_not_block_keys() {
     let mut stage = Stage::open("method-2", &["motion.steps=1000"], SMALL);
     for stop in ["\u{1b}", " "] {
         stage.press("r9000000.").wait(0.1).shows("stepping: 8,");
@@ -180,7 +179,7 @@ fn steps_asked_for_by_the_million_do_not_hold_up_the_keys() {
 }
 
 #[test]
-fn the_exact_motion_and_the_distance_from_it() {
+fn the_exact_command_toggles_the_exact_motion() {
     let names_exact = |stage: &Stage| {
         let traces = |line: &str| line.chars().take(28).collect::<String>();
         let picture = stage.picture();
@@ -202,8 +201,8 @@ fn the_exact_motion_and_the_distance_from_it() {
 }
 
 #[test]
-fn the_strips_have_room_for_the_exact_motion_too() {
-    // The scheme damps the nutation: the run stays above the exact motion's lowest, at 36.69 degrees.
+fn the_range_of_a_strip_includes_the_exact_motion() {
+    // The scheme damps the nutation, so the run does not reach the lowest position of the exact motion at 36.69 degrees.
     let set = ["motion.scheme=\"report\"", "motion.time_step_s=0.02"];
     let mut stage = Stage::open("cusps", &set, SMALL);
     stage.wait(3.0).commands("pause = true");
@@ -217,7 +216,7 @@ fn the_strips_have_room_for_the_exact_motion_too() {
 }
 
 #[test]
-fn the_browser_opens_what_the_filter_finds() {
+fn the_browser_opens_the_filtered_entry() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.press("o").shows("> method-2").press("↓");
     stage.shows("> wobble-push").shows("The wobble push");
@@ -231,7 +230,7 @@ fn the_browser_opens_what_the_filter_finds() {
 }
 
 #[test]
-fn esc_closes_one_thing_at_a_time_and_never_leaves() {
+fn esc_closes_one_window_at_a_time_and_never_quits() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.press("ocus?").shows("cus?_");
     for _ in 0..5 {
@@ -243,7 +242,7 @@ fn esc_closes_one_thing_at_a_time_and_never_leaves() {
 }
 
 #[test]
-fn any_pane_fills_the_screen_and_comes_back() {
+fn every_pane_can_fill_the_screen() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     for pane in ["z (m)", "from above", "3-D", "values"] {
         let panes = |shown: &Stage| screen::layout(&shown.lab, true, SMALL).panes.len();
@@ -258,7 +257,7 @@ fn any_pane_fills_the_screen_and_comes_back() {
 }
 
 #[test]
-fn resizing_at_any_moment_shows_what_there_is_room_for() {
+fn resizing_shows_the_panes_that_fit() {
     let mut stage = Stage::open("method-2", &[], LARGE);
     stage.wait(1.0).shows(" 3-D ").shows("values");
     for (width, height, shown, hidden) in
@@ -275,7 +274,7 @@ fn resizing_at_any_moment_shows_what_there_is_room_for() {
 }
 
 #[test]
-fn nothing_changes_while_it_stands_still() {
+fn a_paused_lab_does_not_change() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.wait(1.0).commands("pause = true").wait(6.0);
     stage.lab.take_changed();
@@ -284,7 +283,7 @@ fn nothing_changes_while_it_stands_still() {
 }
 
 #[test]
-fn a_notice_goes_with_time_and_at_the_next_key() {
+fn a_notice_disappears_after_a_time_or_at_the_next_key() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.press(" w").shows("the traces show").wait(5.2);
     stage.shows_no("the traces show").shows("lmost a circle");
@@ -296,7 +295,7 @@ fn a_notice_goes_with_time_and_at_the_next_key() {
 }
 
 #[test]
-fn what_does_nothing_says_why() {
+fn keys_without_effect_say_why() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage
         .press("!")
@@ -314,8 +313,8 @@ fn what_does_nothing_says_why() {
 }
 
 #[test]
-fn at_speed_numbers_and_pictures_are_of_one_moment() {
-    // At a speed that is kept, numbers are read four times a second: every 2500 steps of 0.1 s, and up to a frame later.
+fn at_high_speed_numbers_and_pictures_belong_to_one_step() {
+    // At a constant speed, numbers are read four times per second: every 2500 steps of 0.1 s, and up to a frame later.
     for (command, most_late) in [
         ("speed = 1000", 3_500),
         ("speed = 'top'", 0),
@@ -330,7 +329,7 @@ fn at_speed_numbers_and_pictures_are_of_one_moment() {
             assert!(late <= most_late, "{command}: {late}");
             stage.shows(&format!(" {read} "));
         }
-        // What stands still is of the moment that it stands at.
+        // A paused lab shows the numbers of its own step.
         stage.commands("pause = true").press("\u{1b}");
         let read = stage.lab.player().reading.readouts.sample.step;
         assert_eq!(read, stage.step(), "{command}");
@@ -338,7 +337,7 @@ fn at_speed_numbers_and_pictures_are_of_one_moment() {
 }
 
 #[test]
-fn what_would_mend_a_run_is_found_on_the_side() {
+fn advice_is_found_in_the_background() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.shows("checking ...");
     stage.lab.take_advice();
@@ -354,7 +353,7 @@ fn what_would_mend_a_run_is_found_on_the_side() {
 }
 
 #[test]
-fn numbers_that_are_not_finite_stop_the_run_and_are_named() {
+fn non_finite_numbers_stop_the_run_with_a_message() {
     let set = [
         "motion.time_step_s=1e300",
         "motion.gravity_m_per_s2=1e10",
@@ -366,7 +365,7 @@ fn numbers_that_are_not_finite_stop_the_run_and_are_named() {
 }
 
 #[test]
-fn ascii_is_ascii_to_the_last_cell() {
+fn ascii_markers_give_a_pure_ascii_screen() {
     let mut stage = Stage::open("method-2", &["title=\"Kreisel über ∂\""], LARGE);
     stage.wait(2.0).press("tc↓↓↓←\u{1b}").wait(0.5);
     assert!(stage.picture().is_ascii(), "{}", stage.picture());
@@ -387,7 +386,7 @@ fn the_header_keeps_the_clock_before_the_title() {
 }
 
 #[test]
-fn the_help_says_everything_at_every_size() {
+fn the_help_is_complete_at_every_size() {
     for (width, height) in [(200, 50), (80, 24), (60, 18), (40, 10), (24, 60)] {
         let mut stage = Stage::open("method-2", &[], Rect::new(0, 0, width, height));
         stage.press("?");
@@ -409,7 +408,7 @@ fn the_help_says_everything_at_every_size() {
     }
 }
 
-/// The Linux console's fonts have the 256 characters of the old PC, and some of Latin 1.
+/// The fonts of the Linux console have the 256 characters of code page 437, and some of Latin-1.
 #[test]
 fn half_blocks_need_no_rare_glyphs() {
     for keys in ["t", "d", "?", "oloops"] {
@@ -438,7 +437,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
     #[test]
-    fn no_keys_at_no_size_break_anything(
+    fn random_keys_and_sizes_never_break_the_lab(
         keys in prop::collection::vec(any_key(), 0..40),
         sizes in prop::collection::vec((1u16..230, 1u16..70), 1..6),
         preset in 0..PRESETS.len(),
@@ -455,7 +454,7 @@ proptest! {
     }
 
     #[test]
-    fn nothing_is_drawn_outside(width in 0u16..100, height in 0u16..40, keys in "[fdtm?o]{0,4}") {
+    fn nothing_is_drawn_outside_the_screen_area(width in 0u16..100, height in 0u16..40, keys in "[fdtm?o]{0,4}") {
         let mut stage = Stage::open("cusps", &[], Rect::new(0, 0, width, height));
         stage.wait(0.5).press(&keys);
         let around = Rect::new(0, 0, width + 6, height + 6);
@@ -469,7 +468,7 @@ proptest! {
 
 
     #[test]
-    fn no_pane_draws_outside_itself(
+    fn no_pane_draws_outside_its_area(
         width in 0u16..90, height in 0u16..40, seconds in 0.0..3.0f64, keys in "[tm]{0,4}", preset in 0..PRESETS.len()
     ) {
         let mut stage = Stage::open(PRESETS[preset].name, &[], SMALL);

@@ -1,4 +1,4 @@
-//! What a step publishes: its two ends, what is read off it, and the workings, which are the numbers that made it.
+//! The public data of a step: its states before and after, derived values, and the workings (its intermediate numbers).
 
 use crate::support::scenarios::parse;
 use gyrolab::engine::run::{Simulation, Step};
@@ -10,8 +10,8 @@ use gyrolab::physics::{observables, rotation};
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 use std::sync::Arc;
 
-/// A wheel of seven points, of which `lump_kg` hangs off the axle, so that the number of points is odd; pushes that begin
-/// in mid-step, and edits of everything that an edit may touch.
+/// A wheel with an odd number of points (seven), one of `lump_kg` off the axle, with pushes that start within a step and
+/// edits of everything that can be edited.
 fn eventful(scheme: &str, lump_kg: f64) -> Arc<Scenario> {
     let text = format!(
         "title = 'x'
@@ -60,7 +60,7 @@ set = {{ 'motion.time_step_s' = 0.02 }}
     Arc::new(parse(&text))
 }
 
-/// Every step of `scenario`, each shown to `look` with its workings.
+/// Calls `look` with every step of `scenario` and its workings.
 fn each_step(scenario: &Arc<Scenario>, mut look: impl FnMut(&Step)) {
     let mut run = Simulation::new(Arc::clone(scenario));
     run.keep_workings(true);
@@ -69,7 +69,7 @@ fn each_step(scenario: &Arc<Scenario>, mut look: impl FnMut(&Step)) {
     }
 }
 
-/// The scenario with a lump and the one without.
+/// Returns the scenarios with and without a lump.
 fn both(scheme: &str) -> [Arc<Scenario>; 2] {
     [eventful(scheme, 0.75), eventful(scheme, 0.0)]
 }
@@ -102,8 +102,7 @@ fn table<'a>(phase: &'a Phase, symbol: &str) -> &'a PointTable {
     }
 }
 
-/// The sum of one column as the report's scheme adds it up: every second point from the first, every second from the
-/// second, and both.
+/// Adds up one column in the order of the report's scheme: the even rows, the odd rows, and then both sums.
 fn column_sum(table: &PointTable, column: usize) -> f64 {
     let half = |first: usize| {
         let rows = table.rows().skip(first).step_by(2);
@@ -113,7 +112,7 @@ fn column_sum(table: &PointTable, column: usize) -> f64 {
 }
 
 #[test]
-fn keeping_the_workings_changes_no_bit_of_the_run() {
+fn keeping_the_workings_does_not_change_the_run() {
     for scheme in SCHEMES {
         for scenario in both(scheme.name) {
             let mut plain = Simulation::new(Arc::clone(&scenario));
@@ -128,7 +127,7 @@ fn keeping_the_workings_changes_no_bit_of_the_run() {
 }
 
 #[test]
-fn the_parts_of_a_step_are_as_long_as_the_step() {
+fn the_parts_of_a_step_add_up_to_its_length() {
     for scheme in SCHEMES {
         for scenario in both(scheme.name) {
             let mut most_parts = 0;
@@ -140,14 +139,14 @@ fn the_parts_of_a_step_are_as_long_as_the_step() {
                 assert!(workings.parts.iter().all(|part| !part.phases.is_empty()));
                 most_parts = most_parts.max(workings.parts.len());
             });
-            // The push of 0.045 s begins in mid-step; a scheme that knows whole steps only feels its mean.
+            // The push of 0.045 s starts within a step. A scheme with whole steps only applies its mean.
             assert_eq!(most_parts, if scheme.continuous { 2 } else { 1 });
         }
     }
 }
 
 #[test]
-fn the_reports_step_follows_from_its_workings_to_the_last_bit() {
+fn the_report_step_follows_from_its_workings_bit_for_bit() {
     for scenario in both("report") {
         let mut positions: Option<Vec<f64>> = None;
         each_step(&scenario, |step| {
@@ -186,7 +185,7 @@ fn the_reports_step_follows_from_its_workings_to_the_last_bit() {
             assert_eq!(u, omega * (1.0 / omega.norm()));
             assert_eq!(p, u * u.transpose());
 
-            // 4. R, and the positions that it leads to.
+            // 4. R, and the resulting positions.
             let r = matrix(turn, "R");
             assert_eq!(r, rotation::about(&omega, dt));
             let (sine, cosine) = (number(axis, "sin"), number(axis, "cos"));
@@ -228,7 +227,7 @@ fn the_reports_step_follows_from_its_workings_to_the_last_bit() {
 }
 
 #[test]
-fn what_the_phases_say_they_change_is_what_changes() {
+fn phases_change_exactly_their_stated_targets() {
     for scheme in SCHEMES {
         for scenario in both(scheme.name) {
             each_step(&scenario, |step| {
@@ -327,7 +326,7 @@ fn the_splitting_step_follows_from_its_kicks() {
 }
 
 #[test]
-fn the_exact_motion_says_how_it_was_found() {
+fn the_exact_step_names_its_method() {
     let [lopsided, symmetric] = both("exact");
     each_step(&lopsided, |step| {
         let workings = step.workings().unwrap();
@@ -357,7 +356,7 @@ fn the_exact_motion_says_how_it_was_found() {
 }
 
 #[test]
-fn a_step_reads_as_its_state_does() {
+fn values_of_a_step_equal_those_of_its_state() {
     for scheme in SCHEMES {
         let scenario = eventful(scheme.name, 0.75);
         let body = &scenario.body.mechanics;
@@ -374,7 +373,7 @@ fn a_step_reads_as_its_state_does() {
             let height = observables::weight_height(body, after);
             let energy = observables::kinetic_energy(body, after) + step.motion().gravity * height;
             assert_eq!(step.energy(), energy);
-            // Asked again, it says the same.
+            // A second call gives the same result.
             assert_eq!(step.sample(), step.sample());
             last = *after;
         });
@@ -382,8 +381,8 @@ fn a_step_reads_as_its_state_does() {
 }
 
 #[test]
-fn where_the_numbers_end_the_last_step_is_published_as_it_was() {
-    // The push of step 4, and an edit before it, lead out of the range of numbers.
+fn after_a_breakdown_the_last_finite_step_stays_available() {
+    // The push at step 4, after an edit, makes the numbers overflow.
     let text = "title = 'x'\n[body.rim]\npoints = 4\nradius_m = 0.8\nheight_m = 1\npoint_mass_kg = 0.5\n\
                 [[body.point]]\nname = 'top'\nat_m = [0, 0, 1]\nmass_kg = 1\n\
                 [start]\nmomentum_Js = [0, 1, 30]\n[motion]\ntime_step_s = 0.1\nsteps = 9\n\
@@ -416,14 +415,14 @@ fn where_the_numbers_end_the_last_step_is_published_as_it_was() {
 }
 
 #[test]
-fn a_watched_run_gives_the_workings_of_any_step_kept_or_not() {
+fn the_workings_of_any_step_are_available_kept_or_not() {
     for scheme in SCHEMES {
         let scenario = eventful(scheme.name, 0.75);
         let mut known = vec![None];
         each_step(&scenario, |step| known.push(step.workings().cloned()));
         let mut run = LiveRun::new(Arc::clone(&scenario));
         for (step, expected) in known.iter().enumerate() {
-            // Some are asked for when they are past, the others are kept as the run goes.
+            // Some workings are requested later, the others are kept during the run.
             run.keep_workings(step % 3 == 1);
             if step > 0 {
                 run.step().unwrap();
