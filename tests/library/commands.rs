@@ -320,7 +320,7 @@ fn a_push_command_applies_the_given_force() {
 }
 
 #[test]
-fn go_to_and_step_reject_steps_outside_the_run() {
+fn go_to_accepts_times_and_names_and_impossible_commands_fail() {
     let mut desk = Desk::open("method-2");
     desk.commands("go_to = '12.5 s'");
     assert_eq!(desk.step(), 125);

@@ -120,7 +120,7 @@ fn values_at_the_cursor_are_shown_with_their_time() {
 }
 
 #[test]
-fn setting_the_size_of_l_keeps_its_direction() {
+fn size_and_tilt_of_l_can_be_set_separately() {
     let mut stage = Stage::open("method-1-steeper", &[], SMALL);
     stage
         .press("/|L|\n")

@@ -92,7 +92,7 @@ fn keys_without_a_visible_effect_show_a_message() {
     stage.commands("pause = true\ngo_to = 100");
     // Arrow keys act on the pane in focus, or say which keys do.
     stage.press("\t↓").shows("z and Z zoom here");
-    // A step beyond the end is reported as such, also during the seek.
+    // The first jump beyond the end is reported, a later one is not.
     stage.press("g2400\n").wait(2.0);
     stage.shows("step 2,400 is beyond the end of the run, step 2,300");
     stage.press("g2350\n").wait(0.5);
