@@ -375,7 +375,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_result_is_kept_or_the_command_is_interrupted_and_never_both() {
+    fn a_result_is_either_kept_or_interrupted() {
         let kept = Interruption::default();
         assert!(kept.may_keep().is_ok() && kept.may_keep().is_ok());
         assert!(kept.leave_working_for(INTERRUPTED_BY_SIGNAL).is_err());
@@ -386,7 +386,7 @@ mod tests {
     }
 
     #[test]
-    fn a_rate_is_told_once_there_is_one_and_never_as_0() {
+    fn a_rate_is_shown_once_known_and_never_as_0() {
         let told = |done, left, s| rate_and_rest("row", done, left, Duration::from_secs_f64(s));
         assert_eq!(told(0, 1000, 1.1), "");
         assert_eq!(told(1000, 9000, 0.5), ", 2,000/s, 5s left");
@@ -396,7 +396,7 @@ mod tests {
     }
 
     #[test]
-    fn a_resumed_count_has_the_whole_and_the_pace_of_the_rest() {
+    fn a_resumed_count_shows_the_total_and_the_current_rate() {
         let resumed = Meter {
             done_before: 990,
             begin: Instant::now() - Duration::from_secs(10),

@@ -245,7 +245,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn times_are_in_the_largest_unit_that_fits_twice() {
+    fn ages_use_the_largest_unit_that_fits_twice() {
         for (seconds, words) in [
             (0, "just now"),
             (119, "119 seconds ago"),

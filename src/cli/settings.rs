@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn every_word_of_the_table_is_an_option_and_a_choice_of_the_lab() {
+    fn setting_values_are_valid_options_and_choices_of_the_lab() {
         assert!(are_options::<Marker>("marker"));
         assert!(are_options::<ColorChoice>("color"));
         assert!(are_options::<Background>("background"));

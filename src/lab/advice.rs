@@ -176,7 +176,7 @@ mod tests {
     use std::time::Duration;
 
     #[test]
-    fn advice_is_sought_where_the_run_stands_and_not_on_its_way() {
+    fn the_search_for_advice_waits_for_the_end_of_a_seek() {
         let view = view();
         let mut player = Player::new(scenario(), false);
         let mut adviser = Adviser {

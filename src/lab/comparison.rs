@@ -447,7 +447,7 @@ mod tests {
     use crate::lab::for_tests::scenario;
 
     #[test]
-    fn a_run_that_was_played_stays_as_a_ghost() {
+    fn a_replaced_run_becomes_the_previous_run() {
         let (mut player, mut comparison) = (Player::new(scenario(), false), Comparison::default());
         let mut go_over = |from: &mut Player, change| {
             let scenario = scenario();

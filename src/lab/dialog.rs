@@ -475,7 +475,7 @@ mod tests {
     use crate::lab::for_tests::scenario;
 
     #[test]
-    fn a_file_is_replaced_only_after_the_user_was_asked_about_it() {
+    fn a_file_is_replaced_only_after_confirmation() {
         let dialog = Dialog::export(scenario(), "method-2.csv".to_owned());
         let (path, other) = (Path::new("method-2.csv"), Path::new("other.csv"));
         assert!(!dialog.may_replace(path));
@@ -487,7 +487,7 @@ mod tests {
     }
 
     #[test]
-    fn a_run_file_says_what_it_leaves_out() {
+    fn the_save_dialog_states_what_it_omits() {
         let info = |later| Dialog::save_run(7, later, String::new()).form.info;
         assert_eq!(info(0).len(), 1);
         assert!(info(3)[1].starts_with("without 3 later actions"));

@@ -342,7 +342,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_free_name_is_that_of_no_file() {
+    fn a_suggested_name_is_unused() {
         let folder = tempfile::tempdir().unwrap();
         let mut files = Files::default();
         files.work_in(folder.path());

@@ -225,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn keys_edit_the_field_that_is_selected() {
+    fn keys_edit_the_selected_field() {
         for (text, keys, edited, cursor) in [
             // Typing inserts at the cursor.
             ("0.1", "»5←←⌫", ["015", ""], 1),
@@ -257,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn a_complaint_goes_with_the_next_change() {
+    fn the_next_change_clears_the_error_message() {
         let mut form = form("x");
         form.complaint = Some("no".to_owned());
         form.edit_field(Left);
@@ -269,7 +269,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn nothing_typed_breaks_it(keys in prop::collection::vec((0..10_usize, any::<char>()), 0..60)) {
+        fn any_typed_keys_keep_a_valid_cursor(keys in prop::collection::vec((0..10_usize, any::<char>()), 0..60)) {
             let mut form = form("速 top");
             for (key, c) in keys {
                 let edits = [Erase, Delete, Left, Right, Home, End, Next];
@@ -281,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_takes_a_hundred_characters_and_none_that_steer() {
+    fn a_line_holds_at_most_100_characters_without_controls() {
         let mut line = "速".to_owned();
         type_into(&mut line, "a\n\u{1b}b");
         assert_eq!(line, "速ab");

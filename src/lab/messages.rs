@@ -217,7 +217,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_message_goes_with_time_unless_it_is_to_stay() {
+    fn a_message_expires_unless_it_is_persistent() {
         let at = Duration::from_secs;
         let mut messages = Messages::default();
         assert!(!messages.expire(at(0)) && !messages.take_back());

@@ -427,7 +427,7 @@ mod tests {
     use crate::lab::for_tests::scenario;
 
     #[test]
-    fn steps_and_times_count_from_the_start_or_from_here() {
+    fn steps_and_times_are_absolute_or_relative() {
         let mut player = Player::new(scenario(), false);
         player.step(100).unwrap();
         for (text, step) in [

@@ -207,7 +207,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pasted_text_goes_where_text_is_typed() {
+    fn pasted_text_goes_into_the_active_field() {
         let mut popups = Popups::default();
         assert!(popups.paste("q").unwrap().contains("paste into fields"));
         popups.open_dialog(Dialog::go_to());

@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn the_kept_text_follows_every_change() {
+    fn the_saved_text_reflects_every_change() {
         let mut runs = runs();
         let first = kept(&mut runs);
         assert_eq!(**first, **kept(&mut runs));
@@ -171,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn step_0_is_no_run_to_write() {
+    fn a_run_at_step_0_cannot_be_exported() {
         let runs = runs();
         let refused = runs.run_up_to(0, "export").unwrap_err();
         assert!(refused.starts_with("there is nothing to export yet"));

@@ -270,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn a_push_has_its_own_and_the_rest_of_the_push_to_come() {
+    fn missing_values_of_a_push_come_from_the_next_push() {
         let (values, scenario) = listed();
         let choice = PushChoice {
             force_N: Some(Force::Vector([3.0, 0.0, 4.0])),
@@ -289,7 +289,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_typed_becomes_a_command_for_the_selected_value() {
+    fn a_typed_value_becomes_a_command_for_the_selection() {
         let (mut values, scenario) = listed();
         values.select_next_push();
         let command = values.value_typed("70", false, &scenario, 0.1).unwrap();

@@ -248,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn a_second_motion_continues_the_first_to_the_bit() {
+    fn a_second_motion_continues_the_first_bit_for_bit() {
         let (body, loads, start) = top();
         let mut whole = SteppedMotion::new("strang", &body, &loads, &start).unwrap();
         (0..8).for_each(|_| whole.step(0.125));
@@ -261,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn pushes_gravity_and_friction_do_the_work_that_the_energy_shows() {
+    fn work_of_pushes_gravity_and_friction_equals_the_energy_change() {
         let (body, weight, start) = top();
         let push = PointForce {
             point: 1,
@@ -294,7 +294,7 @@ mod tests {
     }
 
     #[test]
-    fn impossible_states_loads_and_frictions_are_refused() {
+    fn impossible_states_loads_and_frictions_are_rejected() {
         let (body, loads, start) = top();
         let refusal = |scheme: &str, given: &Loads, state: &State| {
             let refused = SteppedMotion::new(scheme, &body, given, state);
@@ -344,7 +344,7 @@ mod tests {
     }
 
     #[test]
-    fn solids_with_impossible_dimensions_are_refused() {
+    fn solids_with_impossible_dimensions_are_rejected() {
         let axle = Vector3::z();
         let refusal = |shape: Shape, mass: f64, axis: Vector3<f64>| {
             let refused: PartError = PlacedSolid::new(shape, mass, axle, &axis).unwrap_err();

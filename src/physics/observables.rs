@@ -135,7 +135,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn the_pivot_carries_what_weight_and_push_do_not_accelerate() {
+    fn the_pivot_force_balances_weight_push_and_acceleration() {
         let at = [[0.8, 0.1, 0.5], [-0.3, 0.7, 0.6], [0.1, 0.0, 1.1]];
         let points = at.map(|at| crate::PointMass::new(Vector3::from(at), 0.5));
         let body = Body::new(points.to_vec()).unwrap();
@@ -183,7 +183,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_azimuth_counts_turns_as_summed_arc_tangents_do(
+        fn the_azimuth_equals_the_sum_of_arc_tangents(
             directions in prop::collection::vec((-1.0..1.0f64, -1.0..1.0f64), 1..60)
         ) {
             let axles: Vec<_> = directions.iter().map(|&(x, y)| Vector3::new(x, y, 0.5)).collect();
@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn a_vertical_axle_has_azimuth_0_and_keeps_what_it_had() {
+    fn a_vertical_axle_has_azimuth_0_or_the_previous_one() {
         let mut azimuth = Azimuth::start(&Vector3::new(1e-13, 0.0, 1.0));
         assert_eq!(azimuth.degrees(), 0.0);
         azimuth.turn_to(&Vector3::new(0.0, 1.0, 0.0));

@@ -155,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn rounds_as_the_standard_library_does_bit_for_bit() {
+    fn rounds_like_the_standard_library_bit_for_bit() {
         let near_halves = (0..2000)
             .map(|n| 0.5 * f64::from(n))
             .flat_map(|x| [x.next_down(), x, x.next_up()]);
@@ -174,7 +174,7 @@ mod tests {
 
     /// Sixty digits (mpmath): doubles whose remainder is unusually small.
     #[test]
-    fn known_digits() {
+    fn agrees_with_known_digits_near_multiples_of_a_quarter_turn() {
         for (x, sine, cosine) in [
             (45.553093477052, 1.0, -6.189806365883577e-19),
             (-45.553093477052, -1.0, -6.189806365883577e-19),
@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn zeros_keep_their_sign_and_nonsense_is_nan() {
+    fn zeros_keep_their_sign_and_non_finite_input_is_nan() {
         for zero in [0.0_f64, -0.0] {
             assert_eq!(sin_cos(zero).0.to_bits(), zero.to_bits());
         }

@@ -154,7 +154,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn from_above_y_is_up_and_from_the_side_z_is() {
+    fn y_is_up_from_above_and_z_from_the_side() {
         let at = Vector3::new(1.0, 2.0, 3.0);
         let seen = |pitch_deg| {
             let view = Camera {

@@ -155,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn the_ending_says_the_form() {
+    fn the_extension_determines_the_format() {
         let of = |name: &str| PageFormat::from_path(FilePath::new(name));
         assert_eq!(of("a.svg"), Ok(PageFormat::Svg));
         assert_eq!(of("dir.png/A.B.PDF"), Ok(PageFormat::Pdf));
@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn places_that_no_file_can_say_are_refused() {
+    fn coordinates_that_no_format_can_store_are_rejected() {
         for bad in [f64::NAN, f64::INFINITY, -1e300, 20_001.0] {
             let lines = [1.0, bad].map(|x| line(x, 1.0, pen(1.0, &[])));
             let scene = page(lines.to_vec());

@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn widths_are_those_of_the_font_and_of_scripts() {
+    fn widths_follow_the_font_and_scripts() {
         let (a, v) = (width("A"), width("V"));
         let f = ITALIC.letter('f').unwrap().advance;
         for (markup, expected) in [
@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn scripts_are_smaller_and_stand_above_one_another() {
+    fn scripts_are_smaller_and_raised_or_lowered() {
         let size = 1000.0;
         let (plain, above, below) = (label("H", size), label("H^{H}", size), label("H_{H}", size));
         assert!((above.ascent_pt - (360.0 + 0.7 * plain.ascent_pt)).abs() < 1e-9);
@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn a_slanted_letter_does_not_run_into_what_stands_behind_it() {
+    fn slanted_letters_do_not_touch_the_next_letter() {
         let f = ITALIC.letter('f').unwrap();
         assert!(width("*f*") > f.advance, "its end is among its width");
         assert!(width("*f*)") > f.advance + width(")"));
@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn words_are_the_text_without_markup() {
+    fn the_plain_text_of_a_label_has_no_markup() {
         for (markup, words) in [
             ("*t* (10^{3} s)", "t (10³ s)"),
             ("*Ω*_{p} (rad s^{−1})", "Ω_p (rad s⁻¹)"),
@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_letter_is_a_box() {
+    fn unknown_characters_are_drawn_as_a_box() {
         for text in ["速", "🌀", "\u{7}", "\u{e000}", "\u{10ffff}"] {
             for markup in [text.to_owned(), format!("*{text}*")] {
                 let drawn = label(&markup, 1000.0);
@@ -177,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn the_letters_of_figures_are_all_there() {
+    fn every_letter_used_in_figures_exists() {
         let needed = "0123456789−–—-+±×·°′″‴µΩωθφψΔαβγλτσΣπ→←↑↓≤≥≈≠√∞∝⊥∥‘’“”„‚«»…%‰§†‡•½ⁿ⁻¹₀₉\
                       ÄÖÜäöüßÉéèêëàâçñøåæœŒŠšŽžŁłŘřĞğİıȘșȚțĐđẞŐőŰűẽếữỲДЖяЇґЄ€№ℓℏ′";
         for letter in needed.chars() {
@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn a_long_text_is_cut_to_its_room() {
+    fn a_long_text_is_shortened_to_fit() {
         assert_eq!(shortened("short *", 7.0, 100.0), "short \\*");
         for length in [200, 2000, 100_000] {
             let markup = shortened(&"wide_".repeat(length), 7.0, 100.0);

@@ -287,7 +287,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_ends_at_the_edge_and_where_it_is_not_finite() {
+    fn lines_are_cut_at_the_edge_and_at_non_finite_points() {
         let line = parts(&[(5.0, 5.0), (15.0, 5.0), (15.0, 8.0), (5.0, 8.0)]);
         let there_and_back = [vec![(5.0, 5.0), (10.0, 5.0)], vec![(10.0, 8.0), (5.0, 8.0)]];
         assert_eq!(line, there_and_back);
@@ -302,7 +302,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_point_is_left_far_from_the_line(
+        fn simplification_keeps_every_point_near_the_line(
             steps in prop::collection::vec((-1.0_f64..1.0, -1.0_f64..1.0), 0..2000),
             within in 0.0_f64..2.0,
         ) {

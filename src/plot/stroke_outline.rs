@@ -268,7 +268,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(48))]
         #[test]
-        fn inside_is_what_is_inked(
+        fn the_outline_encloses_the_stroke(
             places in prop::collection::vec((0.0_f64..12.0, 0.0_f64..12.0), 2..12),
             tries in prop::collection::vec((-2.0_f64..14.0, -2.0_f64..14.0), 300),
             width in 0.4_f64..3.0,
@@ -287,7 +287,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_place_covers_nothing() {
+    fn lines_without_finite_points_cover_nothing() {
         let far = |x: f64| vec![at(0.0, 0.0), at(x, 1.0)];
         let nowhere = far(f64::NAN)[1..].to_vec();
         for line in [vec![], nowhere, far(f64::INFINITY), far(1e12)] {

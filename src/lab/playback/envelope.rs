@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn an_envelope_is_drawn_only_where_swings_are_unresolved_and_seen() {
+    fn an_envelope_is_drawn_only_for_visible_unresolved_swings() {
         for (period, height, drift, count) in [
             (0.3, 20.0, 0.0, 200),
             (3.0, 20.0, 0.0, 200),
@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn the_envelope_reaches_from_the_least_to_the_greatest() {
+    fn the_envelope_reaches_from_minimum_to_maximum() {
         let envelope = envelope(&columns(0.7, 20.0, 0.0));
         for (upper, lower) in envelope.into_iter().flatten() {
             assert!(upper < -9.8 && lower > 9.8, "{upper} {lower}");

@@ -150,7 +150,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_numbers_of_an_earlier_step_are_those_that_it_had() {
+    fn numbers_of_an_earlier_step_are_reproduced() {
         let samples: Vec<_> = (0..=700)
             .map(|steps| LiveRun::played("cusps", steps).simulation().sample())
             .collect();
@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn turns_of_the_tilt_are_found_on_both_sides() {
+    fn turning_points_of_the_tilt_are_found_in_both_directions() {
         // The axle is highest at the cusps, every 0.8225 s, and lowest between them.
         let run = LiveRun::played("cusps", 3000);
         let turns: Vec<_> = std::iter::successors(Some(0), |&at| turn(&run, at, true).ok())
@@ -182,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn a_turn_that_is_nowhere_is_not_looked_for_without_end() {
+    fn the_search_for_a_turning_point_is_limited() {
         let run = LiveRun::played("torque-free", 400_000);
         assert_eq!(turn(&run, 1000, false), Err(Missing::NoTurn));
         assert_eq!(turn(&run, 400_000, false), Err(Missing::TooFar));

@@ -68,7 +68,7 @@ mod tests {
     use crate::lab::for_tests::preset_with as scenario;
 
     #[test]
-    fn a_released_top_dips_and_comes_up_to_its_side() {
+    fn a_released_top_dips_and_rises_at_its_side() {
         // A nutation of the preset cusps takes 0.8225 s, and its tilt swings from 30 to 36.689 degrees.
         let cusps = scenario("cusps", &[]);
         let steps = (0.8225 / cusps.motion.time_step_s) as usize;

@@ -207,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn lines_reach_as_far_as_the_solid() {
+    fn outlines_have_the_extent_of_the_solid() {
         let (radius, length) = (0.5, 0.8);
         let (inner, outer) = (0.2, 0.5);
         let size = Vector3::new(0.2, 0.4, 0.6);

@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn simulated_time_follows_wall_time_also_where_a_step_takes_many_frames() {
+    fn simulated_time_follows_wall_time_at_every_step_length() {
         let fast_s = stepped_s(20.0, 10, 0.3);
         assert!((fast_s - 20.0).abs() < 0.3, "{fast_s}");
         let steps = (stepped_s(0.1, 100, 0.1) / 0.1).round();
@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_machine_cannot_do_is_not_owed_for_ever() {
+    fn time_that_a_slow_machine_misses_is_dropped() {
         let mut pace = Pace::new(1000.0, true);
         for _ in 0..31 {
             pace.earn(LONGEST_PACE_FRAME);

@@ -163,7 +163,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn cut_back_it_is_what_it_was(
+        fn a_truncated_path_equals_the_shorter_path(
             positions in prop::collection::vec((-2.0..2.0f64, -2.0..2.0f64), 2..60), share in 0.0..1.0f64
         ) {
             let follow = |path: &mut PathFromAbove, range: std::ops::Range<usize>| for step in range {

@@ -61,7 +61,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ends_have_three_digits_of_the_range() {
+    fn ends_show_the_range_to_three_digits() {
         for (low, high, digits) in [
             (0.6, 0.95, 3),
             (1.045, 1.131, 4),

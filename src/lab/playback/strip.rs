@@ -191,7 +191,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_steps_extremes_are_drawn(
+        fn the_extremes_of_every_step_are_drawn(
             values in prop::collection::vec(-1.0..1.0f64, 2..9_000), columns in 1usize..300
         ) {
             let mut recording = Recording::default();

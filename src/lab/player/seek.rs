@@ -319,7 +319,7 @@ mod tests {
     }
 
     #[test]
-    fn steps_that_are_integrated_are_taken_one_by_one_until_the_time_is_up() {
+    fn expensive_steps_are_taken_singly_until_time_is_up() {
         // A push that makes every step expensive from 0.07 s on. Earlier steps do not show it.
         let push = "push.0={point='camera',force_N=[0,0,-1e9],from_s=0.07,for_s=1}";
         let mut document = Document::open("phone").unwrap();

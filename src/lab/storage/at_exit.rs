@@ -87,7 +87,7 @@ mod tests {
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     #[test]
-    fn the_registered_hooks_are_called_whatever_becomes_of_the_others() {
+    fn exit_hooks_run_even_if_others_hang_or_panic() {
         let count = Arc::new(AtomicUsize::new(0));
         let counted = || {
             let count = Arc::clone(&count);

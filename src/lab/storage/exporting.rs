@@ -393,7 +393,7 @@ mod tests {
     }
 
     #[test]
-    fn an_export_that_the_user_stops_has_an_outcome_and_one_that_the_end_cuts_off_has_none() {
+    fn only_exports_stopped_by_the_user_have_an_outcome() {
         let mut stopped = waiting();
         stopped.cancel();
         wait(&stopped);
@@ -413,7 +413,7 @@ mod tests {
     }
 
     #[test]
-    fn an_scp_line_can_be_pasted() {
+    fn an_scp_command_is_quoted_for_the_shell() {
         assert_eq!(
             line("22", "ada", "lab.example.org", "/home/ada/run-1.csv").unwrap(),
             "scp ada@lab.example.org:/home/ada/run-1.csv ."
@@ -430,7 +430,7 @@ mod tests {
     }
 
     #[test]
-    fn names_that_cannot_be_typed_give_no_scp_line() {
+    fn unprintable_names_give_no_scp_command() {
         for (user, host, path) in [
             ("ada", "lab", "/tmp/a\u{1b}]0;x\u{7}.csv"),
             ("ada", "lab", "/tmp/a\nb.csv"),

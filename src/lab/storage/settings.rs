@@ -144,7 +144,7 @@ mod tests {
     use std::os::unix::fs::symlink;
 
     #[test]
-    fn a_link_is_neither_read_nor_written_through() {
+    fn symbolic_links_are_not_followed() {
         let home = tempfile::tempdir().unwrap();
         let target = home.path().join("target");
         fs::write(&target, "marker = 'dot'\n").unwrap();

@@ -372,7 +372,7 @@ mod tests {
     }
 
     #[test]
-    fn random_bodies_move_as_integrated() {
+    fn random_bodies_agree_with_an_integration() {
         let mut random = Random(1);
         let mut moments: Vec<_> = (0..600).map(|_| [0; 3].map(|_| random.size())).collect();
         let thin_flat_and_extreme = [
@@ -392,7 +392,7 @@ mod tests {
     }
 
     #[test]
-    fn bodies_with_tilted_principal_axes_move_as_integrated() {
+    fn bodies_with_tilted_principal_axes_agree_with_an_integration() {
         let mut random = Random(2);
         for _ in 0..300 {
             let axes = random.rotation();
@@ -409,7 +409,7 @@ mod tests {
 
     /// Down to a difference of rounding, where the two rotations take over.
     #[test]
-    fn nearly_symmetric_bodies_go_over_continuously() {
+    fn nearly_symmetric_bodies_are_a_continuous_limit() {
         let mut random = Random(4);
         for exponent in 1..=16 {
             let delta = libm::pow(10.0, -f64::from(exponent));
@@ -436,7 +436,7 @@ mod tests {
 
     /// On the separatrix L comes to rest along the middle axis; beside it the body tumbles.
     #[test]
-    fn the_separatrix_and_its_neighbourhood() {
+    fn motions_near_the_separatrix_agree_with_an_integration() {
         let start = Random(5).rotation();
         for off in [0.0, 1e-16, -1e-15, 1e-12, -1e-9, 1e-6, -1e-4, 1e-2] {
             for t in [0.1, -1.0, 4.0, 8.0_f64] {
@@ -477,7 +477,7 @@ mod tests {
 
     /// The count of the periods: at once or in parts.
     #[test]
-    fn long_times_are_many_short_ones() {
+    fn a_long_time_equals_many_short_ones() {
         let mut random = Random(9);
         for _ in 0..100 {
             let [a, b, c] = [0; 3].map(|_| random.number());

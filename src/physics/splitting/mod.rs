@@ -379,7 +379,7 @@ mod tests {
 
     /// The order from the self-distances at steps of one ratio 1 : 2 : 4, in a range where neither rounding nor higher orders show.
     #[test]
-    fn the_order_is_as_named() {
+    fn each_method_has_its_stated_order() {
         for (name, top) in tops() {
             for (kind, named, coarse) in [
                 (SplittingMethod::Strang, 2.0, 400),
@@ -395,7 +395,7 @@ mod tests {
 
     /// Over 5 s, in which neighbouring motions part by less than 200 times: later the load across the axis is chaotic.
     #[test]
-    fn backwards_undoes_forwards() {
+    fn stepping_backwards_undoes_stepping_forwards() {
         for (name, top) in tops() {
             for kind in KINDS {
                 let start = general_start();
@@ -410,7 +410,7 @@ mod tests {
 
     /// The same top with the axes of its body named differently: x, y, z become y, z, x and z, x, y.
     #[test]
-    fn the_axis_of_symmetry_may_be_any() {
+    fn any_axis_can_be_the_axis_of_symmetry() {
         let (start, (inertia, moment)) = (general_start(), heavy_top());
         for kind in KINDS {
             let expected = run(kind, heavy_top(), start, 5.0, 100);

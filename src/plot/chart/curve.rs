@@ -293,7 +293,7 @@ mod tests {
     }
 
     #[test]
-    fn lines_coincide_where_neither_leaves_the_other() {
+    fn lines_coincide_if_each_stays_on_the_other() {
         let level = Squares::new(&zigzag(0.5, 0.0, 0.0));
         assert!(!level.coincide(&Squares::new(&zigzag(0.25, 0.0, 0.2))));
         assert!(level.coincide(&Squares::new(&zigzag(0.5, 0.0, 0.2))));
@@ -303,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn marks_are_spread_over_the_whole_line() {
+    fn marks_are_spread_evenly_over_a_line() {
         let line = vec![
             vec![at(0.0, 0.0), at(60.0, 0.0)],
             vec![at(70.0, 0.0), at(130.0, 0.0)],

@@ -313,14 +313,14 @@ mod tests {
     }
 
     #[test]
-    fn a_label_is_the_number_of_its_tick() {
+    fn tick_labels_are_the_tick_values() {
         let tenths = Ticks::linear(0.0, 0.41, at_most(9));
         assert_eq!(labels(&tenths)[3], "0.15");
         assert!(tenths.major.iter().any(|tick| tick.at == 0.15));
     }
 
     #[test]
-    fn labels_leave_a_power_or_an_offset_to_the_title() {
+    fn labels_omit_the_power_or_offset_in_the_title() {
         let far = [30.000_000_1, 30.000_000_5];
         for ([low, high], most, expected, power, offset) in [
             ([0.0, 230.0], 6, "0 50 100 150 200", 0, None),
@@ -344,7 +344,7 @@ mod tests {
     }
 
     #[test]
-    fn a_logarithmic_axis_has_decades_as_many_as_have_room() {
+    fn a_logarithmic_axis_has_as_many_decades_as_fit() {
         let wide = Ticks::log(1e-14, 1.0, at_most(8));
         assert_eq!(labels(&wide).first(), Some(&"10^{−14}"));
         assert_eq!(labels(&wide).last(), Some(&"1"));
@@ -356,7 +356,7 @@ mod tests {
     }
 
     #[test]
-    fn values_are_round_and_no_more_than_there_is_room_for() {
+    fn tick_values_are_round_and_fit_the_room() {
         for (low, high, most, expected) in [
             (0.0, 230.0, 6, &[0.0, 50.0, 100.0, 150.0, 200.0][..]),
             (0.0, 230.0, 2, &[0.0, 200.0]),
@@ -372,7 +372,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_label_is_its_number(low in -1e6_f64..1e6, exponent in -9_i32..12, most in 2_usize..9) {
+        fn every_label_parses_to_its_tick_value(low in -1e6_f64..1e6, exponent in -9_i32..12, most in 2_usize..9) {
             let span = libm::exp10(f64::from(exponent));
             prop_assume!(span > 1e-9 * low.abs()); // an axis shows no rounding
             let ticks = Ticks::linear(low, low + span, at_most(most));
@@ -390,7 +390,7 @@ mod tests {
         }
 
         #[test]
-        fn no_range_of_numbers_is_too_much(low in any::<f64>(), high in any::<f64>()) {
+        fn any_range_has_a_limited_number_of_ticks(low in any::<f64>(), high in any::<f64>()) {
             let ticks = Ticks::linear(low.min(high), low.max(high), at_most(6));
             prop_assert!(ticks.major.len() <= 9 && ticks.minor.len() <= 60);
             let (low, high) = (low.abs().min(high.abs()), low.abs().max(high.abs()));

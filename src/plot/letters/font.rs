@@ -256,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn a_font_has_its_letters_and_the_box_and_no_others() {
+    fn a_font_subset_has_exactly_its_letters_and_the_box() {
         let font = Font::subset(&REGULAR, &"Äo 速".chars().collect());
         assert_eq!(
             ["Ä", "o", " ", "速"].map(|c| font.glyph(c.chars().next().unwrap())),
@@ -280,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn an_outline_is_that_of_the_table() {
+    fn glyph_outlines_equal_those_of_the_table() {
         let drawn = REGULAR.letter('g').unwrap();
         let glyph = Glyph::from_letter(&drawn);
         let [left, low, right, high] = glyph.bounds;

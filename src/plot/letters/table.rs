@@ -183,7 +183,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_line_is_a_letter() {
+    fn every_line_of_the_table_is_a_letter() {
         for (style, least) in [(&*REGULAR, 780), (&*ITALIC, 740)] {
             assert!(style.lines.len() > least, "{}", style.lines.len());
             for code in style.lines.keys() {
@@ -196,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn an_outline_is_read_as_svg_does() {
+    fn outlines_are_parsed_like_svg_paths() {
         let path = read_outline("m1 2l3-4 1 1h-5v6q1 1-2 0zm9 9").unwrap();
         let expected = vec![
             Segment::Move(at(1.0, -2.0)),
@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn kerning_moves_the_pairs_that_need_it() {
+    fn kerning_is_applied_to_listed_pairs() {
         assert!(REGULAR.kerning('A', 'V') < -50.0);
         assert!(ITALIC.kerning('A', 'V') < -50.0);
         assert_eq!(REGULAR.kerning('H', 'H'), 0.0);

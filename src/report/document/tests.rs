@@ -36,7 +36,7 @@ fn is_balanced(tex: &str) -> bool {
 
 proptest! {
     #[test]
-    fn a_text_is_shown_as_it_is(text in "[ -~é]{0,40}") {
+    fn escaped_text_is_shown_literally(text in "[ -~é]{0,40}") {
         let mut document = Document::new(Text::plain("t"));
         document.paragraph(&escape(&text));
         let tex = document.tex();
@@ -48,7 +48,7 @@ proptest! {
     }
 
     #[test]
-    fn any_markup_makes_a_document(text in "[ -~éψ√\\n]{0,40}") {
+    fn any_markup_gives_a_balanced_document(text in "[ -~éψ√\\n]{0,40}") {
         let mut document = Document::new(Text::plain(&text));
         document.paragraph(&text);
         document.formula(&text);
@@ -61,7 +61,7 @@ proptest! {
 }
 
 #[test]
-fn figures_and_tables_are_numbered_in_their_order() {
+fn figures_and_references_are_numbered_in_order() {
     let mut document = Document::new(Text::plain("t"));
     document.paragraph("See [#above], [#nothing] and [@jcgm].");
     document.figure("traces", 86.0, "First.");
@@ -96,7 +96,7 @@ fn figures_and_tables_are_numbered_in_their_order() {
 }
 
 #[test]
-fn no_character_of_a_title_has_its_meaning_for_tex() {
+fn titles_are_escaped_for_tex() {
     let title = tex_text::escaped(r"100 % of \today & $x_1$ {#} ~^ --");
     let plain = r"100 \% of \textbackslash{}today \& \$x\_1\$ \{\#\} \textasciitilde{}\textasciicircum{} -{}-";
     assert_eq!(title, plain);

@@ -445,7 +445,7 @@ mod tests {
     }
 
     #[test]
-    fn a_curve_reaches_both_ends_of_its_stretch() {
+    fn a_curve_reaches_both_ends_of_its_time_range() {
         // Its steps are of 0.1 s.
         let scenario = Document::open("wobble-push").unwrap().scenario().unwrap();
         let scenario = Arc::new(scenario);

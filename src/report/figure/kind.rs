@@ -130,7 +130,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn kinds_have_the_names_of_panes_and_columns() {
+    fn figure_kinds_are_named_after_panes_and_columns() {
         assert_eq!(FigureKind::named("traces").unwrap().name(), "x_m,y_m,z_m");
         let two = FigureKind::named("tilt_deg, energy_J").unwrap();
         assert_eq!(two.name(), "tilt_deg,energy_J");
@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn an_unknown_name_is_told_the_nearest() {
+    fn an_unknown_kind_is_rejected_with_the_nearest_name() {
         for (wrong, near) in [
             ("tilt_dg", "tilt_deg"),
             ("abov", "above"),

@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn a_short_path_is_kept_as_it_is_and_a_long_one_where_it_is_new() {
+    fn a_short_path_is_kept_in_full_and_a_long_one_is_thinned() {
         let short: Vec<_> = (0..2000).map(looping).collect();
         assert_eq!(recorded(false, short.iter().copied()).points, short);
         let long = recorded(true, (0..3_000_000).map(looping));
@@ -248,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn a_circle_of_few_points_is_in_chords() {
+    fn coarsely_sampled_circles_are_recognized() {
         let circle = |a_turn: f64| -> Vec<[f64; 3]> {
             let angles = (0..100).map(|step| f64::from(step) * TAU / a_turn);
             angles

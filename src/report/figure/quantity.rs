@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn a_part_of_the_body_is_called_by_its_name() {
+    fn parts_of_the_body_are_labeled_with_their_names() {
         let text =
             "[[body.point]]\nname = \"a_b\"\n[[body.part]]\n[[body.part]]\nname = \"ball\"\n";
         let [world, body] = [
@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn every_column_of_a_run_has_a_name_and_no_underscore_in_it() {
+    fn every_column_has_a_name_without_underscores() {
         for column in COLUMNS {
             let name = axis(column.name).name;
             assert!(!name.is_empty() && !name.contains("_m"), "{name}");

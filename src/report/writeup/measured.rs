@@ -182,7 +182,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_copy_has_a_plain_name_of_its_own() {
+    fn copies_have_plain_unused_names() {
         for (origin, name) in [
             ("bench.csv", "bench.csv"),
             ("../a folder/bench-2.txt", "bench-2.csv"),

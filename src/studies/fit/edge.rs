@@ -279,7 +279,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_upper_limit_is_that_of_the_part_inside() {
+    fn upper_limits_use_the_truncated_distribution() {
         // With the mean at the limit: one and two standard deviations. With the mean far outside: values of an
         // exponential.
         for (below, level, wanted) in [

@@ -260,7 +260,7 @@ mod tests {
     use super::at_least;
 
     #[test]
-    fn chi_squared_is_as_rare_as_the_tables_say() {
+    fn chi_squared_probabilities_match_the_tables() {
         // Values from the tables, at 5 %, 5 %, 1 %, 95 % and 50 %.
         let rows = [
             (3.841_458_821, 1, 0.05),

@@ -319,14 +319,14 @@ mod tests {
     }
 
     #[test]
-    fn both_ends_are_among_the_values_and_no_digit_is_made_by_rounding() {
+    fn a_range_includes_both_ends_without_rounding_noise() {
         let values = axis("motion.time_step_s=0.01..0.1:10").unwrap();
         assert_eq!(values[..4], ["0.01", "0.02", "0.03", "0.04"]);
         assert_eq!((values.len(), values[9].as_str()), (10, "0.1"));
     }
 
     #[test]
-    fn values_are_those_of_a_range_or_toml_or_else_text() {
+    fn values_are_a_range_toml_or_text() {
         let forces = "push.0.force_N=[0,0,-50],[0, 0, 50]";
         for (argument, values) in [
             ("motion.gravity_m_per_s2=1..-1:3", "1.0; 0.0; -1.0"),

@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn a_slope_is_told_where_the_error_falls_evenly_over_three_points_and_not_by_leaps() {
+    fn a_slope_needs_three_points_with_a_steady_decrease() {
         let told: &[(&[f64], _)] = &[
             (&[2.0, 2.01, 1.99, 2.4], Some(2.0)),
             (&[0.02, -0.1, 4.0, 3.9], Some(4.0)),
