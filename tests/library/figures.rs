@@ -383,7 +383,7 @@ fn a_path_with_fewer_than_two_steps_per_turn_is_drawn_as_points() {
 
 /// The report's scheme turns the body about Ω: within a step, the top goes along a circle.
 #[test]
-fn a_step_of_the_reports_scheme_is_an_arc() {
+fn a_step_of_the_report_scheme_is_drawn_as_an_arc() {
     let set = ["motion.steps=100", "motion.gravity_m_per_s2=0"];
     let runs = [run("method-1", &set)];
     let scene = drawn(&runs, &spec("above")).scene;
@@ -409,13 +409,13 @@ fn a_step_of_the_reports_scheme_is_an_arc() {
 }
 
 #[test]
-fn a_curve_of_ten_steps_a_swing_reaches_its_extremes() {
+fn a_curve_with_ten_steps_per_swing_reaches_its_extremes() {
     // Upright again and again: the exact motion and the report's scheme agree in that.
     for preset in ["method-1", "method-1-steeper"] {
         let run = run(preset, &["motion.steps=300"]);
         let column = FigureKind::named("tilt_deg").unwrap().columns()[0];
         let points = recorded(&run).points(column);
-        // The least of each swing, which has 11 steps or fewer.
+        // The minimum of each swing, which has 11 steps or fewer.
         let swings = points.chunk_by(|a, b| (a[0] / 0.011).floor() == (b[0] / 0.011).floor());
         let lows: Vec<f64> = swings
             .map(|swing| least(swing.iter().map(|at| at[1])))

@@ -10,7 +10,7 @@ use gyrolab::tui::screen;
 /// Resumes the lab of `content` and waits until it has reached its step.
 #[track_caller]
 fn resumed(content: &SessionContent) -> Desk {
-    let mut desk = Desk::of(scenarios::resumed(content));
+    let mut desk = Desk::from_lab(scenarios::resumed(content));
     desk.wait(2);
     desk
 }

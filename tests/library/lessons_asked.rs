@@ -18,7 +18,7 @@ const ANSWERS: [&str; 6] = [
 /// Opens a lesson on `page` and waits until its run is ready.
 fn on_page(lesson: &str, page: usize) -> Stage {
     let mut stage = Stage::open("method-2", &[], SMALL);
-    stage.lesson(lesson, page).arrive();
+    stage.lesson(lesson, page).settle();
     stage
 }
 

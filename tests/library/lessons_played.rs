@@ -55,7 +55,7 @@ const TASKS: [PlayedTask; 18] = [
 /// Opens the task on `page` of a lesson.
 fn task(lesson: &str, page: usize) -> Stage {
     let mut stage = Stage::open("method-2", &[], SMALL);
-    stage.lesson(lesson, page).arrive();
+    stage.lesson(lesson, page).settle();
     assert!(!is_reached(&stage), "{lesson} {page}");
     stage
 }

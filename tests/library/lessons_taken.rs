@@ -88,7 +88,7 @@ You were at {mine:.1} s.
 /// Opens a stage with [`LESSON`] from a file, on page `page`.
 fn taken(page: usize) -> (Stage, tempfile::TempDir, String) {
     let (mut stage, folder, name) = with(LESSON);
-    stage.lesson(&name, page).arrive();
+    stage.lesson(&name, page).settle();
     (stage, folder, name)
 }
 
@@ -165,13 +165,13 @@ fn a_prediction_is_requested_locked_and_compared_with_the_outcome() {
     stage.press("\u{1b}3,5\n").shows("Locked: 3.5 deg");
     assert!(!stage.lab.view().hides(HideablePart::Health));
     assert!(!stage.lab.view().hides(HideablePart::Predicted));
-    stage.press("n").arrive().shows("2 of 4");
+    stage.press("n").settle().shows("2 of 4");
     stage
         .shows("You said: it grows.")
         .shows("Came out: It is 5.0.");
     stage.shows("You said: 3.5 deg.");
     assert_eq!(stage.lab.player().motion().gravity, 5.0);
-    stage.press("N").arrive().shows("1 of 4");
+    stage.press("N").settle().shows("1 of 4");
     assert_eq!(answers(&stage)[1], (false, "you"));
     assert_eq!(
         answer_in(&stage.class),
@@ -192,7 +192,7 @@ fn rows_below(stage: &Stage) -> [String; 2] {
 fn an_open_question_hides_its_answer_and_names_its_keys() {
     let text = LESSON.replace("hide = [\"health\", \"predicted\"]\n", "exact = true\n");
     let (mut stage, _folder, name) = with(&text);
-    stage.lesson(&name, 1).arrive();
+    stage.lesson(&name, 1).settle();
     let hidden = "The verdict and the exact motion are hidden until you have predicted.";
     let unchosen = "1 2 3 or ↑ ↓ choose  n skip";
     assert_eq!(rows_below(&stage), [unchosen, hidden]);
@@ -230,7 +230,7 @@ fn an_open_question_hides_its_answer_and_names_its_keys() {
 fn hidden_items_are_hidden_in_every_pane() {
     let mut stage = Stage::open("cusps", &[], LARGE);
     stage.commands("pause = true\ngo_to = '2 s'\nexact = true");
-    stage.arrive().wait(6.0).shows("reliable:").shows("exact");
+    stage.settle().wait(6.0).shows("reliable:").shows("exact");
     stage.commands("hide = ['health', 'predicted', 'look_at']");
     stage.wait(6.0).shows_no("reliable");
     let picture = stage.picture();
@@ -290,12 +290,12 @@ fn the_run_stays_visible_with_every_pane() {
 #[test]
 fn a_prediction_can_be_skipped() {
     let (mut stage, _folder, _) = taken(1);
-    stage.press("↓").press("nn").arrive().shows("2 of 4");
+    stage.press("↓").press("nn").settle().shows("2 of 4");
     stage.shows("It is 5.0.").shows_no("You said: it");
     stage.shows("You made no prediction. Page 1 asks");
     // A missing prediction is shown as a blank, unless the lesson gives other words.
     stage.shows("You said: ….");
-    stage.press("N").arrive();
+    stage.press("N").settle();
     assert_eq!(answers(&stage)[0], (true, ""));
     stage.press("\n").shows("Locked: stays (after its outcome");
 }
@@ -304,10 +304,10 @@ fn a_prediction_can_be_skipped() {
 fn the_lab_can_be_used_freely_and_one_key_returns_to_the_page() {
     let (mut stage, _folder, _) = taken(2);
     let before = stage.step();
-    stage.press("p..,,.....").arrive();
+    stage.press("p..,,.....").settle();
     assert_ne!(stage.step(), before);
     assert_eq!(stage.lab.runs().journal().later_than(0), 2, "gravity, push");
-    stage.press("b").arrive();
+    stage.press("b").settle();
     assert_eq!(stage.step(), before);
     assert_eq!(stage.lab.runs().journal().later_than(0), 1, "gravity");
     assert_eq!(stage.lab.player().motion().gravity, 5.0);
@@ -319,25 +319,25 @@ fn a_task_can_be_done_by_hand_or_demonstrated() {
     stage.shows("[ ] not yet: be at 4 s").shows_no("Hint");
     stage.press("h").shows("Hint: g goes to a time.");
     stage.shows("[ ] not yet");
-    stage.press("g3.95 s\n").arrive();
+    stage.press("g3.95 s\n").settle();
     stage.shows("[x] done").shows_no("Hint");
     stage.press("n").shows("You were at 4.0 s");
     let kept = &stage.class.open_lesson().unwrap().place.kept;
     assert!((kept["mine"] - 3.95).abs() < 0.01, "{kept:?}");
     stage
         .press("N")
-        .arrive()
+        .settle()
         .shows("[ ] done before; not now: be at 4 s");
     let (mut again, _other_folder, _) = taken(3);
-    again.press("hh").arrive().shows("[x] shown by the lab");
+    again.press("hh").settle().shows("[x] shown by the lab");
     again.press("nn").shows("this is the last page");
-    again.press("NNNN").arrive().shows("this is the first page");
+    again.press("NNNN").settle().shows("this is the first page");
 }
 
 #[test]
 fn the_session_saves_page_and_predictions() {
     let (mut stage, _folder, _) = taken(1);
-    stage.press("↓↓\n").press("nn").arrive();
+    stage.press("↓↓\n").press("nn").settle();
     let content = stage.lab.content(stage.class.kept());
     let (class, taken) = Lessons::resumed(lessons_in(&content), &mut resumed(&content));
     taken.unwrap();
@@ -445,7 +445,7 @@ fn every_page_opens_with_its_essential_lines_from_any_state() {
                     );
                     screen.press("n");
                 }
-                screen.arrive();
+                screen.settle();
                 assert!(
                     !screen.class.open_lesson().unwrap().is_under_way(),
                     "{place}"
@@ -483,7 +483,7 @@ fn a_page_plays_its_run_and_n_jumps_to_its_end() {
         .replace("go_to = \"3 s\"", "speed = 0.5\nrun_until = \"t_s >= 3\"")
         .replace("## Compare\n", "## Compare\n\nWatch.\n");
     let (mut stage, _folder, name) = with(&text);
-    stage.lesson(&name, 1).arrive().press("nn").wait(0.5);
+    stage.lesson(&name, 1).settle().press("nn").wait(0.5);
     stage
         .shows("Watch.")
         .shows("The run is playing")
@@ -495,15 +495,15 @@ fn a_page_plays_its_run_and_n_jumps_to_its_end() {
         .shows("It is 5.0.")
         .press("u")
         .shows("the page began here");
-    stage.press("n").arrive().shows("3 of 4");
+    stage.press("n").settle().shows("3 of 4");
 }
 
 #[test]
 fn results_of_tasks_and_late_predictions_are_saved() {
     let (mut stage, _folder, _) = taken(1);
-    stage.press("nn").arrive().press("N").arrive().press("↓\n");
-    stage.press("nn").arrive().press("n").arrive();
-    stage.press("hg4 s\n").arrive().shows("done: be at 4 s");
+    stage.press("nn").settle().press("N").settle().press("↓\n");
+    stage.press("nn").settle().press("n").settle();
+    stage.press("hg4 s\n").settle().shows("done: be at 4 s");
     let place = &stage.class.open_lesson().unwrap().place;
     let late = place
         .predictions
@@ -516,7 +516,7 @@ fn results_of_tasks_and_late_predictions_are_saved() {
 #[test]
 fn a_repeated_push_replaces_the_first() {
     let (mut stage, _folder, _) = taken(2);
-    stage.press("rp10.").arrive().press("rp").arrive();
+    stage.press("rp10.").settle().press("rp").settle();
     assert_eq!(stage.lab.player().run().scenario().pushes.len(), 1);
 }
 
@@ -533,13 +533,13 @@ fn lessons_are_opened_from_a_list_and_resumed_at_their_page() {
     };
     stage.press("L").shows(&title(0));
     assert!(answers(&stage)[0].0);
-    stage.press("↓↓↑↓\n").arrive();
+    stage.press("↓↓↑↓\n").settle();
     assert_eq!(stage.class.open_lesson().unwrap().lesson.title, title(2));
-    stage.press("nn").arrive().shows("2 of ");
+    stage.press("nn").settle().shows("2 of ");
     stage.press("L").shows(" min, page 2");
-    stage.press("\n").arrive().shows("2 of ");
+    stage.press("\n").settle().shows("2 of ");
     let step = stage.step();
-    stage.press("L\n").arrive().shows("2 of ");
+    stage.press("L\n").settle().shows("2 of ");
     assert_eq!(stage.step(), step, "the run stays");
     stage.press("L↓\u{1b}L");
     assert!(answers(&stage)[3].0);
@@ -576,11 +576,11 @@ fn a_long_page_starts_at_its_top_and_scrolls() {
 #[test]
 fn stated_numbers_stay_while_the_run_continues() {
     let (mut stage, _folder, _) = taken(1);
-    stage.press("10.").arrive().shows("The time is 2.0 s");
-    stage.press("g5 s\n").arrive().shows("The time is 2.0 s");
-    stage.press("b").arrive().shows("The time is 2.0 s");
+    stage.press("10.").settle().shows("The time is 2.0 s");
+    stage.press("g5 s\n").settle().shows("The time is 2.0 s");
+    stage.press("b").settle().shows("The time is 2.0 s");
     let (mut open, _other_folder, _) = taken(2);
-    open.shows("It is 5.0.").press("g4 s\n").arrive();
+    open.shows("It is 5.0.").press("g4 s\n").settle();
     open.shows("It is 5.0.").shows_no("tilt 30 to 36.69");
     assert_eq!(stage.lab.player().reading.readouts.sample.time_s, 2.0);
 }
@@ -613,13 +613,13 @@ x
 x
 "#;
     let (mut stage, _folder, name) = with(text);
-    stage.lesson(&name, 1).arrive();
+    stage.lesson(&name, 1).settle();
     stage.shows("phase 1 of 7").shows(". next phase");
     assert_eq!(stage.focus(), "lesson");
     stage.press("..").shows("phase 3 of 7");
     assert_eq!(stage.step(), 1, "no further step was taken");
-    stage.press("n").arrive().shows("2 of 3").shows("3-D");
-    stage.press(".").arrive();
+    stage.press("n").settle().shows("2 of 3").shows("3-D");
+    stage.press(".").settle();
     assert_eq!(stage.step(), 1);
 }
 

@@ -184,7 +184,7 @@ fn a_session_saves_the_name_of_the_measured_data() {
         path.display()
     ));
     let content = desk.lab.content(&Default::default());
-    let mut again = Desk::of(resumed(&content));
+    let mut again = Desk::from_lab(resumed(&content));
     again.wait(3);
     assert_eq!(sum(&again.lab).compared, 20);
     assert!(again.lab.view().look.residuals);

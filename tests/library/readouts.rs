@@ -305,7 +305,7 @@ fn the_drift_of_a_balanced_body_is_relative_to_kinetic_energy() {
     assert_eq!(readouts(&rest).health.energy_drift, None);
 }
 
-/// Returns the first NaN, infinity or overlong number in a text, if any.
+/// Returns the first NaN, infinity, null or overlong number in a text, if any.
 fn blemish(text: &str) -> Option<String> {
     let mut words = text.split(|c: char| !(c.is_alphanumeric() || "._+-".contains(c)));
     words

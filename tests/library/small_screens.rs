@@ -45,7 +45,7 @@ fn a_warning_is_shown_together_with_the_look_at_text() {
 #[test]
 fn a_hidden_verdict_frees_its_row_for_the_page() {
     let mut stage = Stage::open("method-2", &[], TEACHERS);
-    stage.lesson("is-the-wobble-real", 10).arrive().wait(6.0);
+    stage.lesson("is-the-wobble-real", 10).settle().wait(6.0);
     let rows = |shown: &Stage| {
         screen::layout(&shown.lab, true, shown.size).panes[0]
             .1

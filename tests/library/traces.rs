@@ -29,7 +29,7 @@ const COLORS: Theme = Theme {
 fn at(preset: &str, set: &[&str], step: u64, size: Rect) -> Stage {
     let mut stage = Stage::open(preset, set, size);
     stage.commands(&format!("pause = true\ngo_to = {step}"));
-    stage.arrive().wait(0.5);
+    stage.settle().wait(0.5);
     while stage.lab.player().run().overlay_is_behind() {
         stage.wait(0.1);
     }
@@ -496,7 +496,7 @@ fn the_previous_run_is_dotted_behind_the_run() {
         .commands("set = { 'start.momentum_Js' = [0, 0, 900] }")
         .wait(1.0);
     stage.commands("pause = true\ngo_to = 900");
-    stage.arrive();
+    stage.settle();
     stage.shows("··· previous run");
     let buf = colored(&mut stage);
     let dots = cells_of(Role::Previous, place(&stage, Pane::Traces), &buf);
@@ -524,7 +524,7 @@ fn columns_show_the_extremes_of_their_steps() {
 fn any_csv_column_can_be_shown_as_a_strip() {
     let mut stage = at("method-2", &[], 400, LARGE);
     stage.commands("detail_of = 'energy_J'").wait(1.0);
-    stage.arrive().shows("energy (J) ").shows_no("tilt (°)");
+    stage.settle().shows("energy (J) ").shows_no("tilt (°)");
     let recorded = |shown: &Stage| {
         let column = shown.lab.comparison().column().unwrap();
         column.recording().whole().unwrap().samples()
@@ -532,8 +532,8 @@ fn any_csv_column_can_be_shown_as_a_strip() {
     assert_eq!(recorded(&stage), 401);
     // The column follows the run backward, and is recorded from the start for another run.
     stage.commands("go_to = 'start'\nstep = 3");
-    stage.arrive().wait(0.5);
-    stage.press("/dt\n0.05\n").arrive().wait(1.0);
+    stage.settle().wait(0.5);
+    stage.press("/dt\n0.05\n").settle().wait(1.0);
     assert!(stage.lab.comparison().column().unwrap().before().is_some());
     stage.commands("detail_of = 'none'").shows_no("energy (J)");
     assert!(stage.lab.comparison().column().is_none());

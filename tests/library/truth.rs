@@ -737,7 +737,7 @@ fn heights(scenario: &Arc<Scenario>, position: impl FnMut(&Simulation) -> f64) -
 }
 
 #[test]
-fn the_wobble_is_made_by_the_time_step() {
+fn the_wobble_is_caused_by_the_time_step() {
     let preset = preset("wobble-push", &[]);
     let report = find_scheme("report");
     let table = [

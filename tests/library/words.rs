@@ -146,8 +146,8 @@ fn the_clock_has_enough_digits_for_the_shortest_step() {
 fn esc_returns_from_a_found_value_to_the_page() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.lesson("does-a-faster-spin-precess-faster", 6);
-    stage.arrive();
-    stage.press("/Lz body\n300\n").arrive();
+    stage.settle();
+    stage.press("/Lz body\n300\n").settle();
     stage.shows("to the page").press("\u{1b}");
     stage.shows("Your turn").shows_no("to the page");
 }

@@ -321,7 +321,7 @@ fn a_new_group_keeps_the_votes_of_the_previous_one() {
 }
 
 #[test]
-fn a_rehearsal_leaves_nothing_behind() {
+fn a_rehearsal_leaves_no_files() {
     let ground = Ground::new();
     fs::create_dir(ground.path().join("full")).unwrap();
     ground.write("full/file.txt", "");

@@ -205,7 +205,7 @@ fn a_csv_reproduces_itself_byte_for_byte() {
 }
 
 #[test]
-fn windows_line_ends_and_a_byte_order_mark_change_nothing() {
+fn line_ends_and_byte_order_marks_do_not_change_a_run() {
     let lab = Ground::new();
     lab.stderr("run method-1 --steps 5 -o a.csv");
     let of_windows = format!("\u{feff}{}", lab.read("a.csv").replace('\n', "\r\n"));

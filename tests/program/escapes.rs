@@ -131,7 +131,7 @@ fn the_lab_and_its_last_message_escape_names() {
     terminal.ask("x", "export steps 0 to 5");
     terminal.ask("\r", "wrote");
     terminal.quit();
-    terminal.has_given_the_terminal_back();
+    terminal.assert_terminal_restored();
     terminal.wait_until("the farewell", |terminal| {
         terminal.sent_text().contains("gyrolab --resume")
     });

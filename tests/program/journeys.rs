@@ -339,7 +339,7 @@ fn ended(lab: &mut Terminal, by: &str) -> u32 {
 /// Returns the contents of all session files.
 fn kept(ground: &Ground) -> String {
     let folder = ground.state().join("gyrolab");
-    let names = ground.kept(".session").into_iter();
+    let names = ground.session_files(".session").into_iter();
     let texts = names.filter_map(|name| fs::read_to_string(folder.join(name)).ok());
     texts.collect()
 }
@@ -459,7 +459,7 @@ fn every_way_to_end_the_lab_saves_all_changes() {
             .zip([129, 130, 131, 143]);
         for (_, expected) in signals.filter(|(signal, _)| **signal == end) {
             assert_eq!(code, expected, "{end}");
-            lab.has_given_the_terminal_back();
+            lab.assert_terminal_restored();
             let farewell = format!("{LEAVES_ALTERNATE_SCREEN}{SHOWS_CURSOR}");
             assert!(lab.sent_text().ends_with(&farewell), "{end}");
         }
@@ -481,7 +481,7 @@ fn a_panic_saves_all_changes() {
     push(&mut lab);
     steps(&mut lab, "5.", 35);
     assert_eq!(lab.wait_for_end().exit_code(), 101);
-    lab.has_given_the_terminal_back();
+    lab.assert_terminal_restored();
     lab.wait_until("the message", |lab| {
         let sent = lab.sent_text();
         let mut after = sent.split(LEAVES_ALTERNATE_SCREEN).skip(1);
@@ -505,9 +505,9 @@ fn a_shell_suspends_and_resumes_the_lab() {
     lab.wait_for("L lessons");
     push(&mut lab);
     lab.press(CTRL_Z);
-    lab.has_given_the_terminal_back();
+    lab.assert_terminal_restored();
     lab.ask("\r", "shell>");
-    lab.forget();
+    lab.clear_output();
     lab.press("echo the shell $((6 * 7))\r");
     lab.wait_for("the shell 42");
     lab.press("fg\r");
@@ -515,7 +515,7 @@ fn a_shell_suspends_and_resumes_the_lab() {
     lab.wait_for_step(30);
     steps(&mut lab, "5.", 35);
     lab.press("q");
-    lab.has_given_the_terminal_back();
+    lab.assert_terminal_restored();
     lab.press("exit\r");
     lab.wait_for_end();
     let mut after = resumed(&ground);
@@ -527,7 +527,7 @@ fn a_shell_suspends_and_resumes_the_lab() {
 fn two_labs_have_two_sessions_and_a_third_starts_a_new_one() {
     let ground = Ground::new();
     let mut labs = [paused_at(&ground, 30), paused_at(&ground, 50)];
-    assert_eq!(ground.kept(".lock").len(), 2);
+    assert_eq!(ground.session_files(".lock").len(), 2);
     let [older, newer] = &mut labs;
     push(older);
     wait_until_kept(older, &ground);
@@ -568,8 +568,8 @@ fn a_damaged_session_is_named_and_left_alone() {
     let mut lab = paused_at(&ground, 30);
     push(&mut lab);
     lab.quit();
-    let [name] = &ground.kept(".session")[..] else {
-        panic!("{:?}", ground.kept(""))
+    let [name] = &ground.session_files(".session")[..] else {
+        panic!("{:?}", ground.session_files(""))
     };
     let path = ground.state().join("gyrolab").join(name);
     let text = fs::read_to_string(&path).unwrap();

@@ -60,7 +60,7 @@ fn clicks_act_on_what_is_under_the_pointer() {
     lab.ask("\u{1b}[<64;16;6M", "whole run");
     lab.press("q");
     assert_eq!(lab.wait_for_end().exit_code(), 0);
-    lab.has_given_the_terminal_back();
+    lab.assert_terminal_restored();
 }
 
 #[test]
@@ -108,7 +108,7 @@ fn the_mouse_can_be_left_to_the_terminal() {
     lab.wait_until("the mouse back", |lab| lab.sent_text().contains(MOUSE_OFF));
     lab.ask("\x1b", "L lessons");
     lab.quit();
-    lab.has_given_the_terminal_back();
+    lab.assert_terminal_restored();
 }
 
 #[test]

@@ -45,7 +45,7 @@ fn a_full_disk_is_reported_until_the_session_is_saved() {
     lab.wait_for("the session cannot be saved");
     lab.ask("P", "session not saved · the next push");
     lab.ask(ESC, "session not saved");
-    lab.forget();
+    lab.clear_output();
     lab.press("q");
     lab.wait_for("there is no session to resume");
     assert!(!lab.words().contains("comes back to"), "{}", lab.words());

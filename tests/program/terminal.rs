@@ -19,7 +19,7 @@ fn the_lab_opens_runs_and_quits() {
     terminal.wait_for("Method 2");
     terminal.wait_for("► ×20");
     terminal.quit();
-    terminal.has_given_the_terminal_back();
+    terminal.assert_terminal_restored();
 }
 
 #[test]
@@ -228,7 +228,7 @@ fn the_lab_works_without_threads() {
             signal => terminal.signal(signal),
         }
         assert_eq!(terminal.wait_for_end().exit_code(), code, "{signal}");
-        terminal.has_given_the_terminal_back();
+        terminal.assert_terminal_restored();
         assert!(!terminal.sent_text().contains("panicked"));
     }
 }
@@ -273,7 +273,7 @@ fn a_stopped_terminal_does_not_block_the_exit() {
 fn ctrl_l_redraws_the_screen() {
     let mut terminal = opened("--paused");
     thread::sleep(Duration::from_millis(300));
-    terminal.forget();
+    terminal.clear_output();
     terminal.press("\u{c}");
     terminal.wait_for("L lessons");
     terminal.wait_for("Method 2");
@@ -313,13 +313,13 @@ fn ctrl_z_suspends_a_script_together_with_its_lab() {
     shell.press(&format!("sh -c '{program} --paused; true'\r"));
     shell.wait_for("L lessons");
     shell.press(CTRL_Z);
-    shell.has_given_the_terminal_back();
+    shell.assert_terminal_restored();
     shell.ask("\r", "shell>");
-    shell.forget();
+    shell.clear_output();
     shell.press("fg\r");
     shell.wait_for("L lessons");
     shell.press("q");
-    shell.has_given_the_terminal_back();
+    shell.assert_terminal_restored();
 }
 
 /// The lab must never stay stopped. On a busy machine, the shell may take the terminal between the two signals; such an
@@ -336,7 +336,7 @@ fn a_sigcont_soon_after_a_sigtstp_leaves_the_lab_running() {
         .shell(&format!("pgrep -P {}", shell.child.process_id().unwrap()));
     let lab = String::from_utf8(found.stdout).unwrap().trim().to_owned();
     let is_left_running = (0..3).any(|_| {
-        shell.forget();
+        shell.clear_output();
         let both = format!("kill -TSTP {lab}; kill -CONT {lab}");
         assert!(shell.ground().shell(&both).status.success());
         shell.wait_until("a picture or a prompt", |shell| {
@@ -353,8 +353,8 @@ fn a_sigcont_soon_after_a_sigtstp_leaves_the_lab_running() {
     assert!(is_left_running);
     shell.wait_for("L lessons");
     shell.ask(".", "step 1 ");
-    // The terminal may have been restored before the last `forget`, so this is not checked here.
-    shell.forget();
+    // The terminal may have been restored before the last `clear_output`, so this is not checked here.
+    shell.clear_output();
     shell.press("q");
     shell.wait_for("shell>");
 }

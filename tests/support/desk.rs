@@ -21,25 +21,25 @@ pub struct Desk {
 }
 
 impl Desk {
-    /// Opens the preset `name`, paused.
+    /// Opens a paused lab with the preset `name`.
     pub fn open(name: &str) -> Self {
         Self::with(name, preset(name, &[]))
     }
 
     pub fn with(name: &str, scenario: Scenario) -> Self {
         let view = view(&scenario, Marker::Braille, false);
-        Self::of(Lab::new(name, Arc::new(scenario), view, false))
+        Self::from_lab(Lab::new(name, Arc::new(scenario), view, false))
     }
 
-    /// A desk with an existing lab.
-    pub fn of(lab: Lab) -> Self {
+    /// Creates a desk for an existing lab.
+    pub fn from_lab(lab: Lab) -> Self {
         Self {
             lab,
             now: Duration::ZERO,
         }
     }
 
-    /// Presses `keys`, and waits until the lab has finished the steps that they request.
+    /// Presses `keys`, and waits until the lab has finished the requested steps.
     pub fn press(&mut self, keys: &[Key]) {
         for &key in keys {
             press(key, &mut self.lab);
@@ -69,15 +69,18 @@ impl Desk {
         self.lab.advance(&mut || now);
     }
 
-    /// Carries `command` out, and waits until the lab has finished the steps that it requests.
+    /// Executes `command`, and waits until the lab has finished the requested steps.
     pub fn carry_out(&mut self, command: &Command) -> ActionResult {
         let answer = self.lab.carry_out(command);
         self.wait(2);
         answer
     }
 
-    /// Carries out the commands in `text`, each line of which is the body of a `[[do]]`. None may be refused. Returns the
-    /// message of the last one.
+    /// Executes the commands in `text`, one `[[do]]` body per line. Returns the message of the last one.
+    ///
+    /// # Panics
+    ///
+    /// Panics if a command is rejected.
     #[track_caller]
     pub fn commands(&mut self, text: &str) -> Option<String> {
         let mut said = None;
@@ -95,13 +98,13 @@ impl Desk {
         self.lab.player().run().simulation()
     }
 
-    /// The scenario of the run with everything the user did to it.
+    /// Returns the scenario of the run with all edits.
     pub fn scenario(&self) -> Scenario {
         self.lab.player().run().scenario().as_ref().clone()
     }
 
-    /// Saves the run file in `folder`, the lab's working directory, and reads it back; `None` at step 0, where there is no
-    /// run to save yet.
+    /// Saves the run file in `folder`, the lab's working directory, and reads it back. Returns `None` at step 0, where there
+    /// is no run to save yet.
     pub fn saved(&mut self, folder: &Path) -> Option<Scenario> {
         if self.step() == 0 {
             return None;
@@ -112,7 +115,7 @@ impl Desk {
     }
 }
 
-/// The commands in `text`, one on each line.
+/// Parses the commands in `text`, one per line.
 #[track_caller]
 pub fn commands(text: &str) -> Vec<Command> {
     let lines = text.lines().filter(|line| !line.trim().is_empty());

@@ -19,17 +19,17 @@ impl Dice {
         low + (high - low) * self.unit()
     }
 
-    /// A number from `low` to `high` whose logarithm is uniformly distributed.
+    /// Returns a number from `low` to `high` with a uniformly distributed logarithm.
     pub fn scale(&mut self, low: f64, high: f64) -> f64 {
         (self.between(low.ln(), high.ln())).exp()
     }
 
-    /// A whole number from `low` to `high`, both included.
+    /// Returns a whole number from `low` to `high`, both inclusive.
     pub fn whole(&mut self, low: u64, high: u64) -> u64 {
         low + (self.unit() * (high - low + 1) as f64) as u64
     }
 
-    /// One of `list`.
+    /// Returns a random element of `list`.
     pub fn pick<T: Copy>(&mut self, list: &[T]) -> T {
         list[(self.unit() * list.len() as f64) as usize]
     }

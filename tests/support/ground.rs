@@ -9,7 +9,7 @@ use tempfile::TempDir;
 pub const GYROLAB: &str = env!("CARGO_BIN_EXE_gyrolab");
 pub(super) const VARIABLES: [(&str, &str); 2] = [("TERM", "xterm"), ("LANG", "C.UTF-8")];
 
-/// Arguments of the program: a list, or a line as one types it in a shell.
+/// Arguments of the program: a list, or a line in shell syntax.
 pub trait Args {
     fn list(self) -> Vec<String>;
 }
@@ -53,7 +53,7 @@ impl Ground {
         Self(Arc::new(tempfile::tempdir().unwrap()))
     }
 
-    /// A directory whose name begins with `prefix`.
+    /// Creates a directory with a name that begins with `prefix`.
     pub fn named(prefix: &str) -> Self {
         Self(Arc::new(
             tempfile::Builder::new().prefix(prefix).tempdir().unwrap(),
@@ -68,12 +68,12 @@ impl Ground {
         self.path().join(name)
     }
 
-    /// The folder that contains the sessions' folder.
+    /// Returns the folder that contains the session folder.
     pub fn state(&self) -> PathBuf {
         self.file("state")
     }
 
-    /// The folder that contains the folder of the user's settings.
+    /// Returns the folder that contains the folder of the user's settings.
     pub fn config(&self) -> PathBuf {
         self.file("config")
     }
@@ -86,27 +86,27 @@ impl Ground {
         std::fs::write(self.file(name), text).unwrap();
     }
 
-    /// The names of all files and folders in it, the hidden ones too, sorted.
+    /// Returns the sorted names of all files and folders in the directory, including hidden ones.
     pub fn files(&self) -> Vec<String> {
         names(self.path())
     }
 
-    /// The names of session files that end with `end`.
-    pub fn kept(&self, end: &str) -> Vec<String> {
+    /// Returns the names of files in the session folder that end with `end`.
+    pub fn session_files(&self, end: &str) -> Vec<String> {
         let mut names = names(&self.state().join("gyrolab"));
         names.retain(|name| name.ends_with(end));
         names
     }
 
-    /// The permission bits of a file.
+    /// Returns the permission bits of a file.
     pub fn mode(&self, name: &str) -> u32 {
         let there = std::fs::metadata(self.file(name)).unwrap();
         there.permissions().mode() & 0o7777
     }
 
-    /// A command that starts the program without a terminal.
+    /// Returns a command that starts the program without a terminal.
     pub fn command(&self, args: impl Args) -> Command {
-        let mut command = self.in_it(GYROLAB);
+        let mut command = self.command_in_folder(GYROLAB);
         command.args(args.list());
         command
     }
@@ -134,7 +134,7 @@ impl Ground {
         serde_json::from_str(&self.stdout(args)).unwrap()
     }
 
-    /// The names of the subcommands that the help lists.
+    /// Returns the names of the subcommands in the help.
     pub fn subcommands(&self) -> Vec<String> {
         let help = self.stdout("--help");
         let (_, below) = help.split_once("Commands:\n").unwrap();
@@ -152,20 +152,20 @@ impl Ground {
         refused(args, &self.run(args), with, words);
     }
 
-    /// Makes a named pipe.
+    /// Creates a named pipe.
     pub fn make_fifo(&self, name: &str) {
         let made = Command::new("mkfifo").arg(self.file(name)).status();
         assert!(made.unwrap().success());
     }
 
-    /// Runs `script` in a shell that knows the program as `$G`; its own exit code is the program's.
+    /// Runs `script` in a shell in which `$G` is the program.
     pub fn shell(&self, script: &str) -> Output {
-        let mut shell = self.in_it("sh");
+        let mut shell = self.command_in_folder("sh");
         shell.args(["-c", script]).env("G", GYROLAB);
         shell.output().unwrap()
     }
 
-    fn in_it(&self, program: &str) -> Command {
+    fn command_in_folder(&self, program: &str) -> Command {
         let mut command = Command::new(program);
         command
             .envs(VARIABLES)
@@ -178,7 +178,7 @@ impl Ground {
     }
 }
 
-/// The names of all files and folders in `folder`, sorted; none if it does not exist.
+/// Returns the sorted names of all files and folders in `folder`, or an empty list if it does not exist.
 pub fn names(folder: &Path) -> Vec<String> {
     let entries = std::fs::read_dir(folder).into_iter().flatten();
     let mut names: Vec<_> = entries
@@ -214,7 +214,7 @@ pub fn failed(output: &Output, words: &[&str]) {
     refused("", output, 1, words);
 }
 
-/// The same with the exit code `with`; `what` names the case.
+/// Asserts like `failed`, but for the exit code `with`. `what` names the case.
 #[track_caller]
 pub fn refused(what: &str, output: &Output, with: i32, words: &[&str]) {
     assert_eq!(code(output), with, "{what}: {output:?}");

@@ -13,7 +13,7 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 const PATIENCE: Duration = Duration::from_secs(20);
-/// How long the last bytes of a program that has ended may take to arrive.
+/// Maximum time until the last bytes of an ended program arrive.
 const LAST_BYTES: Duration = Duration::from_secs(2);
 pub const LEAVES_ALTERNATE_SCREEN: &str = "\u{1b}[?1049l";
 pub const SHOWS_CURSOR: &str = "\u{1b}[?25h";
@@ -31,7 +31,7 @@ impl Ground {
         self.spawn(command, variables)
     }
 
-    /// The program on a terminal that is not its controlling terminal, as after `su -c`: it gets no signal when the
+    /// Opens the program on a terminal that is not its controlling terminal, as after `su -c`. It gets no signal when the
     /// line is lost.
     pub fn open_uncontrolled(&self, args: impl Args) -> Terminal {
         let mut command = CommandBuilder::new(GYROLAB);
@@ -40,7 +40,7 @@ impl Ground {
         self.spawn(command, &VARIABLES)
     }
 
-    /// A shell with job control, and the program on its path.
+    /// Opens a shell with job control.
     pub fn open_shell(&self) -> Terminal {
         let mut command = CommandBuilder::new("sh");
         command.arg("-i");
@@ -49,7 +49,7 @@ impl Ground {
         self.spawn(command, &VARIABLES)
     }
 
-    /// The program and what follows it in a script of a shell without job control, which leads the session.
+    /// Opens a shell without job control that leads the session and runs the program with `args`, which may continue the script.
     pub fn open_command(&self, args: &str) -> Terminal {
         let mut command = CommandBuilder::new("sh");
         command.args(["-c", &format!("{GYROLAB} {args}")]);
@@ -71,25 +71,25 @@ impl Ground {
     }
 }
 
-/// The bytes that the program has sent, and the screen that they make.
+/// The bytes that the program has sent, and the resulting screen.
 struct Shown {
     bytes: Vec<u8>,
     parser: vt100::Parser,
 }
 
-/// The program in a pty of its own.
+/// The program in its own pty.
 pub struct Terminal {
     pub child: Box<dyn Child + Send + Sync>,
     ground: Ground,
     keys: Option<Box<dyn Write + Send>>,
     pty: Option<Box<dyn MasterPty + Send>>,
     shown: Arc<Mutex<Shown>>,
-    /// Reads what the program sends; it ends when nobody has the pty open any more.
+    /// The thread that reads the output of the program. It ends when the last handle of the pty is closed.
     reader: JoinHandle<()>,
     size: (u16, u16),
-    /// Whether the reader closes the line at the next byte.
+    /// True if the reader closes the line at the next byte.
     lost: Arc<AtomicBool>,
-    /// Whether the reader accepts no bytes, like a terminal stopped by Ctrl-S.
+    /// True if the reader accepts no bytes, like a terminal stopped with Ctrl-S.
     stopped: Arc<AtomicBool>,
 }
 
@@ -123,7 +123,7 @@ impl Terminal {
                     screen.parser.process(&buffer[..length]);
                 }
                 if cut.load(Ordering::Relaxed) {
-                    break; // the last handle of the pty's near side: the line is lost
+                    break; // drops the last handle of the pty's master side: the line is lost
                 }
                 while shut.load(Ordering::Relaxed) {
                     thread::sleep(Duration::from_millis(20));
@@ -144,7 +144,7 @@ impl Terminal {
         }
     }
 
-    /// Its working directory.
+    /// Returns the program's working directory.
     pub fn ground(&self) -> &Ground {
         &self.ground
     }
@@ -163,7 +163,7 @@ impl Terminal {
     }
 
     pub fn resize(&mut self, size: (u16, u16)) {
-        // Resize the screen first: a picture of the new size must not reach a screen of the old size.
+        // The lock is held during the resize: a picture of the new size must not reach a screen of the old size.
         let mut shown = self.shown.lock().unwrap();
         self.size = size;
         self.pty.as_ref().unwrap().resize(pty_size(size)).unwrap();
@@ -175,7 +175,7 @@ impl Terminal {
         signal(self.child.process_id().unwrap(), name);
     }
 
-    /// Closes the pty's other side, as a lost line does.
+    /// Closes the terminal's side of the pty, like a lost line.
     pub fn lose_line(&mut self) {
         self.lost.store(true, Ordering::Relaxed);
         self.keys = None;
@@ -196,31 +196,31 @@ impl Terminal {
     }
 
     /// Clears the screen and the stored bytes.
-    pub fn forget(&self) {
+    pub fn clear_output(&self) {
         let mut shown = self.shown.lock().unwrap();
         shown.bytes.clear();
         shown.parser = parser(self.size);
     }
 
-    /// The screen that a terminal would show, as text.
+    /// Returns the screen that a terminal would show, as text.
     pub fn screen(&self) -> String {
         self.shown.lock().unwrap().parser.screen().contents()
     }
 
-    /// The words on the screen, separated by single blanks instead of line ends and padding.
+    /// Returns the words on the screen, separated by single blanks.
     pub fn words(&self) -> String {
         let screen = self.screen();
         screen.split_whitespace().collect::<Vec<_>>().join(" ")
     }
 
-    /// The step in the title.
+    /// Returns the step in the header.
     pub fn step(&self) -> Option<u64> {
         let screen = self.screen();
         let (_, rest) = screen.lines().next()?.split_once(" step ")?;
         rest.split_whitespace().next()?.parse().ok()
     }
 
-    /// The value of the run in the row `label`, a name and its unit, of the values pane at the right of the screen.
+    /// Returns the value of the run in the row `label` (a name and its unit) of the values pane, at the right of the screen.
     pub fn value(&self, label: &str) -> Option<String> {
         let screen = self.screen();
         let heading = screen.lines().find_map(|line| line.split_once("values"));
@@ -253,19 +253,19 @@ impl Terminal {
                 begin.elapsed() < PATIENCE,
                 "no {wanted:?} in\n{}\nin the folder of sessions: {:?}",
                 self.screen(),
-                self.ground.kept("")
+                self.ground.session_files("")
             );
             thread::sleep(Duration::from_millis(10));
         }
     }
 
-    /// Waits until the program has ended and all it has sent is read.
+    /// Waits until the program has ended and its output has been read.
     #[track_caller]
     pub fn wait_for_end(&mut self) -> ExitStatus {
         let begin = Instant::now();
         loop {
             if let Some(status) = self.child.try_wait().unwrap() {
-                self.read_the_rest();
+                self.drain_output();
                 return status;
             }
             assert!(
@@ -277,8 +277,8 @@ impl Terminal {
         }
     }
 
-    /// Waits for the last bytes. There is no end of them where the terminal is stopped, or a shell has left a program.
-    fn read_the_rest(&self) {
+    /// Waits for the last bytes. Gives up if the terminal is stopped, or if a program left by a shell keeps the pty open.
+    fn drain_output(&self) {
         let begin = Instant::now();
         while !self.reader.is_finished()
             && !self.stopped.load(Ordering::Relaxed)
@@ -288,14 +288,14 @@ impl Terminal {
         }
     }
 
-    /// Leaves the lab by its key.
+    /// Quits the lab with q, and asserts exit code 0.
     #[track_caller]
     pub fn quit(&mut self) {
         self.press("q");
         assert_eq!(self.wait_for_end().exit_code(), 0);
     }
 
-    /// Ends the class of the teacher's lab, whose seats are here.
+    /// Ends the class of a teacher's lab while seats are present.
     pub fn end_class(&mut self) {
         self.ask("q", "press q again to end the class");
         self.quit();
@@ -307,13 +307,13 @@ impl Terminal {
         self.wait_for_end();
     }
 
-    /// Asserts that screen, cursor and mouse are the terminal's again.
+    /// Asserts that the program has restored the screen, the cursor and the mouse.
     #[track_caller]
-    pub fn has_given_the_terminal_back(&self) {
+    pub fn assert_terminal_restored(&self) {
         self.wait_until("the cursor", |terminal| {
             let sent = terminal.sent_text();
             let left = sent.rfind(LEAVES_ALTERNATE_SCREEN);
-            // Not where it was given back earlier, and taken again since.
+            // An earlier restoration, before the lab took the terminal again, does not count.
             let is_last = left > sent.rfind(MOUSE_ON);
             left.is_some_and(|left| is_last && sent[left..].contains(SHOWS_CURSOR))
         });

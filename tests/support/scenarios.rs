@@ -1,4 +1,4 @@
-//! Opens scenarios, and makes views of them.
+//! Opens scenarios, and creates views of them.
 
 use gyrolab::engine::journal::parameters;
 use gyrolab::engine::scenario::file::ScenarioFile;
@@ -11,7 +11,7 @@ use gyrolab::lab::view::theme::{Background, Palette, Theme};
 use gyrolab::physics::SchemeInfo;
 use toml::{Table, Value};
 
-/// The preset `name`, with each of `set` (`key=value`) set.
+/// Opens the preset `name` with the settings `set` (`key=value`).
 #[track_caller]
 pub fn preset(name: &str, set: &[&str]) -> Scenario {
     let mut document = Document::open(name).unwrap();
@@ -20,24 +20,24 @@ pub fn preset(name: &str, set: &[&str]) -> Scenario {
     scenario.unwrap_or_else(|problems| panic!("{problems}"))
 }
 
-/// The scenario of the TOML `text`, or what is wrong with it.
+/// Parses the scenario in the TOML `text`, or returns its problems.
 pub fn read(text: &str) -> Result<Scenario, Problems> {
     Document::parse("x.toml", text)?.scenario()
 }
 
-/// The scenario of the TOML `text`, which must be valid.
+/// Parses the scenario in the TOML `text`, which must be valid.
 #[track_caller]
 pub fn parse(text: &str) -> Scenario {
     read(text).unwrap_or_else(|problems| panic!("{problems}\n{text}"))
 }
 
-/// The scheme called `name`.
+/// Returns the scheme `name`.
 #[track_caller]
 pub fn find_scheme(name: &str) -> &'static SchemeInfo {
     SchemeInfo::find(name).unwrap()
 }
 
-/// The lab of the session `content`.
+/// Resumes the lab of the session `content`.
 #[track_caller]
 pub fn resumed(content: &SessionContent) -> Lab {
     Lab::resumed(content, None, |scenario| {
@@ -46,7 +46,7 @@ pub fn resumed(content: &SessionContent) -> Lab {
     .unwrap()
 }
 
-/// A dark screen on which `scenario` is looked at, in true color or without colors.
+/// Returns a view of `scenario` on a dark background, in true color or without colors.
 pub fn view(scenario: &Scenario, marker: Marker, has_color: bool) -> View {
     let theme = Theme {
         palette: if has_color {
@@ -59,7 +59,7 @@ pub fn view(scenario: &Scenario, marker: Marker, has_color: bool) -> View {
     View::new(scenario, marker, theme)
 }
 
-/// The scenario of `file` with `value` at `key`.
+/// Returns the scenario of `file` with `value` at `key`.
 pub fn changed(file: &ScenarioFile, key: &str, value: Value) -> Result<Scenario, Problems> {
     parameters::changed(file, &Table::from_iter([(key.to_owned(), value)]))
 }

@@ -33,7 +33,7 @@ pub struct Stage {
     pub class: Lessons,
     pub now: Duration,
     pub size: Rect,
-    /// The folder of its files.
+    /// The working directory of the lab.
     _folder: tempfile::TempDir,
 }
 
@@ -60,7 +60,7 @@ impl Stage {
         app::do_in_class(request, &mut self.lab, &mut self.class, self.size)
     }
 
-    /// Opens the lesson `name` on its page `page`.
+    /// Opens the lesson `name` on `page`.
     #[track_caller]
     pub fn lesson(&mut self, name: &str, page: usize) -> &mut Self {
         let opened = self.class.open(name, Some(page), &mut self.lab);
@@ -68,9 +68,9 @@ impl Stage {
         self.wait(0.0)
     }
 
-    /// Waits until the lab has carried out what the page wants.
+    /// Waits until the lab has executed all pending commands, such as those of a lesson page.
     #[track_caller]
-    pub fn arrive(&mut self) -> &mut Self {
+    pub fn settle(&mut self) -> &mut Self {
         for _ in 0..10_000 {
             self.wait(0.1);
             if self.lab.script().is_done() {
@@ -107,7 +107,6 @@ impl Stage {
                 looks += 1;
                 now + Duration::from_micros(50) * (looks - 1)
             };
-            // Somebody always waits for an answer here.
             self.lab.advance(&mut clock);
             self.class.update(now, &mut self.lab);
             screen::refit(&mut self.lab, self.size);
@@ -117,8 +116,8 @@ impl Stage {
         self
     }
 
-    /// Carries out the commands in `text`, each line of which is the body of a `[[do]]`. Then fits the lab to the
-    /// screen again, as the terminal does before the next frame.
+    /// Executes the commands in `text`, one `[[do]]` body per line. Then fits the lab to the screen again, like the
+    /// terminal before the next frame.
     #[track_caller]
     pub fn commands(&mut self, text: &str) -> &mut Self {
         for command in commands(text) {
@@ -128,7 +127,7 @@ impl Stage {
         self.wait(0.0)
     }
 
-    /// The id of the pane in focus.
+    /// Returns the id of the pane in focus.
     pub fn focus(&self) -> &'static str {
         self.lab.view().focus.id()
     }

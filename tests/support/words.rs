@@ -1,4 +1,4 @@
-//! Words that a text must contain.
+//! Assertions on words in a text.
 
 /// Asserts that `text` contains `words`.
 #[track_caller]

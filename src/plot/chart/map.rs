@@ -273,7 +273,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lightness_rises_evenly() {
+    fn lightness_rises_monotonically() {
         let lightness = |share| {
             let Color(parts) = color_at(share);
             let [red, green, blue] = parts.map(f64::from);
@@ -287,7 +287,7 @@ mod tests {
     }
 
     #[test]
-    fn cells_reach_to_the_middle_between_values() {
+    fn cell_edges_are_midway_between_values() {
         assert_eq!(edges(&[1.0, 2.0, 4.0], false), [0.5, 1.5, 3.0, 5.0]);
         let log = edges(&[1.0, 100.0], true);
         let rounded: Vec<f64> = log.iter().map(|edge| (edge * 1e6).round() / 1e6).collect();
