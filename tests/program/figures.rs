@@ -92,10 +92,7 @@ fn a_run_with_non_finite_numbers_is_drawn_up_to_them() {
     let ground = Ground::new();
     let push = "push.0={point=\"top\", force_N=[1e300,0,0], first_step=25, steps=1}";
     let broken = ["figure", "method-2", "--set", push, "-o", "a.svg"];
-    failed(
-        &ground.run(&broken),
-        &["method-2", "no longer finite at step 25"],
-    );
+    failed(&ground.run(&broken), &["method-2", "at step 25"]);
     assert!(ground.read("a.svg").contains("86mm"));
 }
 
