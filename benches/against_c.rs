@@ -1,28 +1,27 @@
-//! The report's step with its record, and the splittings' steps by themselves, against the same loops in plain C
-//! (`report_step.c`, `splitting.c`), by turns in one run, and the ratios. Whatever else the machine does only adds time: of
-//! many short rounds the fastest counts. Run: cargo bench --bench against_c, with the compiler and its options in CC and
-//! CFLAGS; without them they are gcc and -O3.
+//! Compares the report's step with its record, and the steps of the splittings alone, with the same loops in plain C
+//! (`report_step.c`, `splitting.c`), and prints the ratios. Both sides run alternately. Other work of the machine only adds
+//! time, so the fastest of many short rounds counts. Run: cargo bench --bench against_c. CC and CFLAGS choose the compiler
+//! and its options; the defaults are gcc and -O3.
 //!
-//! Where the report's step spends its time, by samples of it (Zen 4, baseline x86-64, 14 points, 60 ns without the
-//! simulation around it): I and the solution of I Ω = L 14 ns, a third of it one division; the square root 6 ns; sine and
-//! cosine 11 ns; the matrix 4 ns; turning the points with mass 7 ns; their sums 8 ns; points without mass 4 ns; orientation,
-//! torque and the new I 7 ns. Each waits for the one before, so that none can be taken out without another order of
-//! operations and so other bits.
+//! Time of the report's step by sampling (Zen 4, baseline x86-64, 14 points, 60 ns without the surrounding simulation): I
+//! and the solution of I Ω = L 14 ns, a third of it one division; the square root 6 ns; sine and cosine 11 ns; the matrix
+//! 4 ns; turning the points with mass 7 ns; their sums 8 ns; massless points 4 ns; orientation, torque and the new I 7 ns.
+//! Each part waits for the previous one. None can be removed without another order of operations, and thus other bits.
 //!
-//! What was tried, with the same bits:
-//! - Turning and summing in two passes instead of one: 7 ns less. In one pass the rotation and the sums do not fit into
-//!   the 16 registers. It is faster for 1000 and 100 000 points too (3 %); in blocks of 128 pairs it is 3 ns slower.
-//! - Leaving the points without mass, where they are last, out of the sums: part of these 7 ns.
-//! - Storing the inertia in the pairs in which the next step loads it: 2.5 ns less. Six numbers in any order, or a matrix,
-//!   were stored by the compiler in pieces that a load straddled.
-//! - Turning the orientation like a pair of points, after the sums: nothing by itself, but without it the registers spill.
-//! - Around the step: copying what edits change only where there are edits, and adding up the numbers of the new state one by
-//!   one to see that they are finite: 2 ns less. Loaded two at a time they had not been stored so, and were waited for.
-//! - The axis before sine and cosine: 0.5 ns less. The division by |Ω| is done while they are computed.
-//! - Instructions with three operands (built for AVX): 3 ns less. That would need a second version of the code, or unsafe.
+//! Optimizations tried, all with the same bits:
+//! - Turning and summing in two passes instead of one: 7 ns less. In one pass, the rotation and the sums do not fit into
+//!   the 16 registers. Two passes are also faster for 1000 and 100 000 points (3 %); in blocks of 128 pairs, 3 ns slower.
+//! - Excluding massless points from the sums if they come last: part of these 7 ns.
+//! - Storing the inertia in the pairs in which the next step loads it: 2.5 ns less. The compiler stored six numbers in any
+//!   order, or a matrix, in pieces that a load straddled.
+//! - Turning the orientation like a pair of points, after the sums: no gain alone, but without it the registers spill.
+//! - Outside the step: copying the values that edits change only if there are edits, and adding up the numbers of the new
+//!   state one by one to check that they are finite: 2 ns less. Loads of two numbers had to wait for single stores.
+//! - Computing the axis before sine and cosine: 0.5 ns less. The division by |Ω| overlaps with them.
+//! - Instructions with three operands (built for AVX): 3 ns less. This would need a second version of the code, or unsafe.
 //!
-//! At the time step of method-2, with all that: 73 ns a step against 121 of clang -O3 -march=native -ffp-contract=off (0.60),
-//! 134 of clang -O3 (0.54) and 228 of gcc -O3 (0.32), in one run each.
+//! Result at the time step of method-2: 73 ns per step, compared with 121 for clang -O3 -march=native -ffp-contract=off
+//! (0.60), 134 for clang -O3 (0.54) and 228 for gcc -O3 (0.32), in one run each.
 
 #![allow(missing_docs, clippy::unwrap_used)]
 
@@ -50,7 +49,7 @@ fn report_in_rust() -> f64 {
     begin.elapsed().as_nanos() as f64 / STEPS as f64
 }
 
-/// A wheel of ten points and four of 0.5 kg on its axle: I1 = 8.35, I3 = 3.2, mgl = 63.7, as in `splitting.c`.
+/// A wheel of ten points and four points of 0.5 kg on its axle: I1 = 8.35, I3 = 3.2, mgl = 63.7, as in `splitting.c`.
 fn wheel() -> Body {
     let rim = (0..10).map(|j| {
         let angle = TAU * f64::from(j) / 10.0;
@@ -96,7 +95,7 @@ fn in_c(program: &Path, args: &[&str]) -> f64 {
         .unwrap()
 }
 
-/// The compiler and its options: those of the environment's `CC` and `CFLAGS`, or gcc and -O3.
+/// Returns the compiler and its options from the environment variables `CC` and `CFLAGS`, or gcc and -O3.
 fn compiler() -> (String, Vec<String>) {
     let from_environment = |name, default: &str| {
         let value = std::env::var(name).ok();
@@ -111,7 +110,7 @@ fn compiler() -> (String, Vec<String>) {
     (from_environment("CC", "gcc"), options)
 }
 
-/// The program made of a source beside this one; `None` where it cannot be built.
+/// Compiles `source` from this folder. Returns the path of the program, or `None` if it cannot be built.
 fn compiled(source: &str) -> Option<PathBuf> {
     let source = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("benches")

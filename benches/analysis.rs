@@ -1,5 +1,5 @@
-//! What the truth and the readouts cost: one evaluation of the exact motion, a step followed, a frame's readouts, and the
-//! schemes by themselves, without the run around them. Run: cargo bench --bench analysis
+//! Cost of the exact motion and the readouts: one evaluation of the exact motion, a recorded step, the readouts of a frame,
+//! and the schemes alone, without a run. Run: cargo bench --bench analysis
 
 #![allow(missing_docs, clippy::unwrap_used)]
 
@@ -13,7 +13,7 @@ use std::fmt::Write;
 use std::hint::black_box;
 use std::sync::Arc;
 
-/// A wheel of ten points with four of 0.5 kg on its axle: kappa = 0.38, L = 100 J s. `rest` may make it lopsided.
+/// A wheel of ten points with four points of 0.5 kg on its axle: kappa = 0.38, L = 100 J s. `rest` may make it lopsided.
 fn read_scenario(rest: &str) -> Arc<Scenario> {
     let mut text =
         "title = 'x'\n[body.rim]\npoints = 10\nradius_m = 0.8\nheight_m = 1\npoint_mass_kg = 0.5\n"
@@ -107,7 +107,7 @@ fn schemes(criterion: &mut Criterion) {
 }
 
 fn billionth(criterion: &mut Criterion) {
-    // The fewest time steps with which order 6 keeps within 1e-9 m of the exact motion over ten seconds, and its cost.
+    // The minimum number of time steps for order 6 to stay within 1e-9 m of the exact motion for ten seconds, and their cost.
     let scenario = read_scenario("");
     let info = gyrolab::physics::SchemeInfo::find("srkn11b").unwrap();
     let loads = Loads {

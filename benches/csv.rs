@@ -1,5 +1,5 @@
-//! Nanoseconds a row: our writer, which reads the table of columns, against csv + serde on a plain struct, by turns in one
-//! run, and the ratio. Of many short rounds the fastest counts. Run: cargo bench --bench csv
+//! Nanoseconds per row: our writer, which reads the table of columns, compared with csv + serde on a plain struct, and the
+//! ratio. Both run alternately, and the fastest of many short rounds counts. Run: cargo bench --bench csv
 
 #![allow(missing_docs, clippy::unwrap_used, non_snake_case)]
 

@@ -1,8 +1,8 @@
 /* The report's scheme in plain C: the yardstick of benches/against_c.rs.
  *
- * Ten rim points, four axle points, method-2's start and time step; every step leaves its record (state before,
- * inertia, Omega, rotation, torque, state after), as the Rust stepper does. Prints nanoseconds a step.
- * Usage: report_step STEPS [POINTS]   (POINTS: rim points, 10 if left out)
+ * Ten rim points, four axle points, and the start and time step of method-2. Like the Rust stepper, every step stores its
+ * record (state before, inertia, Omega, rotation, torque, state after). Prints nanoseconds per step.
+ * Usage: report_step STEPS [POINTS]   (POINTS: number of rim points, 10 by default)
  */
 #include <math.h>
 #include <stdio.h>

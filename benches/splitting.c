@@ -1,8 +1,8 @@
 /* The symplectic splittings in plain C, by the same algorithm: the yardstick of benches/against_c.rs.
  *
- * A heavy top (I1 = 8.35, I3 = 3.2 kg m^2, mgl = 63.7 N m, tilt 45 degrees, L = 100 J s) at dt = 1/60 s. Axle and side are
- * turned about L in every stage, the spin about the axle once a step; sine and cosine of small angles by their series.
- * Prints nanoseconds a step.   Usage: splitting strang|srkn11b STEPS
+ * A heavy top (I1 = 8.35, I3 = 3.2 kg m^2, mgl = 63.7 N m, tilt 45 degrees, L = 100 J s) at dt = 1/60 s. Every stage turns
+ * axle and side about L; the spin about the axle is applied once per step. Sine and cosine of small angles use series.
+ * Prints nanoseconds per step.   Usage: splitting strang|srkn11b STEPS
  */
 #define _GNU_SOURCE
 #include <math.h>

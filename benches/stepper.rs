@@ -1,5 +1,5 @@
-//! Nanoseconds a step, each with its record: the schemes on the report's 14 points, bare, followed by the monitor, and
-//! watched; and the report's with more points.
+//! Nanoseconds per step, including its record: the schemes on the report's 14 points, alone, with the monitor, and in a
+//! watched run; and the report's scheme with more points.
 
 #![allow(missing_docs, clippy::unwrap_used)]
 
@@ -19,7 +19,7 @@ fn new_simulation(scheme: &str, rim: usize) -> Simulation {
         format!("motion.scheme={scheme}"),
         format!("body.rim.points={rim}"),
         format!("body.rim.point_mass_kg={mass}"),
-        // At the preset's 0.1 s the wheel turns five times a step, which the Runge-Kutta scheme does not survive.
+        // At the preset's 0.1 s, the wheel turns five times per step, and the Runge-Kutta scheme breaks down.
         "motion.time_step_s=0.001".to_owned(),
     ] {
         document.set(&set).unwrap();
@@ -52,10 +52,10 @@ fn points(criterion: &mut Criterion) {
     }
 }
 
-// Following costs the report's step half of its own time again. Holding every step to the exact motion's last bit, by libm's
-// sines, cost one and a half times the step. Not possible without another last bit somewhere: the schemes' own sines in the
-// exact motion itself, phases that are turned on from step to step, and one sine for two angles. Not worth it: leaving steps
-// out by a bound on the speeds, which for a scheme that is nearly exact leaves out none.
+// Monitoring costs half the time of the report's step. Comparing every step with the exact motion to the last bit, with
+// libm's sines, costs one and a half times the step. Three optimizations would change a last bit somewhere: the schemes' own
+// sines in the exact motion, phases advanced from step to step, and one sine for two angles. Skipping steps by a bound on
+// the speeds is not worth it: for a nearly exact scheme, it skips none.
 fn followed(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("step followed by the monitor, 14 points");
     for scheme in SCHEMES {

@@ -1,6 +1,6 @@
-//! What a sweep of many short runs costs beside its runs: prints the time of one core for all of them, the time of the sweep
-//! on all cores, files and all, and its ratio to (one core's time / cores). On a machine that has other work too, the ratio of
-//! the processors' times says more: what the sweep does beside its runs, without the time that others took.
+//! Overhead of a sweep of many short runs. Prints the time of all runs on one core, the time of the sweep on all cores
+//! including files, and its ratio to (one core's time / cores). On a busy machine, the ratio of the processor times is more
+//! meaningful: it excludes the time that other processes took.
 //!
 //! `cargo bench --bench sweep`
 
@@ -13,12 +13,12 @@ use gyrolab::studies::sweep::part::{Opened, PartialSweep};
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-/// 10 000 runs of the cusps of 200 steps, 2 s each.
+/// 10 000 runs of the preset cusps with 200 steps each.
 const SWEEP: &str = "scenario = \"cusps\"\nmeasure = [\"z_m\", \"tilt_deg\", \"measured_highest_tilt_deg\"]\n\
     [[vary]]\nkey = \"motion.steps\"\nvalues = [200]\n\
     [[vary]]\nkey = \"start.momentum_Js.2\"\nfrom = 20\nto = 400\ncount = 10000\n";
 
-/// The machine may be busy with other work: the best of so many times counts.
+/// Number of measurements; the best one counts, since the machine may be busy with other work.
 const TIMES: usize = 5;
 
 fn main() {
@@ -47,12 +47,12 @@ fn main() {
     );
 }
 
-/// The time that the processors have given to this program, s; 0 where the system does not say.
+/// Returns the processor time of this program, s, or 0 if the system does not report it.
 fn processors_s() -> f64 {
-    /// Clock ticks of /proc a second, the same on every Linux.
+    /// Clock ticks per second in /proc, the same on every Linux.
     const TICKS: f64 = 100.0;
     let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
-    // Behind the name, which may hold anything: user's time is the 12th, the system's the 13th.
+    // After the name, which may contain any characters, the 12th field is the user time and the 13th the system time.
     let fields = stat.rsplit(')').next().unwrap_or_default();
     let ticks = fields.split_whitespace().skip(11).take(2);
     ticks
@@ -61,14 +61,14 @@ fn processors_s() -> f64 {
         / TICKS
 }
 
-/// The time of the runs alone, one after the other, s.
+/// Returns the time of the runs alone, one after the other, s.
 fn one_core(sweep: &Sweep) -> f64 {
     let begin = Instant::now();
     (0..sweep.rows()).for_each(|row| drop(sweep.row(row, &|| true)));
     begin.elapsed().as_secs_f64()
 }
 
-/// The time of the whole sweep, from its file's opening to its last name, s.
+/// Returns the time of the whole sweep, from opening its file to renaming it, s.
 fn swept(sweep: &Sweep) -> f64 {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("sweep.csv");

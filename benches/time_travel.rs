@@ -1,7 +1,7 @@
-//! How long it takes to play a run ahead, as `--at` does, beside the bare steps of the same run; to go to a step
-//! where it has been before; and how much memory the run takes: prints a table.
+//! Prints a table of the time to play a run ahead like `--at`, compared with the bare steps of the same run, the time to
+//! seek an earlier step, and the memory of the run.
 //!
-//! `cargo bench --bench time_travel`, with `-- 1000000` for a run of that many steps alone.
+//! `cargo bench --bench time_travel`; `-- 1000000` limits it to a run of that many steps.
 
 #![allow(clippy::unwrap_used)]
 
@@ -12,10 +12,10 @@ use std::hint::black_box;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Shares of the run to go to, one after the other: far back, a little back, forward, and near the end.
+/// Shares of the run to seek, one after the other: far back, slightly back, forward, and near the end.
 const SHARES: [f64; 7] = [0.5, 0.499, 0.93, 0.07, 0.999, 1.0, 0.0];
 
-/// What is played ahead is measured so often, by turns with the bare steps; the least counts.
+/// Number of measurements of playing ahead, alternating with the bare steps; the minimum counts.
 const ROUNDS: usize = 3;
 
 fn main() {
@@ -89,7 +89,7 @@ fn travel(steps: u64, points: u64, scheme: &str) {
     );
 }
 
-/// The memory of this process now, MB; 0 where the system does not say.
+/// Returns the current memory of this process, MB, or 0 if the system does not report it.
 fn resident_mb() -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));

@@ -1,7 +1,6 @@
-//! What the lab costs, measured on the program itself in a pty of 80x24: bytes over the line, processor, memory, and
-//! how long until there is something to see. `cargo bench --bench workbench` prints the figures beside their budgets,
-//! `cargo bench --bench workbench -- presets` the bytes and the processor's share of every preset, and
-//! `cargo bench --bench workbench -- edit` how long an edit of a long run takes.
+//! Cost of the lab, measured with the real program in a pty of 80x24: bytes sent, processor time, memory, and the time to
+//! the first frame. `cargo bench --bench workbench` prints the values with their budgets. `-- presets` prints the bytes and
+//! the processor share for every preset, and `-- edit` the time that an edit of a long run takes.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
@@ -16,9 +15,9 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 const MEASURED: Duration = Duration::from_secs(8);
-/// The same for each preset on each screen.
+/// Duration of the measurement of each preset on each screen.
 const MEASURED_OF_PRESET: Duration = Duration::from_secs(5);
-/// Clock ticks of /proc a second, the same on every Linux.
+/// Clock ticks per second in /proc, the same on every Linux.
 const TICKS: f64 = 100.0;
 
 const SMALL: (u16, u16) = (80, 24);
@@ -28,7 +27,7 @@ struct Lab {
     child: Box<dyn Child + Send + Sync>,
     keys: Box<dyn Write + Send>,
     output: Arc<Mutex<Vec<u8>>>,
-    /// What the terminal shows of the first `shown` bytes.
+    /// The terminal after the first `shown` bytes.
     terminal: vt100::Parser,
     shown: usize,
     first_frame: Duration,
@@ -44,7 +43,7 @@ impl Lab {
             pixel_width: 0,
             pixel_height: 0,
         };
-        let state = tempfile::tempdir().unwrap(); // the user's sessions stay as they are
+        let state = tempfile::tempdir().unwrap(); // leaves the user's sessions alone
         let pty = native_pty_system().openpty(size).unwrap();
         let mut command = CommandBuilder::new(env!("CARGO_BIN_EXE_gyrolab"));
         command.args(args);
@@ -76,7 +75,7 @@ impl Lab {
             _pty: pty.master,
             _state: state,
         };
-        // The first frame is there when its last line, the keys, is.
+        // The first frame is complete when its last line, the footer, has arrived.
         lab.wait_for("quit", 0);
         lab.first_frame = begin.elapsed();
         lab
@@ -97,7 +96,7 @@ impl Lab {
         panic!("{words:?} never came");
     }
 
-    /// The longest time from pressing ? to the list of keys on the screen, of `times`.
+    /// Measures `times` times the time from pressing ? to the help on the screen, and returns the maximum.
     fn slowest_answer(&mut self, times: u32) -> Duration {
         let mut slowest = Duration::ZERO;
         for _ in 0..times {
@@ -111,8 +110,7 @@ impl Lab {
         slowest
     }
 
-    /// The picture that has arrived: what the terminal shows. Only what came since the last look is read, so that looking
-    /// takes no time from the lab.
+    /// Returns the screen that the terminal shows. Only new bytes are parsed, so that polling takes no time from the lab.
     fn picture(&mut self) -> String {
         let output = self.output.lock().unwrap();
         self.terminal.process(&output[self.shown..]);
@@ -120,7 +118,7 @@ impl Lab {
         self.terminal.screen().contents()
     }
 
-    /// Waits until the picture is as `wanted`, and returns it.
+    /// Waits until `wanted` returns true for the picture, and returns it.
     fn wait_for_picture(&mut self, wanted: impl Fn(&str) -> bool) -> String {
         let (begin, mut seen) = (Instant::now(), usize::MAX);
         while begin.elapsed() < Duration::from_secs(60) {
@@ -146,7 +144,7 @@ impl Lab {
         std::fs::read_to_string(format!("/proc/{id}/{file}")).unwrap_or_default()
     }
 
-    /// Processor time so far, s.
+    /// Returns the processor time so far, s.
     fn processor_s(&self) -> f64 {
         let stat = self.proc("stat");
         let after_name = stat.rsplit(") ").next().unwrap_or_default();
@@ -159,7 +157,7 @@ impl Lab {
         fields.iter().sum::<f64>() / TICKS
     }
 
-    /// Processor time of the thread that steps and draws, ms, to the nanosecond.
+    /// Returns the processor time of the thread that steps and draws, ms, with nanosecond resolution.
     fn own_processor_ms(&self) -> f64 {
         let id = self.child.process_id().unwrap();
         let spent = self.proc(&format!("task/{id}/schedstat"));
@@ -180,7 +178,7 @@ impl Lab {
             / 1024.0
     }
 
-    /// Bytes a second, and the share of a processor's core, %, while `length` passes.
+    /// Measures the bytes per second and the share of a processor core, %, for the time `length`.
     fn measure(&self, length: Duration) -> (f64, f64) {
         thread::sleep(Duration::from_secs(1));
         let (bytes, processor, begin) = (self.sent(), self.processor_s(), Instant::now());
@@ -267,8 +265,8 @@ fn main() {
     );
 }
 
-/// The time from nudging the tilt of the start to the picture of the new run at the step at which the lab stood, where
-/// that is 100 000: the middle and the slowest of several nudges.
+/// Prints the time from nudging the initial tilt to the picture of the new run at step 100 000: the median and the maximum
+/// of several nudges.
 fn report_edit() {
     const STEP: &str = "step 100000 ";
     let args = ["method-2", "--set", "motion.steps=200000"];
@@ -309,7 +307,7 @@ fn report_edit() {
     lab.close();
 }
 
-/// What 100 000 steps of method-2 take without anything else, ms: the least of several runs.
+/// Returns the time of 100 000 bare steps of method-2, ms: the minimum of several runs.
 fn bare_steps_ms() -> f64 {
     const STEPS: u64 = 100_000;
     let scenario = Arc::new(
@@ -327,8 +325,8 @@ fn bare_steps_ms() -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// Every preset at 10 frames a second, alone and with the exact motion, on a small and a large screen, with the 3-D view
-/// filling it, and at top speed.
+/// Prints the cost of every preset at 10 frames per second: alone and with the exact motion, on a small and a large screen,
+/// with a full-screen 3-D view, and at top speed.
 fn report_presets() {
     println!("bytes/s and % of a core at 10 frames a second (budgets 3000 and 10000, 2 %)");
     for preset in PRESETS {

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The report's numerical method (its section 3) as a student writes it, with slips on request. It makes the files of this folder
-(make_files.py), and knows nothing of gyrolab's own code.
+"""The report's numerical method (its section 3) as a student would write it, with optional mistakes. make_files.py uses it to
+produce the files of this folder. It shares no code with gyrolab.
 
     program.py SCENARIO [--slip NAME[:VARIANT],...] [--steps N] [--every N] [--format %.17g] [--float32] > mine.csv
 """
@@ -11,7 +11,7 @@ import numpy as np
 
 R = 0.8
 FLAT = R / np.sqrt(2)
-# scenario: height of the hub, tilt in degrees, L, whether L is of the tilted body, dt, push on the axle's top, its steps
+# scenario: height of the hub, tilt in degrees, L, whether L is in the body frame, dt, push on the top of the axle, its steps
 SCENARIOS = {
     "method-1": (FLAT, 0, (400, 0, 2000), False, 1e-3, (0, 0, 0), 0),
     "method-2": (FLAT, 45, (0, 0, 1000), True, 1e-1, (0, 0, 0), 0),
@@ -45,7 +45,7 @@ def about(axis, angle):
 
 def start(scenario, slips):
     h, tilt, L, of_body = SCENARIOS[scenario][:4]
-    # What a program for method-1 still has when it is to be another's.
+    # Values left over from a program for method-1.
     if "start-of-another-preset:tilt" in slips or "start-of-another-preset:nothing-changed" in slips:
         tilt = 0
     if "start-of-another-preset:L" in slips or "start-of-another-preset:nothing-changed" in slips:
