@@ -180,18 +180,18 @@ impl ClassLab {
 
     #[track_caller]
     fn shows(&mut self, words: &str) -> &mut Self {
-        has(spaced(&self.stage.picture()), words);
+        has(single_spaced(&self.stage.picture()), words);
         self
     }
 
     #[track_caller]
     fn shows_no(&mut self, words: &str) -> &mut Self {
-        has_no(spaced(&self.stage.picture()), words);
+        has_no(single_spaced(&self.stage.picture()), words);
         self
     }
 }
 
-fn spaced(picture: &str) -> String {
+fn single_spaced(picture: &str) -> String {
     picture.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 

@@ -43,16 +43,16 @@ impl Picture {
     /// All words, separated by single blanks.
     fn words(&self) -> String {
         let rows = self.rows.iter().map(|row| row.iter().collect::<String>());
-        squeezed(&rows.collect::<Vec<_>>().join(" "))
+        without_blanks(&rows.collect::<Vec<_>>().join(" "))
     }
 }
 
-fn squeezed(text: &str) -> String {
+fn without_blanks(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// Returns the first defect in the picture of `stage`, if any.
-fn trouble(stage: &Stage) -> Option<String> {
+fn find_defect(stage: &Stage) -> Option<String> {
     let picture = Picture::of(stage);
     let is_ascii = stage.lab.view().marker == gyrolab::lab::view::theme::Marker::Ascii;
     let is_plain = stage.lab.popups().mode == Mode::Lab && !hint::has_message(&stage.lab);
@@ -80,11 +80,11 @@ fn trouble(stage: &Stage) -> Option<String> {
             }
         }
     }
-    footer_trouble(stage, &picture).or_else(|| said_trouble(stage, &picture))
+    find_footer_defect(stage, &picture).or_else(|| find_notice_defect(stage, &picture))
 }
 
 /// Returns a message if the last line contains anything but keys of the table and their labels.
-fn footer_trouble(stage: &Stage, picture: &Picture) -> Option<String> {
+fn find_footer_defect(stage: &Stage, picture: &Picture) -> Option<String> {
     if stage.lab.view().look.bare {
         return None; // there is no footer
     }
@@ -129,9 +129,9 @@ fn footer_trouble(stage: &Stage, picture: &Picture) -> Option<String> {
 }
 
 /// Returns a message if the notice is neither shown whole nor shortened with dots.
-fn said_trouble(stage: &Stage, picture: &Picture) -> Option<String> {
+fn find_notice_defect(stage: &Stage, picture: &Picture) -> Option<String> {
     let notice = stage.lab.notice()?;
-    let (notice, words) = (squeezed(&notice), picture.words());
+    let (notice, words) = (without_blanks(&notice), picture.words());
     let is_cut = || {
         let mut begins = notice
             .char_indices()
@@ -144,9 +144,9 @@ fn said_trouble(stage: &Stage, picture: &Picture) -> Option<String> {
 
 #[track_caller]
 fn check(stage: &Stage, done: &str) {
-    if let Some(trouble) = trouble(stage) {
+    if let Some(defect) = find_defect(stage) {
         let (size, picture) = (stage.size.as_size(), stage.picture());
-        panic!("{done} at {size}: {trouble}\n{picture}");
+        panic!("{done} at {size}: {defect}\n{picture}");
     }
 }
 

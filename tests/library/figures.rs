@@ -133,7 +133,7 @@ fn extent(item: &SceneItem) -> [f64; 4] {
 }
 
 /// Checks that nothing leaves the page and no labels overlap.
-pub(crate) fn is_tidy(scene: &PageScene) -> Result<(), String> {
+pub(crate) fn check_overlaps(scene: &PageScene) -> Result<(), String> {
     let mut texts: Vec<(&str, [f64; 4])> = Vec::new();
     for item in &scene.items {
         let here = extent(item);
@@ -210,7 +210,7 @@ fn every_preset_has_a_figure_of_every_kind_without_overlaps() {
                     ..spec(kind)
                 };
                 let figure = drawn(&runs, &asked);
-                is_tidy(&figure.scene)
+                check_overlaps(&figure.scene)
                     .unwrap_or_else(|why| panic!("{name} {kind} {width_mm}: {why}"));
                 assert!(
                     !write(&figure.scene, PageFormat::Svg, None)
@@ -485,7 +485,7 @@ fn a_run_of_the_exact_motion_is_not_drawn_twice() {
 fn the_3d_figure_states_the_stretch_of_z() {
     let stretched = |preset: &str| {
         let figure = drawn(&[run(preset, &[])], &spec("3d"));
-        is_tidy(&figure.scene).unwrap();
+        check_overlaps(&figure.scene).unwrap();
         let mut words = words(&figure.scene).into_iter();
         let stretched = words.find(|words| words.starts_with("z stretched"));
         stretched.map(str::to_owned)
@@ -543,7 +543,7 @@ fn a_run_of_one_step_has_a_figure() {
     let runs = [run("method-2", &["motion.steps=1"])];
     for kind in ["traces", "above", "3d"] {
         let figure = drawn(&runs, &spec(kind));
-        is_tidy(&figure.scene).unwrap();
+        check_overlaps(&figure.scene).unwrap();
         write(&figure.scene, PageFormat::Svg, None).unwrap();
     }
 }
@@ -551,7 +551,7 @@ fn a_run_of_one_step_has_a_figure() {
 #[test]
 fn a_constant_curve_has_an_axis_with_room() {
     let figure = drawn(&[run("torque-free", &[])], &spec("Lz_Js"));
-    is_tidy(&figure.scene).unwrap();
+    check_overlaps(&figure.scene).unwrap();
     assert!(words(&figure.scene).len() > 6);
 }
 
@@ -618,7 +618,7 @@ fn an_unresolved_figure_suggests_a_time_range_that_is_resolved() {
 fn indistinguishable_curves_are_bands_next_to_a_magnified_range() {
     let runs = [run("method-1", &[])];
     let scene = drawn(&runs, &with_exact("traces")).scene;
-    is_tidy(&scene).unwrap();
+    check_overlaps(&scene).unwrap();
     let run = "the report's scheme, Δt = 1 ms";
     says(
         &scene,
@@ -679,7 +679,7 @@ fn labels_and_axes_can_be_chosen() {
         ..spec(kind)
     };
     let figure = drawn(&runs, &asked("z_m", &own));
-    is_tidy(&figure.scene).unwrap();
+    check_overlaps(&figure.scene).unwrap();
     let labels = [
         "Two tops_1",
         "first",
@@ -957,7 +957,7 @@ fn the_figure_of_a_comparison_shows_the_slope() {
     let chart =
         of_table::chart(&table(COMPARISON), &TableView::of_columns(&[], COLUMN_PT)).unwrap();
     let scene = chart.scene();
-    is_tidy(&scene).unwrap();
+    check_overlaps(&scene).unwrap();
     let axes = ["largest error (m)", "Δt (s)"];
     says(&scene, &axes);
     says(&scene, &["rk4, slope 4", "exact"]);
@@ -1040,7 +1040,7 @@ proptest! {
             are_read_off: true,
         };
         let scene = chart.scene();
-        if let Err(why) = is_tidy(&scene) {
+        if let Err(why) = check_overlaps(&scene) {
             prop_assert!(false, "{why}");
         }
         prop_assert!(write(&scene, PageFormat::Svg, None).is_ok());

@@ -50,7 +50,7 @@ fn start(body: &Body, omega: [f64; 3]) -> State {
 }
 
 /// Friction from the dry, viscous and quadratic coefficients of the spin and the coefficient of the swing.
-fn rubbing([spin_dry, spin_viscous, spin_quadratic, swing_viscous]: [f64; 4]) -> Friction {
+fn friction_of([spin_dry, spin_viscous, spin_quadratic, swing_viscous]: [f64; 4]) -> Friction {
     Friction {
         spin_dry,
         spin_viscous,
@@ -132,13 +132,13 @@ fn the_spin_decays_by_its_law_for_any_motion_of_the_axle() {
     let body = wheel();
     let (_, along) = moments(&body);
     let cases: [(Friction, Law); 3] = [
-        (rubbing([0.0, 0.3, 0.0, 0.0]), |begun, inertia, t| {
+        (friction_of([0.0, 0.3, 0.0, 0.0]), |begun, inertia, t| {
             begun * (-0.3 * t / inertia).exp()
         }),
-        (rubbing([2.0, 0.0, 0.0, 0.0]), |begun, _, t| {
+        (friction_of([2.0, 0.0, 0.0, 0.0]), |begun, _, t| {
             begun.signum() * (begun.abs() - 2.0 * t).max(0.0)
         }),
-        (rubbing([0.0, 0.0, 0.02, 0.0]), |begun, inertia, t| {
+        (friction_of([0.0, 0.0, 0.02, 0.0]), |begun, inertia, t| {
             begun / (1.0 + begun.abs() * 0.02 * t / (inertia * inertia))
         }),
     ];
@@ -175,7 +175,7 @@ fn combined_dry_viscous_and_quadratic_friction_solves_its_equation() {
         [2.0, 0.1, 0.5],
         [0.0, 0.2, 0.1],
     ] {
-        let friction = rubbing([dry, viscous, quadratic, 0.0]);
+        let friction = friction_of([dry, viscous, quadratic, 0.0]);
         let slope = |spin: f64| -(dry + viscous * spin + quadratic * spin * spin) / along;
         for name in TRUE_TO_SPIN {
             let mut run = Run::new(name, &body, &free(friction), start(&body, [0.2, 0.0, 5.0]));
@@ -211,7 +211,7 @@ fn combined_dry_viscous_and_quadratic_friction_solves_its_equation() {
 fn friction_of_the_swing_does_not_slow_the_spin() {
     let body = wheel();
     let (across, _) = moments(&body);
-    let friction = rubbing([0.0, 0.0, 0.0, 0.9]);
+    let friction = friction_of([0.0, 0.0, 0.0, 0.9]);
     for spin in [8.0, 0.0, -8.0] {
         let begin = start(&body, [0.6, 0.2, spin]);
         let (swing, first) = (omega_across(&body, &begin), spin_momentum(&begin));
@@ -231,7 +231,7 @@ fn friction_of_the_swing_does_not_slow_the_spin() {
 
 #[test]
 fn the_work_of_friction_equals_the_energy_loss() {
-    let all = rubbing([0.4, 0.05, 0.01, 0.3]);
+    let all = friction_of([0.4, 0.05, 0.01, 0.3]);
     let smooth = Friction {
         spin_dry: 0.0,
         ..all
@@ -258,8 +258,8 @@ fn the_work_of_friction_equals_the_energy_loss() {
 
 #[test]
 fn schemes_with_friction_converge_to_the_exact_motion() {
-    let smooth = rubbing([0.0, 0.2, 0.01, 0.4]);
-    let dry = rubbing([0.5, 0.2, 0.01, 0.4]);
+    let smooth = friction_of([0.0, 0.2, 0.01, 0.4]);
+    let dry = friction_of([0.5, 0.2, 0.01, 0.4]);
     for body in [body(0.5), body(0.9)] {
         for friction in [smooth, dry] {
             let loads = weight(friction);
@@ -287,10 +287,10 @@ fn schemes_with_friction_converge_to_the_exact_motion() {
 fn splitting_keeps_its_order_while_dry_friction_holds_the_spin() {
     let body = body(0.9);
     for (friction, omega) in [
-        (rubbing([8.0, 0.0, 0.0, 0.0]), [1.4, -1.3, 0.0]),
-        (rubbing([8.0, 0.0, 0.0, 1.0]), [1.4, -1.3, 0.0]),
+        (friction_of([8.0, 0.0, 0.0, 0.0]), [1.4, -1.3, 0.0]),
+        (friction_of([8.0, 0.0, 0.0, 1.0]), [1.4, -1.3, 0.0]),
         // The spin stops during the run.
-        (rubbing([8.0, 0.1, 0.02, 1.0]), [1.4, -1.3, 2.0]),
+        (friction_of([8.0, 0.1, 0.02, 1.0]), [1.4, -1.3, 2.0]),
     ] {
         let begin = start(&body, omega);
         let at_end = |name: &str, steps: u32| {
@@ -316,7 +316,7 @@ fn splitting_keeps_its_order_while_dry_friction_holds_the_spin() {
 #[test]
 fn the_report_scheme_stops_the_spin_at_the_right_time() {
     let body = wheel();
-    let friction = rubbing([2.0, 0.0, 0.0, 0.0]);
+    let friction = friction_of([2.0, 0.0, 0.0, 0.0]);
     for spin in [3.0, -3.0] {
         let begin = start(&body, [0.0, 0.0, spin]);
         let stop_s = spin_momentum(&begin).abs() / 2.0;
@@ -337,9 +337,9 @@ fn the_report_scheme_stops_the_spin_at_the_right_time() {
 fn strong_friction_in_long_steps_is_stable() {
     let body = wheel();
     for friction in [
-        rubbing([0.0, 1e4, 0.0, 0.0]),
-        rubbing([0.0, 0.0, 1e6, 0.0]),
-        rubbing([1e9, 1e3, 1e3, 1e4]),
+        friction_of([0.0, 1e4, 0.0, 0.0]),
+        friction_of([0.0, 0.0, 1e6, 0.0]),
+        friction_of([1e9, 1e3, 1e3, 1e4]),
     ] {
         for name in ["report", "strang"] {
             let loads = free(friction);
@@ -369,7 +369,7 @@ fn dry_friction_holds_a_resting_spin_up_to_its_torque() {
         momentum: Vector3::zeros(),
     };
     let loads = |force: f64| Loads {
-        friction: rubbing([2.0, 0.0, 0.0, 0.0]),
+        friction: friction_of([2.0, 0.0, 0.0, 0.0]),
         pushes: vec![PointForce {
             point: OFF_AXLE,
             force: Vector3::new(0.0, force, 0.0),
@@ -392,7 +392,7 @@ fn dry_friction_holds_a_resting_spin_up_to_its_torque() {
 #[test]
 fn the_exact_motion_with_friction_does_not_depend_on_query_order() {
     let body = body(0.9);
-    let friction = rubbing([1.5, 0.1, 0.0, 0.2]);
+    let friction = friction_of([1.5, 0.1, 0.0, 0.2]);
     let begin = start(&body, [0.4, -0.3, 9.0]);
     let loads = weight(friction);
     let exact = || gyrolab::physics::ExactMotion::new(&body, &loads, &begin);
@@ -410,7 +410,7 @@ fn friction_of_the_swing_damps_nutation_and_makes_a_fast_top_sink() {
     let body = wheel();
     let (across, _) = moments(&body);
     let swing = 0.5;
-    let loads = weight(rubbing([0.0, 0.0, 0.0, swing]));
+    let loads = weight(friction_of([0.0, 0.0, 0.0, swing]));
     let begin = start(&body, [0.0, 0.0, 200.0]);
     let mut run = Run::new("exact", &body, &loads, begin);
     let load = 9.8 * body.first_moment().z;
@@ -445,14 +445,14 @@ fn a_sleeping_top_falls_when_its_spin_drops_below_the_limit() {
     };
     // Time in which the spin falls to 1/e, s.
     for decay_s in [300.0, 30.0] {
-        let loads = weight(rubbing([0.0, along / decay_s, 0.0, 0.0]));
+        let loads = weight(friction_of([0.0, along / decay_s, 0.0, 0.0]));
         let mut run = Run::new("exact", &body, &loads, begin);
         while observables::tilt_deg(&run.state).to_radians() < 10.0 * tilt {
             run.step(0.01, 1);
             assert!(spin_momentum(&run.state) > 0.5 * limit, "it sleeps on");
         }
         let found = spin_momentum(&run.state) / limit;
-        let expected = waking(across, load, 1.1 * limit, decay_s) / limit;
+        let expected = waking_momentum(across, load, 1.1 * limit, decay_s) / limit;
         is_near(found, expected, 2e-4, &format!("{decay_s} s"));
         let is_below = (0.85..0.99).contains(&found);
         assert!(is_below, "where it is said to be: {found}");
@@ -466,7 +466,7 @@ fn a_sleeping_top_falls_when_its_spin_drops_below_the_limit() {
 
 /// Returns L along the axle at which the tilt of an almost upright top is ten times its initial tilt. The horizontal part
 /// of the axle, as a complex number, obeys I1 z'' - i L3(t) z' - M g c z = 0 while it is small.
-fn waking(across: f64, load: f64, spin: f64, decay_s: f64) -> f64 {
+fn waking_momentum(across: f64, load: f64, spin: f64, decay_s: f64) -> f64 {
     type Complex = nalgebra::Complex<f64>;
     let slope = |t: f64, [z, v]: [Complex; 2]| {
         let spin = Complex::new(0.0, spin * (-t / decay_s).exp());
@@ -508,7 +508,7 @@ fn schemes_that_cannot_model_friction_are_rejected_with_a_reason() {
         names.join(", ")
     };
     let reason = "it goes backwards in time within a step, where friction would feed the motion";
-    let others = names(rubbing([0.0, 0.0, 0.0, 0.5]));
+    let others = names(friction_of([0.0, 0.0, 0.0, 0.5]));
     assert_eq!(
         refused("first-dip", &["motion.scheme=srkn11b"]),
         format!(
@@ -518,7 +518,7 @@ fn schemes_that_cannot_model_friction_are_rejected_with_a_reason() {
     let dry = "friction.spin_dry_Nm=0.1";
     let of_dry =
         "it takes the torque as smooth in time, which dry friction is not where it stops the spin";
-    let true_to_dry = names(rubbing([0.1, 0.0, 0.0, 0.5]));
+    let true_to_dry = names(friction_of([0.1, 0.0, 0.0, 0.5]));
     assert_eq!(
         refused("first-dip", &["motion.scheme=rk4", dry]),
         format!(

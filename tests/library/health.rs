@@ -42,7 +42,7 @@ fn count(advice: &[Advice], is: fn(&Advice) -> bool) -> usize {
 
 /// Asserts that more than these numbers are `Holds`, a time step and a scheme, and that none is `Nothing`.
 #[track_caller]
-fn has_kinds(advice: &[Advice], [holds, steps, schemes]: [usize; 3]) {
+fn assert_kinds(advice: &[Advice], [holds, steps, schemes]: [usize; 3]) {
     assert!(count(advice, |advice| *advice == Advice::Holds) > holds);
     assert!(count(advice, |advice| matches!(advice, Advice::TimeStep(_))) > steps);
     assert!(count(advice, |advice| matches!(advice, Advice::Scheme { .. })) > schemes);
@@ -118,7 +118,7 @@ fn reliable_presets_get_no_warnings() {
 }
 
 /// Returns the largest distance from the exact motion over all steps, relative to the arm; infinite if the run breaks down.
-fn strays(scenario: Scenario) -> f64 {
+fn largest_distance(scenario: Scenario) -> f64 {
     let scenario = Arc::new(scenario);
     let mut truth = Truth::new(Arc::clone(&scenario));
     let mut simulation = Simulation::new(Arc::clone(&scenario));
@@ -145,7 +145,7 @@ fn the_largest_distance_covers_every_step() {
         ("wobble-push", &[steps]),
     ] {
         let scenario = preset(name, set);
-        let most = strays(scenario.clone()) * scenario.arm_m();
+        let most = largest_distance(scenario.clone()) * scenario.arm_m();
         let health = health(scenario);
         let seen = health.most_distance_m.unwrap();
         assert!(
@@ -163,13 +163,13 @@ fn compared(scenario: &Scenario, time_step_s: f64, scheme: &'static SchemeInfo) 
 }
 
 /// Requests advice, applies it, and asserts that the advised run is reliable.
-fn advice_is_right(name: &str, scenario: &Scenario) -> Advice {
+fn apply_advice(name: &str, scenario: &Scenario) -> Advice {
     let advice = advise(scenario);
     let (step, scheme) = (scenario.motion.time_step_s, scenario.motion.scheme);
     let case = format!("{name}, {} at {step} s: {advice:?}", scheme.name);
     let is_held = |dt, stepper| {
         let other = resampled(scenario, dt, stepper);
-        let most = strays(other.clone());
+        let most = largest_distance(other.clone());
         assert!(most <= BELIEVED_WITHIN, "{case}: {most}");
         let verdict = health(other).sentence(None);
         assert!(
@@ -224,10 +224,10 @@ fn advice_is_right_for_every_preset_and_scheme() {
         .map(|(preset, scheme, times)| {
             let scenario = self::preset(preset.name, &[]);
             let step = scenario.motion.time_step_s * times;
-            advice_is_right(preset.name, &resampled(&scenario, step, scheme))
+            apply_advice(preset.name, &resampled(&scenario, step, scheme))
         })
         .collect();
-    has_kinds(&advice, [20, 20, 2]);
+    assert_kinds(&advice, [20, 20, 2]);
 }
 
 #[test]
@@ -235,8 +235,10 @@ fn an_advised_scheme_comes_with_a_sufficient_time_step() {
     // No time step helps the report's scheme, and the better scheme fails at the run's own time step.
     for name in ["falling", "sleeping-unstable"] {
         let scenario = resampled(&preset(name, &[]), 2.0, find_scheme("report"));
-        assert!(strays(resampled(&scenario, 2.0, find_scheme("srkn11b"))) > BELIEVED_WITHIN);
-        let advice = advice_is_right(name, &scenario);
+        assert!(
+            largest_distance(resampled(&scenario, 2.0, find_scheme("srkn11b"))) > BELIEVED_WITHIN
+        );
+        let advice = apply_advice(name, &scenario);
         let is_shorter = matches!(advice, Advice::Scheme { time_step_s, .. } if time_step_s < 2.0);
         assert!(is_shorter, "{name}: {advice:?}");
     }
@@ -296,18 +298,18 @@ fn advice_is_right_for_random_bodies() {
     let advice: Vec<_> = scenarios
         .par_iter()
         .map(|scenario| {
-            is_believed_rightly(scenario);
-            advice_is_right("random", scenario)
+            check_verdict(scenario);
+            apply_advice("random", scenario)
         })
         .collect();
-    has_kinds(&advice, [20, 20, 5]);
+    assert_kinds(&advice, [20, 20, 5]);
 }
 
 /// Compares the verdict with the true largest distance; the monitor samples only some steps and may miss a little.
-fn is_believed_rightly(scenario: &Scenario) {
+fn check_verdict(scenario: &Scenario) {
     let health = health(scenario.clone());
     let seen = health.most_distance_m.unwrap() / scenario.arm_m();
-    let most = strays(scenario.clone());
+    let most = largest_distance(scenario.clone());
     if most.is_infinite() {
         assert_eq!(health.is_believed(), Some(false), "its numbers break");
         return;

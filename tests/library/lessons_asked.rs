@@ -23,7 +23,7 @@ fn on_page(lesson: &str, page: usize) -> Stage {
 }
 
 #[track_caller]
-fn answers_nothing(stage: &Stage, place: &str) {
+fn assert_nothing_revealed(stage: &Stage, place: &str) {
     let picture = stage.picture();
     for answer in ANSWERS {
         assert!(!picture.contains(answer), "{place}: {answer}\n{picture}");
@@ -41,7 +41,7 @@ fn questions_are_not_revealed_before_the_reader_answers() {
             assert!(stage.lab.view().asked().is_some(), "{place}");
             // The run was not played beyond the shown step.
             assert_eq!(stage.lab.player().run().furthest(), stage.step(), "{place}");
-            answers_nothing(&stage, &place);
+            assert_nothing_revealed(&stage, &place);
             let before = stage.lab.player().run().scenario().clone();
             stage
                 .press("\t")
@@ -50,7 +50,7 @@ fn questions_are_not_revealed_before_the_reader_answers() {
             stage.press("a").shows("until you have predicted").wait(6.0);
             let after = stage.lab.player().run().scenario();
             assert_eq!(before.motion, after.motion, "{place}");
-            answers_nothing(&stage, &place);
+            assert_nothing_revealed(&stage, &place);
             while stage.lab.view().focus != Pane::Lesson {
                 stage.press("\t");
             }
@@ -66,7 +66,7 @@ fn questions_are_not_revealed_before_the_reader_answers() {
 }
 
 /// Opens the page of a lesson that asks for a force in N.
-fn asked_for_newtons() -> Stage {
+fn open_force_question() -> Stage {
     on_page("what-holds-the-weight-up", 5)
 }
 
@@ -89,7 +89,7 @@ fn number_answers_accept_compatible_units() {
         ("-3 N", -3.0),
         (".5", 0.5),
     ] {
-        let mut stage = asked_for_newtons();
+        let mut stage = open_force_question();
         stage.press(typed).press("\n");
         assert_eq!(
             locked(&stage),
@@ -103,7 +103,7 @@ fn number_answers_accept_compatible_units() {
         ("9..9", "must be in N, not in"),
         ("--", "must be a number"),
     ] {
-        let mut stage = asked_for_newtons();
+        let mut stage = open_force_question();
         stage.press(typed).press("\n").shows(said);
         assert_eq!(locked(&stage), [], "{typed}");
     }
@@ -111,7 +111,7 @@ fn number_answers_accept_compatible_units() {
 
 #[test]
 fn letters_at_a_number_question_are_not_lab_keys() {
-    let mut stage = asked_for_newtons();
+    let mut stage = open_force_question();
     stage.press("p").shows("type a number, then press Enter");
     stage.press("about");
     assert!(stage.lab.player().run().scenario().pushes.is_empty());
@@ -122,7 +122,7 @@ fn letters_at_a_number_question_are_not_lab_keys() {
 }
 
 /// Makes the stage a follower of a class at `round` of the question.
-fn of_class(stage: &mut Stage, round: u32, is_closed: bool) {
+fn follow_class(stage: &mut Stage, round: u32, is_closed: bool) {
     let overlay = ClassOverlay {
         rounds: [("mean".to_owned(), (round, is_closed))].into(),
         ..ClassOverlay::default()
@@ -135,17 +135,17 @@ fn of_class(stage: &mut Stage, round: u32, is_closed: bool) {
 fn answers_stay_hidden_while_a_round_is_open() {
     let mut stage = on_page("what-holds-the-weight-up", 1);
     stage.commands("step = 50");
-    of_class(&mut stage, 1, false);
+    follow_class(&mut stage, 1, false);
     stage.press("1\n").wait(6.0);
-    answers_nothing(&stage, "answered, and the round is open");
+    assert_nothing_revealed(&stage, "answered, and the round is open");
     stage.press("t").shows("until the round is over").wait(6.0);
-    of_class(&mut stage, 1, true);
+    follow_class(&mut stage, 1, true);
     stage.shows("reliable");
-    of_class(&mut stage, 2, false);
-    answers_nothing(&stage, "asked again");
+    follow_class(&mut stage, 2, false);
+    assert_nothing_revealed(&stage, "asked again");
     stage.press("2\n").wait(6.0);
-    answers_nothing(&stage, "answered again");
-    of_class(&mut stage, 2, true);
+    assert_nothing_revealed(&stage, "answered again");
+    follow_class(&mut stage, 2, true);
     stage.shows("reliable");
 }
 

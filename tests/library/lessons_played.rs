@@ -91,7 +91,7 @@ fn is_reached(stage: &Stage) -> bool {
 }
 
 /// Continues the run for up to 15 seconds of wall time, and lets seeks finish. Returns true if the task is done.
-fn goes_on(stage: &mut Stage) -> bool {
+fn run_until_done(stage: &mut Stage) -> bool {
     for _ in 0..150 {
         stage.wait(0.1);
         while stage.lab.player().steps_to_go().is_some() {
@@ -128,7 +128,7 @@ fn the_keys_named_on_a_page_complete_its_task() {
             let mut stage = task(played.lesson, played.page);
             press(&mut stage, keys);
             let place = format!("{} {}: {keys:?}", played.lesson, played.page);
-            assert!(goes_on(&mut stage), "{place}\n{}", stage.picture());
+            assert!(run_until_done(&mut stage), "{place}\n{}", stage.picture());
             stage.shows("[x] done");
         }
     }
@@ -141,7 +141,7 @@ fn wrong_keys_leave_the_task_open_with_a_hint() {
             let mut stage = task(played.lesson, played.page);
             press(&mut stage, keys);
             let place = format!("{} {}: {keys:?}", played.lesson, played.page);
-            assert!(!goes_on(&mut stage), "{place}\n{}", stage.picture());
+            assert!(!run_until_done(&mut stage), "{place}\n{}", stage.picture());
             let open = stage.class.open_lesson().unwrap();
             assert_eq!(open.place.page, played.page, "{place}");
             assert!(open.place.tasks.is_empty(), "{place}");
@@ -157,10 +157,10 @@ fn wrong_keys_leave_the_task_open_with_a_hint() {
 fn a_completed_task_stays_completed_while_its_list_shows_the_current_run() {
     let mut stage = task("method-1-and-its-z", 8);
     press(&mut stage, "/Lx\n175\n⎋");
-    assert!(goes_on(&mut stage));
+    assert!(run_until_done(&mut stage));
     stage.shows("[x] done").shows("[x] t is 0.05 s or more");
     press(&mut stage, "/Lx\n350\n⎋");
-    assert!(!goes_on(&mut stage));
+    assert!(!run_until_done(&mut stage));
     stage.shows("[x] done before, with highest tilt =");
     stage.shows("[ ] highest tilt off 10 degrees");
 }

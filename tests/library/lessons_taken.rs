@@ -86,7 +86,7 @@ You were at {mine:.1} s.
 "#;
 
 /// Opens a stage with [`LESSON`] from a file, on page `page`.
-fn taken(page: usize) -> (Stage, tempfile::TempDir, String) {
+fn open_page(page: usize) -> (Stage, tempfile::TempDir, String) {
     let (mut stage, folder, name) = with(LESSON);
     stage.lesson(&name, page).settle();
     (stage, folder, name)
@@ -113,7 +113,7 @@ fn answer_in(class: &Lessons) -> PredictionAnswer {
 
 #[test]
 fn a_page_opens_its_run_and_shows_its_numbers() {
-    let (mut stage, _folder, _) = taken(1);
+    let (mut stage, _folder, _) = open_page(1);
     stage
         .shows("Swing ─")
         .shows(" 1 of 4")
@@ -125,7 +125,7 @@ fn a_page_opens_its_run_and_shows_its_numbers() {
 }
 
 /// Returns the answers on the page: whether each is chosen, and the mark at its end.
-fn answers(stage: &Stage) -> Vec<(bool, &'static str)> {
+fn listed_answers(stage: &Stage) -> Vec<(bool, &'static str)> {
     let sheet = stage.lab.view().sheet.as_ref().unwrap();
     let kinds = sheet.paragraphs.iter().map(|one| &one.kind);
     kinds
@@ -140,7 +140,7 @@ fn answers(stage: &Stage) -> Vec<(bool, &'static str)> {
 
 #[test]
 fn a_prediction_is_requested_locked_and_compared_with_the_outcome() {
-    let (mut stage, _folder, _) = taken(1);
+    let (mut stage, _folder, _) = open_page(1);
     stage.shows("Your prediction").shows(" 1  stays");
     stage.shows_no("It goes on here");
     stage.press("\n").shows("choose an answer first");
@@ -149,12 +149,21 @@ fn a_prediction_is_requested_locked_and_compared_with_the_outcome() {
         .shows("write down a prediction first")
         .shows("1 of 4");
     stage.press("↓↓↓↑").shows_no("It goes on");
-    assert_eq!(answers(&stage), [(false, ""), (true, ""), (false, "")]);
+    assert_eq!(
+        listed_answers(&stage),
+        [(false, ""), (true, ""), (false, "")]
+    );
     stage.press("7").shows("the answers are 1 to 3");
     stage.press("3");
-    assert_eq!(answers(&stage), [(false, ""), (false, ""), (true, "")]);
+    assert_eq!(
+        listed_answers(&stage),
+        [(false, ""), (false, ""), (true, "")]
+    );
     stage.press("↑\n").shows("Locked: grows.");
-    assert_eq!(answers(&stage), [(false, ""), (false, "you"), (false, "")]);
+    assert_eq!(
+        listed_answers(&stage),
+        [(false, ""), (false, "you"), (false, "")]
+    );
     stage.shows("It goes on here").shows("How large is it?");
     assert!(
         stage.lab.view().hides(HideablePart::Health),
@@ -172,7 +181,7 @@ fn a_prediction_is_requested_locked_and_compared_with_the_outcome() {
     stage.shows("You said: 3.5 deg.");
     assert_eq!(stage.lab.player().motion().gravity, 5.0);
     stage.press("N").settle().shows("1 of 4");
-    assert_eq!(answers(&stage)[1], (false, "you"));
+    assert_eq!(listed_answers(&stage)[1], (false, "you"));
     assert_eq!(
         answer_in(&stage.class),
         PredictionAnswer::Choice("grows".to_owned())
@@ -248,7 +257,7 @@ fn hidden_items_are_hidden_in_every_pane() {
 
 #[test]
 fn the_run_stays_visible_with_every_pane() {
-    let (mut stage, _folder, _) = taken(3);
+    let (mut stage, _folder, _) = open_page(3);
     let panes = |shown: &Stage| {
         let layout = gyrolab::tui::screen::layout(&shown.lab, true, shown.size);
         let panes = layout.panes.iter();
@@ -289,20 +298,20 @@ fn the_run_stays_visible_with_every_pane() {
 
 #[test]
 fn a_prediction_can_be_skipped() {
-    let (mut stage, _folder, _) = taken(1);
+    let (mut stage, _folder, _) = open_page(1);
     stage.press("↓").press("nn").settle().shows("2 of 4");
     stage.shows("It is 5.0.").shows_no("You said: it");
     stage.shows("You made no prediction. Page 1 asks");
     // A missing prediction is shown as a blank, unless the lesson gives other words.
     stage.shows("You said: ….");
     stage.press("N").settle();
-    assert_eq!(answers(&stage)[0], (true, ""));
+    assert_eq!(listed_answers(&stage)[0], (true, ""));
     stage.press("\n").shows("Locked: stays (after its outcome");
 }
 
 #[test]
 fn the_lab_can_be_used_freely_and_one_key_returns_to_the_page() {
-    let (mut stage, _folder, _) = taken(2);
+    let (mut stage, _folder, _) = open_page(2);
     let before = stage.step();
     stage.press("p..,,.....").settle();
     assert_ne!(stage.step(), before);
@@ -315,7 +324,7 @@ fn the_lab_can_be_used_freely_and_one_key_returns_to_the_page() {
 
 #[test]
 fn a_task_can_be_done_by_hand_or_demonstrated() {
-    let (mut stage, _folder, _) = taken(3);
+    let (mut stage, _folder, _) = open_page(3);
     stage.shows("[ ] not yet: be at 4 s").shows_no("Hint");
     stage.press("h").shows("Hint: g goes to a time.");
     stage.shows("[ ] not yet");
@@ -328,7 +337,7 @@ fn a_task_can_be_done_by_hand_or_demonstrated() {
         .press("N")
         .settle()
         .shows("[ ] done before; not now: be at 4 s");
-    let (mut again, _other_folder, _) = taken(3);
+    let (mut again, _other_folder, _) = open_page(3);
     again.press("hh").settle().shows("[x] shown by the lab");
     again.press("nn").shows("this is the last page");
     again.press("NNNN").settle().shows("this is the first page");
@@ -336,11 +345,11 @@ fn a_task_can_be_done_by_hand_or_demonstrated() {
 
 #[test]
 fn the_session_saves_page_and_predictions() {
-    let (mut stage, _folder, _) = taken(1);
+    let (mut stage, _folder, _) = open_page(1);
     stage.press("↓↓\n").press("nn").settle();
     let content = stage.lab.content(stage.class.kept());
-    let (class, taken) = Lessons::resumed(lessons_in(&content), &mut resumed(&content));
-    taken.unwrap();
+    let (class, opened) = Lessons::resumed(lessons_in(&content), &mut resumed(&content));
+    opened.unwrap();
     let place = &class.open_lesson().unwrap().place;
     assert_eq!(place.page, 2);
     assert_eq!(
@@ -352,12 +361,12 @@ fn the_session_saves_page_and_predictions() {
 
 #[test]
 fn a_missing_lesson_keeps_the_lab_and_the_predictions() {
-    let (mut stage, folder, name) = taken(1);
+    let (mut stage, folder, name) = open_page(1);
     stage.press("↓↓\n");
     let content = stage.lab.content(stage.class.kept());
     drop(folder);
-    let (lessons, taken) = Lessons::resumed(lessons_in(&content), &mut resumed(&content));
-    assert!(taken.unwrap_err().contains("swing.md"));
+    let (lessons, opened) = Lessons::resumed(lessons_in(&content), &mut resumed(&content));
+    assert!(opened.unwrap_err().contains("swing.md"));
     let kept = lessons.kept();
     let place = &kept["lessons"][name.as_str()];
     let answer = &place["predictions"]["finer"][0]["answer"];
@@ -366,7 +375,7 @@ fn a_missing_lesson_keeps_the_lab_and_the_predictions() {
 
 #[test]
 fn a_changed_lesson_is_reloaded_on_the_same_page() {
-    let (mut stage, _folder, name) = taken(2);
+    let (mut stage, _folder, name) = open_page(2);
     let step = stage.step();
     fs::write(&name, LESSON.replace("It is {with", "Now it is {with")).unwrap();
     stage.wait(2.0).shows("Now it is 5.0").shows("2 of 4");
@@ -378,7 +387,7 @@ fn a_changed_lesson_is_reloaded_on_the_same_page() {
 
 #[test]
 fn a_lesson_that_is_not_a_regular_file_is_rejected() {
-    let (mut stage, folder, name) = taken(2);
+    let (mut stage, folder, name) = open_page(2);
     let fifo = folder.path().join("fifo.md");
     let made = std::process::Command::new("mkfifo").arg(&fifo).status();
     assert!(made.unwrap().success());
@@ -500,7 +509,7 @@ fn a_page_plays_its_run_and_n_jumps_to_its_end() {
 
 #[test]
 fn results_of_tasks_and_late_predictions_are_saved() {
-    let (mut stage, _folder, _) = taken(1);
+    let (mut stage, _folder, _) = open_page(1);
     stage.press("nn").settle().press("N").settle().press("↓\n");
     stage.press("nn").settle().press("n").settle();
     stage.press("hg4 s\n").settle().shows("done: be at 4 s");
@@ -515,7 +524,7 @@ fn results_of_tasks_and_late_predictions_are_saved() {
 
 #[test]
 fn a_repeated_push_replaces_the_first() {
-    let (mut stage, _folder, _) = taken(2);
+    let (mut stage, _folder, _) = open_page(2);
     stage.press("rp10.").settle().press("rp").settle();
     assert_eq!(stage.lab.player().run().scenario().pushes.len(), 1);
 }
@@ -532,7 +541,7 @@ fn lessons_are_opened_from_a_list_and_resumed_at_their_page() {
         opening::open(name).unwrap().title
     };
     stage.press("L").shows(&title(0));
-    assert!(answers(&stage)[0].0);
+    assert!(listed_answers(&stage)[0].0);
     stage.press("↓↓↑↓\n").settle();
     assert_eq!(stage.class.open_lesson().unwrap().lesson.title, title(2));
     stage.press("nn").settle().shows("2 of ");
@@ -542,14 +551,14 @@ fn lessons_are_opened_from_a_list_and_resumed_at_their_page() {
     stage.press("L\n").settle().shows("2 of ");
     assert_eq!(stage.step(), step, "the run stays");
     stage.press("L↓\u{1b}L");
-    assert!(answers(&stage)[3].0);
+    assert!(listed_answers(&stage)[3].0);
     stage.press("\u{1b}");
     assert!(stage.lab.view().sheet.is_none());
 }
 
 #[test]
 fn the_teacher_has_notes_the_next_page_and_a_clock() {
-    let (mut stage, _folder, _) = taken(1);
+    let (mut stage, _folder, _) = open_page(1);
     stage.size = LARGE;
     stage.shows_no("defended");
     stage.press("\u{e}").wait(61.0);
@@ -575,11 +584,11 @@ fn a_long_page_starts_at_its_top_and_scrolls() {
 
 #[test]
 fn stated_numbers_stay_while_the_run_continues() {
-    let (mut stage, _folder, _) = taken(1);
+    let (mut stage, _folder, _) = open_page(1);
     stage.press("10.").settle().shows("The time is 2.0 s");
     stage.press("g5 s\n").settle().shows("The time is 2.0 s");
     stage.press("b").settle().shows("The time is 2.0 s");
-    let (mut open, _other_folder, _) = taken(2);
+    let (mut open, _other_folder, _) = open_page(2);
     open.shows("It is 5.0.").press("g4 s\n").settle();
     open.shows("It is 5.0.").shows_no("tilt 30 to 36.69");
     assert_eq!(stage.lab.player().reading.readouts.sample.time_s, 2.0);
@@ -625,7 +634,7 @@ x
 
 #[test]
 fn closing_the_3d_view_or_a_full_screen_pane_returns_to_the_page() {
-    let (mut stage, _folder, _) = taken(1);
+    let (mut stage, _folder, _) = open_page(1);
     stage.press("d").shows("3-D").shows("1 of 4");
     assert_eq!(stage.focus(), "3d");
     stage.press("d").shows("1 of 4");
@@ -637,7 +646,7 @@ fn closing_the_3d_view_or_a_full_screen_pane_returns_to_the_page() {
 
 #[test]
 fn a_page_fits_screens_of_every_size() {
-    let (mut stage, _folder, _) = taken(1);
+    let (mut stage, _folder, _) = open_page(1);
     for (width, height) in [(1, 1), (20, 5), (40, 12), (71, 24), (72, 9), (300, 90)] {
         stage.size.width = width;
         stage.size.height = height;

@@ -289,24 +289,24 @@ fn points_are_drawn_at_their_positions_in_figures() {
     assert_eq!(all.len(), 40);
     for (rings, curve) in all.chunks(20).zip(&series.curves) {
         let values: Vec<_> = curve.points.iter().map(|point| point.value).collect();
-        is_in_proportion(&series.times_s, rings, 0);
-        is_in_proportion(&values, rings, 1);
+        assert_linear(&series.times_s, rings, 0);
+        assert_linear(&values, rings, 1);
     }
     let above = rings(&figure(Some("above"), &text));
     assert_eq!(above.len(), 20);
     for part in [0, 1] {
         let points = series.curves[part].points.iter();
         let values: Vec<_> = points.map(|point| point.value).collect();
-        is_in_proportion(&values, &above, part);
+        assert_linear(&values, &above, part);
     }
     let residuals = rings(&figure(Some("residuals"), &text));
     let off: Vec<f64> = (0..20).map(off).collect();
-    is_in_proportion(&off, &residuals[..20], 1);
+    assert_linear(&off, &residuals[..20], 1);
 }
 
 /// Asserts that the coordinate `part` of `places` is a linear function of `values`; 1 is the vertical coordinate.
 #[track_caller]
-fn is_in_proportion(values: &[f64], places: &[[f64; 2]], part: usize) {
+fn assert_linear(values: &[f64], places: &[[f64; 2]], part: usize) {
     let by_value = |a: &usize, b: &usize| values[*a].total_cmp(&values[*b]);
     let least = (0..values.len()).min_by(by_value).unwrap();
     let most = (0..values.len()).max_by(by_value).unwrap();

@@ -27,7 +27,7 @@ fn health(scenario: &str, set: &[&str]) -> Health {
 }
 
 /// Waits until the search for advice has ended.
-fn await_advice(stage: &Stage) {
+fn wait_for_advice(stage: &Stage) {
     while stage.lab.adviser().is_seeking() {
         std::thread::sleep(Duration::from_millis(5));
     }
@@ -125,7 +125,7 @@ fn advice_on_a_broken_run_appears_as_soon_as_it_is_found() {
     stage.commands("pause = true");
     stage.commands("go_to = 2000").wait(0.1);
     stage.shows("no longer finite at step 3: try a shorter time step or another scheme (e)");
-    await_advice(&stage);
+    wait_for_advice(&stage);
     stage.wait(0.1).shows("a: rerun with srkn11b, dt 0.01 s");
 }
 
@@ -140,7 +140,7 @@ fn the_search_for_advice_starts_in_a_lab_opened_paused() {
         .unwrap();
     stage.lab.take_advice();
     assert!(stage.lab.adviser().is_seeking());
-    await_advice(&stage);
+    wait_for_advice(&stage);
     stage.wait(0.1).shows("a: dt 0.002 s");
 }
 
@@ -149,7 +149,7 @@ fn advice_equal_to_the_current_time_step_reruns_from_the_start() {
     let mut stage = Stage::open("wobble-push", &[], LARGE);
     stage.commands("pause = true\ngo_to = 300\nset = { 'motion.time_step_s' = 0.002 }");
     stage.lab.take_advice();
-    await_advice(&stage);
+    wait_for_advice(&stage);
     stage
         .wait(0.1)
         .shows("a: rerun with dt 0.002 s from the start");

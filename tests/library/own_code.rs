@@ -43,14 +43,14 @@ fn read(text: &str, map: &str, every: Option<u64>, dt: f64) -> Result<ProgramRow
         .map_err(|problems| problems.in_file("mine.csv").to_string())
 }
 
-fn judged(text: &str, against: &str, sets: &[&str]) -> Verdict {
+fn judge(text: &str, against: &str, sets: &[&str]) -> Verdict {
     let scenario = Arc::new(preset(against, sets));
     let rows = read(text, "", None, scenario.motion.time_step_s).unwrap();
     own_code::compare(&rows, against, &scenario, &|| true).unwrap()
 }
 
 /// Returns the expected mistakes of a file: those in its name.
-fn named(file: &str) -> Vec<&str> {
+fn expected_slips(file: &str) -> Vec<&str> {
     file.split('+')
         .map(|slip| slip.split('_').next().unwrap())
         .collect()
@@ -59,7 +59,7 @@ fn named(file: &str) -> Vec<&str> {
 /// True if the verdict explains the rows of `file` by the mistakes in its name, and calls this explanation unique only if
 /// it is.
 fn is_explained(verdict: &Verdict, file: &str) -> bool {
-    let mut expected = named(file);
+    let mut expected = expected_slips(file);
     expected.sort_unstable();
     let slips: Vec<_> = verdict
         .slips
@@ -97,7 +97,7 @@ const SEVERAL: &[&str] = &[
 fn every_single_mistake_is_identified() {
     for scenario in ["every-slip", "method-1", "method-2", "wobble-push"] {
         for (file, text) in files(scenario) {
-            let verdict = judged(&text, scenario, &[]);
+            let verdict = judge(&text, scenario, &[]);
             let path = format!("{scenario}/{file}");
             assert!(
                 !verdict.agrees && is_explained(&verdict, &file),
@@ -116,7 +116,7 @@ fn pairs_of_mistakes_are_identified() {
     let files = files("pairs");
     assert_eq!(files.len(), 32);
     for (file, text) in files {
-        let verdict = judged(&text, "every-slip", &[]);
+        let verdict = judge(&text, "every-slip", &[]);
         if file == "inertia-product-sign+dt-forgotten" {
             // Rounding dominates from the third row on.
             assert_eq!(verdict.explanations, Explanations::None);
@@ -214,7 +214,7 @@ fn explanations_cover_all_rows_within_the_digits() {
     ];
     for (file, scenario, agrees, slips, told) in cases {
         let text = fs::read_to_string(folder("cases").join(format!("{file}.csv"))).unwrap();
-        let verdict = judged(&text, scenario, &[]);
+        let verdict = judge(&text, scenario, &[]);
         let lines = verdict.lines.join("\n");
         assert_eq!(verdict.agrees, agrees, "{file}: {lines}");
         has_all(&lines, [told]);
@@ -245,7 +245,7 @@ fn explanations_cover_all_rows_within_the_digits() {
 #[test]
 fn two_rows_of_few_digits_agree_with_unknown_precision() {
     let text = "step,Lx_Js,Lz_Js\n0,400.0,2000.0\n1,400.0,2000.0\n";
-    let verdict = judged(text, "method-1", &[]);
+    let verdict = judge(text, "method-1", &[]);
     assert!(verdict.agrees, "{:?}", verdict.lines);
     assert_eq!((verdict.precision, verdict.digits), (Precision::Unknown, 4));
     has_all(&verdict.lines.join("\n"), ["write 7 or more"]);
@@ -255,7 +255,7 @@ fn two_rows_of_few_digits_agree_with_unknown_precision() {
 fn mistakes_in_single_precision_are_identified_as_such() {
     for file in ["gravity-9.81", "torque-before-turn"] {
         let text = fs::read_to_string(folder("single").join(format!("{file}.csv"))).unwrap();
-        let verdict = judged(&text, "every-slip", &[]);
+        let verdict = judge(&text, "every-slip", &[]);
         let lines = verdict.lines.join("\n");
         assert_eq!(verdict.precision, Precision::Single, "{file}: {lines}");
         assert!(
@@ -272,7 +272,7 @@ fn an_explanation_must_cover_every_row() {
     let text = fs::read_to_string(folder("every-slip/gravity-10.csv")).unwrap();
     let moved = text.replacen("\n0,0,0,", "\n0,0,0.5,", 1);
     assert_ne!(moved, text);
-    let verdict = judged(&moved, "every-slip", &[]);
+    let verdict = judge(&moved, "every-slip", &[]);
     assert!(
         !verdict.agrees && verdict.slips.is_empty(),
         "{:?}",
@@ -284,7 +284,7 @@ fn an_explanation_must_cover_every_row() {
 fn correct_programs_agree_with_any_number_of_digits() {
     for (file, text) in files("right") {
         let (scenario, kind) = file.rsplit_once('-').unwrap();
-        let verdict = judged(&text, scenario, &[]);
+        let verdict = judge(&text, scenario, &[]);
         let precision = match verdict.digits {
             ..7 => Precision::Unknown,
             _ if kind == "single" => Precision::Single,
@@ -319,7 +319,7 @@ fn correct_programs_agree_with_any_number_of_digits() {
 #[test]
 fn the_lab_shows_the_mistaken_numbers_of_the_first_differing_step() {
     let text = fs::read_to_string(folder("every-slip/torque-before-turn.csv")).unwrap();
-    let verdict = judged(&text, "every-slip", &[]);
+    let verdict = judge(&text, "every-slip", &[]);
     let bare = tempfile::NamedTempFile::new().unwrap();
     let without_times = text.replacen("t_s", "clock", 1);
     fs::write(&bare, without_times).unwrap();
@@ -357,7 +357,7 @@ fn the_lab_shows_the_mistaken_numbers_of_the_first_differing_step() {
 fn rows_without_an_explanation_are_reported() {
     let text = fs::read_to_string(folder("right/every-slip-17g.csv")).unwrap();
     for set in ["push.0.force_N.2=-99", "start.momentum_Js.0=4"] {
-        let verdict = judged(&text, "every-slip", &[set]);
+        let verdict = judge(&text, "every-slip", &[set]);
         assert!(!verdict.agrees && verdict.slips.is_empty(), "{set}");
         has_all(&verdict.lines.join("\n"), ["These rows are every-slip's"]);
     }
@@ -366,11 +366,11 @@ fn rows_without_an_explanation_are_reported() {
         ("1000,1,0.1,0.2,0.3,1,2,3", "not a rotation"),
         ("1000,1,-0.7,-0.45,1.82,-20,-3,50", "alone or in pairs"),
     ] {
-        let verdict = judged(&format!("{rows}\n{last}\n"), "every-slip", &[]);
+        let verdict = judge(&format!("{rows}\n{last}\n"), "every-slip", &[]);
         assert!(!verdict.agrees && verdict.slips.is_empty(), "{last}");
         has_all(&verdict.lines.join("\n"), ["None of", told]);
     }
-    let elsewhere = judged("step,x_m,y_m,z_m\n0,0,0,1.5\n", "every-slip", &[]);
+    let elsewhere = judge("step,x_m,y_m,z_m\n0,0,0,1.5\n", "every-slip", &[]);
     let told = ["Its top starts 1.50 m from the pivot", "2.00 m"];
     has_all(&elsewhere.lines.join("\n"), told);
 }
@@ -378,7 +378,7 @@ fn rows_without_an_explanation_are_reported() {
 #[test]
 fn a_program_without_motion_does_not_agree() {
     let text = "step,x_m,y_m,z_m\n0,0,0,1.131370849898476\n1,0,0,1.131370849898476\n";
-    let verdict = judged(text, "method-1", &[]);
+    let verdict = judge(text, "method-1", &[]);
     assert_eq!((verdict.agrees, verdict.first_step), (false, Some(1)));
 }
 
@@ -504,7 +504,7 @@ fn broken_files_are_rejected_with_line_and_remedy() {
 #[test]
 fn a_run_that_ends_in_nan_does_not_agree() {
     let text = fs::read_to_string(folder("right/method-1-17g.csv")).unwrap();
-    let verdict = judged(&(text + "2040,2.04,NaN,1,1,1,1,1\n"), "method-1", &[]);
+    let verdict = judge(&(text + "2040,2.04,NaN,1,1,1,1,1\n"), "method-1", &[]);
     assert!(!verdict.agrees && verdict.slips.is_empty());
     has_all(&verdict.lines.join("\n"), ["not finite", "line 53"]);
 }

@@ -294,7 +294,7 @@ fn moments_about_the_pivot_survive_a_round_trip() {
     let row = rows.iter().find(|row| row.key == "body.part.0.about");
     assert_eq!(row.map(Parameter::shown).as_deref(), Some("pivot"));
     assert!(
-        !listed(&three())
+        !listed(&three_parts())
             .iter()
             .any(|one| one.key.contains("part.0.about"))
     );
@@ -353,7 +353,7 @@ fn a_part_counts_as_six_points() {
 }
 
 /// A scenario with a disk on a rod and a block on the axle.
-fn three() -> Scenario {
+fn three_parts() -> Scenario {
     parse(&text(
         &(part("cylinder", "radius_m = 0.3")
             + &part("rod", "length_m = 1")
@@ -367,7 +367,7 @@ fn listed(scenario: &Scenario) -> Vec<Parameter> {
 
 #[test]
 fn parts_list_exactly_the_dimensions_of_their_shape() {
-    let list = listed(&three());
+    let list = listed(&three_parts());
     for (shape, dimensions) in [
         ("cylinder", "radius 0.3, length 0"),
         ("rod", "length 1"),
@@ -393,7 +393,7 @@ fn refused(file: &ScenarioFile, key: &str, value: impl Into<Value>) -> String {
 
 #[test]
 fn every_value_of_a_part_can_be_changed_or_explains_why_not() {
-    let scenario = three();
+    let scenario = three_parts();
     let file = &scenario.file;
     let wider = changed(file, "body.part.0.radius_m", Value::Float(0.6)).unwrap();
     // The disk contributes m R²/2 to I3, the block m (a² + b²)/12.
@@ -432,7 +432,7 @@ fn changing_the_shape_of_a_part_keeps_its_size() {
         assert!(off.amax() < 1e-14, "{shape}: {off}");
         assert!(moments.file.body.part[0].moments_kg_m2.is_some());
     }
-    let told = refused(&three().file, "body.part.0.shape", "egg");
+    let told = refused(&three_parts().file, "body.part.0.shape", "egg");
     assert!(told.contains("must be one of ring, cylinder"), "{told}");
 }
 
@@ -458,7 +458,7 @@ fn dotted_keys_set_a_part_from_the_command_line() {
 
 #[test]
 fn a_run_file_with_parts_survives_a_round_trip() {
-    let scenario = three();
+    let scenario = three_parts();
     let again = parse(&scenario.to_toml());
     assert_eq!(again.to_toml(), scenario.to_toml());
     assert_eq!(again.body.mechanics, scenario.body.mechanics);

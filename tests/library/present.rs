@@ -28,14 +28,14 @@ fn at(scenario: &Arc<Scenario>, step: u64) -> Simulation {
     simulation
 }
 
-fn here(simulation: &Simulation) -> Result<Scenario, String> {
+fn saved_here(simulation: &Simulation) -> Result<Scenario, String> {
     let (state, step) = (simulation.state(), simulation.step_number());
     scenario_from(simulation.scenario(), state, step).map_err(|problems| problems.to_string())
 }
 
 /// Returns the largest distance of the traced point between `run` and the saved scenario over the next `steps`, m.
 fn farthest_m(mut run: Simulation, steps: u64) -> f64 {
-    let saved = here(&run).unwrap();
+    let saved = saved_here(&run).unwrap();
     // Uses the scenario as written to a file.
     let mut saved = Simulation::new(read(&saved.to_toml()));
     let point = |state: &State, scenario: &Scenario| {
@@ -100,7 +100,7 @@ fn the_saved_scenario_has_a_new_title_and_omits_past_pushes() {
         "{PUSHES}[view]\nspeed = 5\nlook_at = 'z'\n[[expected]]\nreadout = 'z_m'\nat_step = 3\nvalue = 1\ntolerance = 9\n"
     );
     let run = at(&read(&text("rk4", 0.0, UPRIGHT, &view)), 42);
-    let saved = here(&run).unwrap();
+    let saved = saved_here(&run).unwrap();
     let file = &saved.file;
     assert_eq!(file.title, "x, from t = 2.1 s");
     assert_eq!((&file.about, file.motion.steps), (&None, 400));
@@ -132,7 +132,7 @@ fn view_settings_are_written_in_key_order_with_floats() {
 #[test]
 fn pushes_in_steps_stay_in_steps_at_the_start() {
     let scenario = read(&text("report", 0.0, UPRIGHT, PUSHES));
-    let pushes = here(&at(&scenario, 0)).unwrap().file.push;
+    let pushes = saved_here(&at(&scenario, 0)).unwrap().file.push;
     let steps = (pushes[0].first_step, pushes[0].steps);
     assert_eq!(steps, (Some(20), Some(60)));
     assert_eq!(pushes[1].from_s, Some(2.52));
@@ -142,17 +142,17 @@ fn pushes_in_steps_stay_in_steps_at_the_start() {
 fn an_accumulating_push_can_be_moved_only_before_it_starts() {
     let push = "[[push]]\npoint = 'top'\nforce_N = [0, 0.1, 0]\nfirst_step = 20\nsteps = 6\naccumulates = true\n";
     let scenario = read(&text("report", 0.0, UPRIGHT, push));
-    let moved = here(&at(&scenario, 5)).unwrap().file.push;
+    let moved = saved_here(&at(&scenario, 5)).unwrap().file.push;
     assert_eq!(moved[0].first_step, Some(15));
     assert!(farthest_m(at(&scenario, 19), 20) < 1e-9);
     for step in [20, 21, 300] {
-        let refused = here(&at(&scenario, step)).unwrap_err();
+        let refused = saved_here(&at(&scenario, step)).unwrap_err();
         has(&refused, "push.0: on \"top\" accumulates and has begun");
     }
     let edits = EDITS.replace("'push.1.force_N'", "'push.0.force_N'");
     let edited = read(&text("report", 0.0, UPRIGHT, &format!("{push}{edits}")));
     has(
-        here(&at(&edited, 13)).unwrap_err(),
+        saved_here(&at(&edited, 13)).unwrap_err(),
         "steps of a different length",
     );
 }

@@ -88,38 +88,41 @@ fn readouts_of(scenario: Scenario) -> Readouts {
 }
 
 /// Returns all texts of a preset as one text.
-fn words(name: &str) -> String {
+fn texts_of(name: &str) -> String {
     let file = preset_named(name, &[]).file;
     file.about.clone().unwrap() + file.viewed_text("look_at").unwrap()
 }
 
 /// Asserts that a text of the preset `name` contains `wanted` with `number` in place of a format such as `{:.2}`.
 #[track_caller]
-fn figure(name: &str, wanted: &str, number: f64) {
+fn assert_number(name: &str, wanted: &str, number: f64) {
     let (before, rest) = wanted.split_once("{:.").unwrap();
     let (decimals, after) = rest.split_once('}').unwrap();
     let decimals: usize = decimals.parse().unwrap();
-    let (text, words_here) = (words(name), format!("{before}{number:.decimals$}{after}"));
+    let (text, words_here) = (
+        texts_of(name),
+        format!("{before}{number:.decimals$}{after}"),
+    );
     assert!(
-        says(&text, &words_here),
+        contains_text(&text, &words_here),
         "{name}: no {words_here:?} in {text}"
     );
 }
 
 /// True if `text` contains `wanted`, regardless of line breaks.
-fn says(text: &str, wanted: &str) -> bool {
+fn contains_text(text: &str, wanted: &str) -> bool {
     text.replace('\n', " ").contains(wanted)
 }
 
 #[test]
 fn the_search_for_numbers_detects_a_changed_digit() {
-    let text = words("wobble-push-accumulating");
+    let text = texts_of("wobble-push-accumulating");
     let (place, wanted) = (text.find("100 N at each").unwrap(), "grows by 100 N");
-    assert!(says(&text, wanted));
+    assert!(contains_text(&text, wanted));
     for digit in 0..3 {
         let mut changed = text.clone();
         changed.replace_range(place + digit..=place + digit, "7");
-        assert!(!says(&changed, wanted), "{changed}");
+        assert!(!contains_text(&changed, wanted), "{changed}");
     }
 }
 
@@ -134,100 +137,100 @@ fn numbers_in_the_texts_of_tops_match_their_runs() {
     const PRECESSION: &str = "predicted_precession_rad_per_s";
     const MEASURED: &str = "measured_precession_rad_per_s";
     let cusps = of("cusps");
-    figure("cusps", "tilt 30 to {:.2} degrees", cusps(HIGHEST));
-    figure("cusps", "one arch in {:.4} s", cusps(PERIOD));
-    figure("loops", "tilt 30 to {:.2} degrees", of("loops")(HIGHEST));
-    figure("waves", "tilt 30 to {:.2} degrees", of("waves")(HIGHEST));
+    assert_number("cusps", "tilt 30 to {:.2} degrees", cusps(HIGHEST));
+    assert_number("cusps", "one arch in {:.4} s", cusps(PERIOD));
+    assert_number("loops", "tilt 30 to {:.2} degrees", of("loops")(HIGHEST));
+    assert_number("waves", "tilt 30 to {:.2} degrees", of("waves")(HIGHEST));
     let falling = of("falling");
-    figure(
+    assert_number(
         "falling",
         "From 10 degrees down to {:.2} and back",
         falling(HIGHEST),
     );
-    figure("falling", "and back in {:.2} s", falling(PERIOD));
+    assert_number("falling", "and back in {:.2} s", falling(PERIOD));
     let fast = of("fast-top");
-    figure(
+    assert_number(
         "fast-top",
         "mgl/L3 = {:.3} rad/s",
         fast("fast_top_precession_rad_per_s"),
     );
-    figure(
+    assert_number(
         "fast-top",
         "Precession of {:.1} degrees a second",
         fast(PRECESSION).to_degrees(),
     );
     let swing = fast("predicted_highest_tilt_deg") - fast("predicted_lowest_tilt_deg");
-    figure("fast-top", "swings by {:.3} degrees", swing);
+    assert_number("fast-top", "swings by {:.3} degrees", swing);
     let unstable = of("sleeping-unstable");
-    figure(
+    assert_number(
         "sleeping-unstable",
         "is below {:.2}.",
         unstable("sleeping_limit_Js"),
     );
-    figure(
+    assert_number(
         "sleeping-unstable",
         "it sinks to {:.0} and rises again",
         unstable(HIGHEST),
     );
-    figure("sleeping-unstable", "every {:.1} s", unstable(PERIOD));
-    figure(
+    assert_number("sleeping-unstable", "every {:.1} s", unstable(PERIOD));
+    assert_number(
         "sleeping-unstable",
         "then sinks to {:.2} degrees",
         unstable(HIGHEST),
     );
     let sleeping = of("sleeping");
-    figure("sleeping", "L3 above {:.2}.", sleeping("sleeping_limit_Js"));
-    figure("sleeping", "between 1 and {:.2} degrees", sleeping(HIGHEST));
-    figure(
+    assert_number("sleeping", "L3 above {:.2}.", sleeping("sleeping_limit_Js"));
+    assert_number("sleeping", "between 1 and {:.2} degrees", sleeping(HIGHEST));
+    assert_number(
         "steady-slow",
         "circle at {:.4} rad/s",
         of("steady-slow")(MEASURED),
     );
-    figure(
+    assert_number(
         "steady-fast",
         "one, at {:.3} rad/s",
         of("steady-fast")(MEASURED),
     );
     let free = of("torque-free");
-    figure("torque-free", "|L|/I1 = {:.2} rad/s", free(MEASURED));
-    figure("torque-free", "stays at {:.0} degrees", free(HIGHEST));
+    assert_number("torque-free", "|L|/I1 = {:.2} rad/s", free(MEASURED));
+    assert_number("torque-free", "stays at {:.0} degrees", free(HIGHEST));
     let first = of("method-1");
-    figure("method-1", "every {:.5} s", first(PERIOD));
+    assert_number("method-1", "every {:.5} s", first(PERIOD));
     let faster = of("method-1-steeper")("turns_per_step") / first("turns_per_step");
-    figure(
+    assert_number(
         "method-1-steeper",
         " {:.1} % faster",
         100.0 * (faster - 1.0),
     );
     let slow = of("method-2-slow");
     let turn_s = TAU / slow(PRECESSION);
-    figure("method-2-slow", "a turn takes {:.0} s", turn_s);
+    assert_number("method-2-slow", "a turn takes {:.0} s", turn_s);
     let thousands = turn_s / slow("time_step_s") / 1000.0;
-    figure("method-2-slow", "is {:.0},000 of these", thousands);
+    assert_number("method-2-slow", "is {:.0},000 of these", thousands);
     let turned = slow("t_s") * slow(PRECESSION).to_degrees();
-    figure("method-2-slow", "its circle, {:.0} degrees", turned);
+    assert_number("method-2-slow", "its circle, {:.0} degrees", turned);
     let second = of("method-2");
-    figure("method-2", "turns {:.2} times", second("turns_per_step"));
-    figure("method-2", "one turn in {:.1} s", TAU / second(MEASURED));
+    assert_number("method-2", "turns {:.2} times", second("turns_per_step"));
+    assert_number("method-2", "one turn in {:.1} s", TAU / second(MEASURED));
     let literal = preset_named("wobble-push-accumulating", &[]);
     let [pushed] = &literal.file.push[..] else {
         panic!("{} pushes", literal.file.push.len());
     };
     let force_down = -pushed.force_N[2];
     let name = "wobble-push-accumulating";
-    figure(name, "F(12,3) - {:.0} on a force array", force_down);
-    figure(name, "grows by {:.0} N", force_down);
+    assert_number(name, "F(12,3) - {:.0} on a force array", force_down);
+    assert_number(name, "grows by {:.0} N", force_down);
     let pushed_steps = pushed.steps.unwrap() as f64;
-    figure(name, "at each of {:.0} steps", pushed_steps);
-    figure(name, "its first {:.0} steps", literal.steps as f64);
+    assert_number(name, "at each of {:.0} steps", pushed_steps);
+    assert_number(name, "its first {:.0} steps", literal.steps as f64);
     let push = of("wobble-push");
     let percent = |z: f64| 100.0 * (z / 0.8 - 1.0);
-    figure(
+    assert_number(
         "wobble-push",
         "swings by {:.0} % down",
         -percent(push("measured_lowest_z_m")),
     );
-    figure(
+    assert_number(
         "wobble-push",
         "and {:.0} % up",
         percent(push("measured_highest_z_m")),
@@ -235,7 +238,7 @@ fn numbers_in_the_texts_of_tops_match_their_runs() {
     let exact = readouts_of(preset_named("wobble-push", &["motion.scheme=exact"]));
     let [highest, lowest] = ["measured_highest_z_m", "measured_lowest_z_m"]
         .map(|measure| exact.number(measure).unwrap());
-    figure(
+    assert_number(
         "wobble-push",
         "true one is {:.2} %",
         100.0 * (highest - lowest) / 0.8,
@@ -265,40 +268,40 @@ fn turning_points_s(name: &str, set: &[&str]) -> Vec<f64> {
 #[test]
 fn numbers_in_the_texts_of_free_bodies_match_their_runs() {
     let nut = turning_points_s("wing-nut", &[]);
-    figure("wing-nut", "turns over every {:.3} s", nut[0]);
-    figure("wing-nut", "at once, every {:.3} s", nut[0]);
+    assert_number("wing-nut", "turns over every {:.3} s", nut[0]);
+    assert_number("wing-nut", "at once, every {:.3} s", nut[0]);
     let brick = turning_points_s("poinsot", &[]);
-    figure("poinsot", "from L, once in {:.3} s", brick[1]);
+    assert_number("poinsot", "from L, once in {:.3} s", brick[1]);
     let of_brick = readouts("poinsot");
     let least = of_brick.number("measured_lowest_tilt_deg").unwrap();
-    figure("poinsot", "between 40 and {:.2} degrees", least);
+    assert_number("poinsot", "between 40 and {:.2} degrees", least);
     let caught = readouts_of(preset_named("phone", &["motion.steps=500"]));
     let edge = caught.number("tilt_deg").unwrap();
-    figure("phone", "screen at {:.2} degrees", edge);
+    assert_number("phone", "screen at {:.2} degrees", edge);
     let pass = readouts("rugby-pass");
     // Without forces, the axle circles L at |L|/I1; theory states this rate about L.
     let about_momentum = pass.theory.unwrap().precession.unwrap();
-    figure(
+    assert_number(
         "rugby-pass",
         "line of L once in {:.3} s",
         TAU / about_momentum,
     );
     let spin = pass.number("spin_rpm").unwrap() * TAU / 60.0;
-    figure(
+    assert_number(
         "rugby-pass",
         "0.164 s, {:.2} times for each turn",
         about_momentum / spin,
     );
     let earth = readouts("earth");
     let rate = -earth.number("measured_precession_rad_per_s").unwrap();
-    figure("earth", "backwards, once in {:.2} s", TAU / rate);
-    figure(
+    assert_number("earth", "backwards, once in {:.2} s", TAU / rate);
+    assert_number(
         "earth",
         "stays at {:.3} degrees",
         earth.number("tilt_deg").unwrap(),
     );
     // A century of 36 525 days in a second.
-    figure("earth", "it would last {:.0} millionths", 1e6 / 36525.0);
+    assert_number("earth", "it would last {:.0} millionths", 1e6 / 36525.0);
 }
 
 #[test]
@@ -309,17 +312,17 @@ fn numbers_in_the_other_texts_match_their_runs() {
         number("measured_highest_z_m") - number("measured_lowest_z_m")
     };
     let slow_mm = 1e3 * swing("method-2-slow");
-    figure("method-2-slow", "z swings by {:.1} mm", slow_mm);
+    assert_number("method-2-slow", "z swings by {:.1} mm", slow_mm);
     let percent = 100.0 * swing("method-2") / 0.8;
-    figure("method-2", "makes z swing by {:.1} %", percent);
+    assert_number("method-2", "makes z swing by {:.1} %", percent);
     let fast = readouts("steady-fast");
     let rate = |name: &str| fast.number(name).unwrap();
     let ratio = rate("fast_precession_rad_per_s") / rate("slow_precession_rad_per_s");
     let ratio = format!("{ratio:.2} times round");
-    assert!(words("steady-fast").contains(&ratio), "{ratio}");
+    assert!(texts_of("steady-fast").contains(&ratio), "{ratio}");
     let step = 0.002;
     let note = format!("with dt {step} s the top keeps its height");
-    assert!(words("wobble-push").contains(&note), "{note}");
+    assert!(texts_of("wobble-push").contains(&note), "{note}");
     let push = preset_named("wobble-push", &[]);
     assert_eq!(advise(&push), Advice::TimeStep(step));
     let rows = compare(&push, &[push.motion.scheme], &[step], |_, _| {

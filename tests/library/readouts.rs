@@ -306,7 +306,7 @@ fn the_drift_of_a_balanced_body_is_relative_to_kinetic_energy() {
 }
 
 /// Returns the first NaN, infinity, null or overlong number in a text, if any.
-fn blemish(text: &str) -> Option<String> {
+fn find_bad_number(text: &str) -> Option<String> {
     let mut words = text.split(|c: char| !(c.is_alphanumeric() || "._+-".contains(c)));
     words
         .find(|word| {
@@ -411,15 +411,15 @@ fn no_text_shows_nan_or_infinity() {
             looked_at += 1;
             let readouts = readouts(&scenario);
             let text = summary(readouts.clone()).to_string();
-            assert_eq!(blemish(&text), None, "{case}\n{text}");
+            assert_eq!(find_bad_number(&text), None, "{case}\n{text}");
             let numbers = serde_json::to_string(&readouts)
                 .unwrap()
                 .replace(":null", ":none");
-            assert_eq!(blemish(&numbers), None, "{case}\n{numbers}");
+            assert_eq!(find_bad_number(&numbers), None, "{case}\n{numbers}");
             let picture = picture(&scenario);
-            assert_eq!(blemish(&picture), None, "{case}\n{picture}");
+            assert_eq!(find_bad_number(&picture), None, "{case}\n{picture}");
             for reason in Verdict::new(&readouts.health).reasons {
-                assert_eq!(blemish(&reason.long), None, "{case}: {reason:?}");
+                assert_eq!(find_bad_number(&reason.long), None, "{case}: {reason:?}");
             }
         }
     }
@@ -454,7 +454,7 @@ fn no_table_shows_nan_or_infinity() {
             predictability: Predictability::default(),
         };
         let text = table.to_string();
-        assert_eq!(blemish(&text), None, "{case}\n{text}");
+        assert_eq!(find_bad_number(&text), None, "{case}\n{text}");
         let mut csv = csv::Writer::from_writer(Vec::new());
         rows.iter().for_each(|row| csv.serialize(row).unwrap());
         let written = String::from_utf8(csv.into_inner().unwrap()).unwrap();

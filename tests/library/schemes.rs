@@ -154,7 +154,7 @@ fn drifts(side_kg: &str, scheme: &str, time_step_s: f64) -> Vec<f64> {
     drifts.collect()
 }
 
-fn is_bounded(side_kg: &str, scheme: &str, time_step_s: f64) {
+fn assert_bounded_drift(side_kg: &str, scheme: &str, time_step_s: f64) {
     let drifts = drifts(side_kg, scheme, time_step_s);
     // Larger than rounding, and no larger at the end than at the start.
     assert!(drifts[0] > 1e-9 && drifts[0] < 1e-3);
@@ -166,7 +166,7 @@ fn is_bounded(side_kg: &str, scheme: &str, time_step_s: f64) {
 #[test]
 fn strang_bounds_the_energy_drift_over_a_million_steps() {
     for (_, side_kg) in BODIES {
-        is_bounded(side_kg, "strang", 0.02);
+        assert_bounded_drift(side_kg, "strang", 0.02);
     }
 }
 
@@ -174,7 +174,7 @@ fn strang_bounds_the_energy_drift_over_a_million_steps() {
 #[ignore = "takes four million steps: seconds"]
 fn srkn11b_bounds_the_energy_drift_over_a_million_steps() {
     for (_, side_kg) in BODIES {
-        is_bounded(side_kg, "srkn11b", 0.12);
+        assert_bounded_drift(side_kg, "srkn11b", 0.12);
     }
 }
 
@@ -224,7 +224,7 @@ fn vertical_forces_conserve_lz_bit_for_bit() {
 }
 
 /// Returns the state after `steps` steps of 0.01 s from `state`, with a newly started scheme.
-fn alone(scenario: &Scenario, scheme: &str, mut state: State, steps: u64) -> State {
+fn step_alone(scenario: &Scenario, scheme: &str, mut state: State, steps: u64) -> State {
     let mut scheme = find_scheme(scheme).make(&scenario.body.mechanics);
     scheme.load(&Loads {
         gravity: 9.8,
@@ -255,9 +255,9 @@ fn a_scheme_continues_from_the_state_of_another() {
                 let scenario = Arc::new(scenario);
                 let mut simulation = Simulation::new(Arc::clone(&scenario));
                 simulation.step_to(200).unwrap();
-                let state = alone(&scenario, first.name, scenario.start, 70);
-                let state = alone(&scenario, second.name, state, 80);
-                let state = alone(&scenario, first.name, state, 50);
+                let state = step_alone(&scenario, first.name, scenario.start, 70);
+                let state = step_alone(&scenario, second.name, state, 80);
+                let state = step_alone(&scenario, first.name, state, 50);
                 let seen = simulation.state();
                 let name = format!("{}, {}, {body}", first.name, second.name);
                 assert_eq!(seen.orientation, state.orientation, "{name}");

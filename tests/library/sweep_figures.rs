@@ -1,6 +1,6 @@
 //! Figures of sweeps: measurements, theory, other readouts and curves are distinguishable.
 
-use crate::figures::{is_tidy, says, table, words};
+use crate::figures::{check_overlaps, says, table, words};
 use gyrolab::plot::COLUMN_PT;
 use gyrolab::plot::chart::{Chart, ChartSeries};
 use gyrolab::plot::ink::PointMark;
@@ -67,7 +67,7 @@ fn a_sweep_shows_measurements_with_error_bars_and_the_predicted_line() {
     assert_eq!(panel.series[1].style.width_pt, 0.0);
     assert_eq!(panel.series[1].errors[1][..2], [0.01, 0.02]);
     let scene = chart.scene();
-    is_tidy(&scene).unwrap();
+    check_overlaps(&scene).unwrap();
     says(
         &scene,
         &[
@@ -81,7 +81,7 @@ fn a_sweep_shows_measurements_with_error_bars_and_the_predicted_line() {
 
 fn chart(text: &str) -> Chart {
     let chart = of_table::chart(&table(text), &TableView::of_columns(&[], COLUMN_PT)).unwrap();
-    is_tidy(&chart.scene()).unwrap();
+    check_overlaps(&chart.scene()).unwrap();
     chart
 }
 

@@ -23,7 +23,7 @@ fn theory(scenario: &Arc<Scenario>, time_s: f64) -> Option<Theory> {
 }
 
 /// Plays a run to its end, and returns it with the monitor that recorded it.
-fn followed(scenario: &Arc<Scenario>) -> (Simulation, Monitor) {
+fn play_monitored(scenario: &Arc<Scenario>) -> (Simulation, Monitor) {
     let mut simulation = Simulation::new(Arc::clone(scenario));
     let mut monitor = Monitor::new(simulation.now());
     while simulation.step_number() < scenario.steps {
@@ -284,7 +284,7 @@ fn under_a_sideways_push_theory_is_about_the_tilted_vertical() {
 }
 
 fn summary(scenario: &Arc<Scenario>) -> RunSummary {
-    let (simulation, mut monitor) = followed(scenario);
+    let (simulation, mut monitor) = play_monitored(scenario);
     let health: Health = monitor.health(simulation.now());
     let readouts = Readouts::new(&simulation, &mut monitor, &health, None);
     RunSummary::new(readouts, Duration::from_secs(1))
@@ -347,7 +347,7 @@ fn off(measured: Option<MeasuredNumber>, theory: f64, scheme: f64) -> (f64, f64)
 
 fn measurement_is_theory(name: &str, scenario: &Arc<Scenario>, scheme: f64) {
     let theory = theory(scenario, 0.0).unwrap();
-    let (_, monitor) = followed(scenario);
+    let (_, monitor) = play_monitored(scenario);
     let instruments = monitor.instruments;
     let period = theory.nutation_period_s;
     let Some(period) = period.filter(|_| theory.path != AxlePath::Circle) else {
@@ -402,7 +402,7 @@ fn uncertainties_are_right_with_few_steps_per_nutation() {
             let scenario = preset(name, &["motion.steps=60000"]);
             let scenario = Arc::new(resampled(&scenario, dt, exact));
             let theory = theory(&scenario, 0.0).unwrap();
-            let (_, monitor) = followed(&scenario);
+            let (_, monitor) = play_monitored(&scenario);
             let instruments = monitor.instruments;
             let measured = [
                 instruments.nutation_period_s().ok(),
@@ -475,7 +475,7 @@ fn ball(moments: [f64; 3]) -> Arc<Scenario> {
 fn theory_of_a_nearly_symmetric_body_uses_its_mean_moment() {
     for [a, b] in [[4.0, 4.001], [4.01, 4.0], [4.0, 4.04]] {
         let scenario = ball([a, b, 3.0]);
-        let (simulation, mut monitor) = followed(&scenario);
+        let (simulation, mut monitor) = play_monitored(&scenario);
         let theory = monitor.theory(simulation.now().time_s()).unwrap();
         // The weight adds 0.00985 kg at 15.55 cm along the axle.
         let weight = 0.00985 * 0.1555 * 0.1555 * 1e3;

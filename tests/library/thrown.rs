@@ -67,7 +67,7 @@ fn thrown(seed: u64) -> Fit {
 }
 
 /// Counts, for each ratio, the fits out of `trials` with the ratio within two of its uncertainties.
-fn covered(trials: u64) -> [usize; 2] {
+fn count_covered(trials: u64) -> [usize; 2] {
     let seeds = (1..=trials).into_par_iter();
     let fits: Vec<Fit> = seeds.map(|seed| thrown(seed * 0x9E37_79B9)).collect();
     // The third moment is fixed, so the first two determine the ratios.
@@ -83,7 +83,7 @@ fn covered(trials: u64) -> [usize; 2] {
 
 #[test]
 fn ratios_of_moments_are_recovered_from_a_noisy_recording() {
-    for count in covered(100) {
+    for count in count_covered(100) {
         assert!((90..=99).contains(&count), "{count}");
     }
 }
@@ -91,7 +91,7 @@ fn ratios_of_moments_are_recovered_from_a_noisy_recording() {
 #[test]
 #[ignore = "a thousand fits"]
 fn two_sigma_intervals_cover_the_ratios_at_the_expected_rate() {
-    for count in covered(1000) {
+    for count in count_covered(1000) {
         assert!((930..=980).contains(&count), "{count}");
     }
 }

@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 /// A wheel with an odd number of points (seven), one of `lump_kg` off the axle, with pushes that start within a step and
 /// edits of everything that can be edited.
-fn eventful(scheme: &str, lump_kg: f64) -> Arc<Scenario> {
+fn scenario_with_events(scheme: &str, lump_kg: f64) -> Arc<Scenario> {
     let text = format!(
         "title = 'x'
 [body.rim]
@@ -71,7 +71,10 @@ fn each_step(scenario: &Arc<Scenario>, mut look: impl FnMut(&Step)) {
 
 /// Returns the scenarios with and without a lump.
 fn both(scheme: &str) -> [Arc<Scenario>; 2] {
-    [eventful(scheme, 0.75), eventful(scheme, 0.0)]
+    [
+        scenario_with_events(scheme, 0.75),
+        scenario_with_events(scheme, 0.0),
+    ]
 }
 
 fn number(phase: &Phase, symbol: &str) -> f64 {
@@ -358,7 +361,7 @@ fn the_exact_step_names_its_method() {
 #[test]
 fn values_of_a_step_equal_those_of_its_state() {
     for scheme in SCHEMES {
-        let scenario = eventful(scheme.name, 0.75);
+        let scenario = scenario_with_events(scheme.name, 0.75);
         let body = &scenario.body.mechanics;
         let mut last = scenario.start;
         assert_eq!(Simulation::new(Arc::clone(&scenario)).now().before(), None);
@@ -417,7 +420,7 @@ fn after_a_breakdown_the_last_finite_step_stays_available() {
 #[test]
 fn the_workings_of_any_step_are_available_kept_or_not() {
     for scheme in SCHEMES {
-        let scenario = eventful(scheme.name, 0.75);
+        let scenario = scenario_with_events(scheme.name, 0.75);
         let mut known = vec![None];
         each_step(&scenario, |step| known.push(step.workings().cloned()));
         let mut run = LiveRun::new(Arc::clone(&scenario));

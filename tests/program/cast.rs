@@ -32,7 +32,7 @@ wait_s = 0.5
 "#;
 
 /// Parses a recording into its header and its events, with their times since the start, ms.
-fn parsed(text: &str) -> (Value, Vec<(u64, String, String)>) {
+fn parse_recording(text: &str) -> (Value, Vec<(u64, String, String)>) {
     let mut lines = text.lines();
     let head = serde_json::from_str(lines.next().unwrap()).unwrap();
     let mut now = 0;
@@ -48,7 +48,7 @@ fn parsed(text: &str) -> (Value, Vec<(u64, String, String)>) {
     )
 }
 
-fn recorded(ground: &Ground, name: &str, more: &[&str]) -> String {
+fn record(ground: &Ground, name: &str, more: &[&str]) -> String {
     ground.write("demo.toml", DEMO);
     let args = [&["cast", "demo.toml", "-o", name], more].concat();
     let output = ground.run(&args);
@@ -59,12 +59,12 @@ fn recorded(ground: &Ground, name: &str, more: &[&str]) -> String {
 #[test]
 fn a_recording_contains_size_chapters_and_picture() {
     let ground = Ground::new();
-    let text = recorded(
+    let text = record(
         &ground,
         "a.cast",
         &["--size", "90x25", "--title", "A <b>\"demo\"\u{1b}"],
     );
-    let (head, events) = parsed(&text);
+    let (head, events) = parse_recording(&text);
     assert_eq!(head["version"], 3);
     assert_eq!(
         (&head["term"]["cols"], &head["term"]["rows"]),
@@ -118,7 +118,7 @@ fn a_recording_contains_size_chapters_and_picture() {
 #[test]
 fn recordings_do_not_depend_on_time_settings_or_environment() {
     let ground = Ground::new();
-    let first = recorded(&ground, "a.cast", &[]);
+    let first = record(&ground, "a.cast", &[]);
     fs::remove_file(ground.file("out.csv")).unwrap();
     let config = ground.config().join("gyrolab/config.toml");
     fs::create_dir_all(config.parent().unwrap()).unwrap();
@@ -162,5 +162,5 @@ fn a_failed_recording_leaves_no_file() {
     has(stderr(&refused), "--force replaces it");
     assert_eq!(ground.read("x.cast"), "kept");
     assert_eq!(code(&ground.run("cast demo.toml -o x.cast --force")), 0);
-    parsed(&ground.read("x.cast"));
+    parse_recording(&ground.read("x.cast"));
 }

@@ -11,13 +11,13 @@ use std::time::Duration;
 
 const LESSON: &str = "is-the-wobble-real";
 
-fn teach(ground: &Ground, args: &str) -> Terminal {
+fn open_teacher(ground: &Ground, args: &str) -> Terminal {
     ground.open(&format!("class {args} --folder ."))
 }
 
 /// Opens the teacher's lab and plays the run of its first page to the end.
-fn begin(ground: &Ground) -> Terminal {
-    let mut teacher = teach(ground, LESSON);
+fn begin_class(ground: &Ground) -> Terminal {
+    let mut teacher = open_teacher(ground, LESSON);
     teacher.wait_for("1 of 10");
     teacher.wait_for("► ×10");
     teacher.ask(
@@ -29,7 +29,7 @@ fn begin(ground: &Ground) -> Terminal {
 }
 
 /// Opens a student's lab in a new seat. Returns it with the seat's word.
-fn sit(ground: &Ground, name: &str) -> (Terminal, String) {
+fn take_seat(ground: &Ground, name: &str) -> (Terminal, String) {
     let mut lab = ground.open("--folder . --seat");
     lab.wait_for("A name for your seat");
     lab.ask(&format!("{name}\r"), "Press Enter to continue.");
@@ -42,7 +42,7 @@ fn sit(ground: &Ground, name: &str) -> (Terminal, String) {
 }
 
 /// Votes for the second choice.
-fn vote(lab: &mut Terminal) {
+fn cast_vote(lab: &mut Terminal) {
     lab.wait_for("1 2 3 4 or ↑ ↓ choose");
     lab.ask("2", "lock this prediction");
     lab.ask("\r", "2 is about fifty times smaller you");
@@ -53,15 +53,15 @@ fn a_class_follows_the_teacher_votes_and_loses_nothing() {
     let ground = Ground::new();
     let header = "lesson,question,round,seat,choice,late,page,time\n";
     assert_eq!(ground.stdout("class --votes --folder ."), header);
-    let mut teacher = begin(&ground);
-    let (mut anna, word) = sit(&ground, "anna");
-    let (mut ben, _) = sit(&ground, "ben");
+    let mut teacher = begin_class(&ground);
+    let (mut anna, word) = take_seat(&ground, "anna");
+    let (mut ben, _) = take_seat(&ground, "ben");
     teacher.wait_for("2 here");
     teacher.press("n");
     for lab in [&mut anna, &mut ben] {
         lab.wait_for("following · 2 of 10");
     }
-    vote(&mut anna);
+    cast_vote(&mut anna);
     anna.kill();
     teacher.wait_for("round 1 · 1 of 2");
     let votes = ground.stdout("class --votes --folder .");
@@ -87,11 +87,11 @@ fn a_class_follows_the_teacher_votes_and_loses_nothing() {
     // A second round, during which the teacher's lab is killed.
     teacher.ask("k", "ask again: round 2");
     teacher.press("2");
-    vote(&mut again);
+    cast_vote(&mut again);
     teacher.wait_for("round 2 · 1 of 2");
     teacher.kill();
     ben.wait_for("the teacher's lab is gone: press n or N to turn pages");
-    let mut resumed = teach(&ground, "--resume");
+    let mut resumed = open_teacher(&ground, "--resume");
     resumed.wait_for("2 of 10");
     resumed.wait_for("round 2 · 1 of 2");
     ben.wait_for("following · 2 of 10");
@@ -103,7 +103,7 @@ fn a_class_follows_the_teacher_votes_and_loses_nothing() {
     resumed.end_class();
     ben.wait_for("the class is over");
     // Starting the class a second time by mistake must not send everyone back to the first page.
-    let mut mistaken = teach(&ground, LESSON);
+    let mut mistaken = open_teacher(&ground, LESSON);
     mistaken.wait_for_end();
     let said = mistaken.sent_text();
     assert!(said.contains("--resume without the lesson"), "{said}");
@@ -116,8 +116,8 @@ fn a_class_follows_the_teacher_votes_and_loses_nothing() {
 fn a_seat_cannot_access_the_files_of_another() {
     let ground = Ground::new();
     ground.write("secret.csv", "t_s,x_m\n0,1\n");
-    let mut teacher = begin(&ground);
-    let (mut anna, word) = sit(&ground, "anna");
+    let mut teacher = begin_class(&ground);
+    let (mut anna, word) = take_seat(&ground, "anna");
     anna.press("x");
     for name in ["../ben-0001/run.csv", "/tmp/run.csv", ".gyrolab/seat"] {
         anna.press(&format!("\x15{name}\r"));
@@ -144,20 +144,20 @@ fn a_seat_cannot_access_the_files_of_another() {
 #[ignore = "thirty labs and two hundred kills take minutes"]
 fn two_hundred_kills_lose_no_votes_or_pages_of_thirty_seats() {
     let ground = Ground::new();
-    let mut teacher = begin(&ground);
+    let mut teacher = begin_class(&ground);
     let mut seats: Vec<_> = (0..30)
-        .map(|number| sit(&ground, &format!("seat{number}")))
+        .map(|number| take_seat(&ground, &format!("seat{number}")))
         .collect();
     teacher.press("n");
     for (lab, _) in &mut seats {
-        vote(lab);
+        cast_vote(lab);
     }
     let mut dice = Dice(7);
     let mut page = 2;
     for kill in 0..200 {
         if kill % 20 == 19 {
             teacher.kill();
-            teacher = teach(&ground, "--resume");
+            teacher = open_teacher(&ground, "--resume");
             teacher.wait_for(&format!("{page} of 10"));
         } else {
             let (lab, word) = &mut seats[dice.whole(0, 29) as usize];
@@ -205,9 +205,9 @@ fn a_damaged_seat_is_named_with_exit_code_1() {
 #[ignore = "two hundred kills take minutes"]
 fn two_hundred_kills_during_a_vote_lose_no_locked_votes() {
     let ground = Ground::new();
-    let mut teacher = begin(&ground);
+    let mut teacher = begin_class(&ground);
     let mut seats: Vec<_> = (0..5)
-        .map(|number| sit(&ground, &format!("seat{number}")))
+        .map(|number| take_seat(&ground, &format!("seat{number}")))
         .collect();
     teacher.press("n");
     for (lab, _) in &seats {
@@ -266,7 +266,7 @@ fn a_seat_and_the_projector_wait_for_the_class_and_follow_it() {
     anna.ask("\r", "The class starts here when your teacher starts it.");
     let mut projector = ground.open("class --projector --folder .");
     projector.wait_for("The class has not begun.");
-    let mut teacher = begin(&ground);
+    let mut teacher = begin_class(&ground);
     anna.wait_for("following · 1 of 10");
     projector.wait_for("1 of 10 · Is the wobble real?");
     teacher.press("n");
@@ -283,7 +283,7 @@ fn a_seat_and_the_projector_wait_for_the_class_and_follow_it() {
     projector.press("npLx");
     teacher.kill();
     projector.wait_for("waiting");
-    let mut resumed = teach(&ground, "--resume");
+    let mut resumed = open_teacher(&ground, "--resume");
     resumed.wait_for("3 of 10");
     projector.wait_for("3 of 10 · Is the wobble real?");
     resumed.end_class();
@@ -295,10 +295,10 @@ fn a_seat_and_the_projector_wait_for_the_class_and_follow_it() {
 #[test]
 fn a_new_group_keeps_the_votes_of_the_previous_one() {
     let ground = Ground::new();
-    let mut teacher = begin(&ground);
-    let (mut anna, word) = sit(&ground, "anna");
+    let mut teacher = begin_class(&ground);
+    let (mut anna, word) = take_seat(&ground, "anna");
     teacher.press("n");
-    vote(&mut anna);
+    cast_vote(&mut anna);
     let refused = ground.run("class --new --folder .");
     assert_eq!(code(&refused), 1);
     has_all(stderr(&refused), &["a class is running in"]);

@@ -24,11 +24,11 @@ const LUMP: &str = "body.point.2={name='lump',at_m=[0.5,0,1],mass_kg=1}";
 /// Runs `gyrolab compare` with `args`, which must succeed without output on stderr, and returns its stdout.
 #[track_caller]
 fn told(ground: &Ground, args: &str) -> String {
-    told_by(ground.run(&format!("compare {args}")))
+    successful(ground.run(&format!("compare {args}")))
 }
 
 #[track_caller]
-fn told_by(output: Output) -> String {
+fn successful(output: Output) -> String {
     assert!(output.stderr.is_empty(), "{output:?}");
     String::from_utf8(done(output).stdout).unwrap()
 }
@@ -59,7 +59,7 @@ fn number(row: &[String], column: &str) -> f64 {
 }
 
 /// The schemes with a truncation error.
-fn with_error() -> impl Iterator<Item = (&'static str, u32)> {
+fn inexact_schemes() -> impl Iterator<Item = (&'static str, u32)> {
     let schemes = SCHEMES.iter();
     schemes.filter_map(|scheme| Some((scheme.name, scheme.order?)))
 }
@@ -77,7 +77,7 @@ fn steps_for(order: u32) -> &'static str {
 #[test]
 fn the_orders_of_the_schemes_are_in_the_table() {
     let lab = Ground::new();
-    for (scheme, whole_order) in with_error() {
+    for (scheme, whole_order) in inexact_schemes() {
         let (steps, order) = (steps_for(whole_order), f64::from(whole_order));
         let args = format!("cusps --duration 2 --schemes {scheme} --time-steps {steps}");
         let text = told(&lab, &args);
@@ -105,7 +105,7 @@ fn the_table_names_scenario_reference_and_columns() {
     let heads = "scheme dt s steps error m at end m order energy L.axle L_z ns/step";
     assert_eq!(words(table(&text)[0]), heads);
     // All schemes with a truncation error, at the scenario's time step and 1/2, 1/4 and 1/8 of it.
-    let expected: Vec<_> = with_error()
+    let expected: Vec<_> = inexact_schemes()
         .flat_map(|(scheme, _)| {
             ["0.001 1000", "0.0005 2000", "0.00025 4000", "0.000125 8000"]
                 .map(|step| format!("{scheme} {step} "))
@@ -166,7 +166,7 @@ fn a_comparison_file_is_complete_and_not_overwritten() {
     let args = "cusps --duration 0.1 -o table.csv";
     let text = told(&lab, args);
     let csv = lab.read("table.csv");
-    assert_eq!(rows(&csv).len(), 4 * with_error().count());
+    assert_eq!(rows(&csv).len(), 4 * inexact_schemes().count());
     has(&text, "ns/step"); // the table is printed as well
     lab.refused(&format!("compare {args}"), 1, &["--force"]);
     assert_eq!(lab.read("table.csv"), csv);
@@ -254,7 +254,7 @@ fn results_do_not_depend_on_the_number_of_threads() {
     let numbers = |threads: &str| {
         let mut command = lab.command("compare wobble-push --duration 30 -o -");
         let output = command.env("RAYON_NUM_THREADS", threads).output().unwrap();
-        let mut rows = rows(&told_by(output));
+        let mut rows = rows(&successful(output));
         rows.iter_mut().for_each(|row| row.truncate(9)); // without the time per step
         rows
     };

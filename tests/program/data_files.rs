@@ -24,7 +24,7 @@ steps = 200
 "#;
 
 /// The angular rates of the symmetric body with I3 = 1.5 I1, as logged in ms and degrees per second.
-fn logged() -> String {
+fn logged_rates() -> String {
     let mut text = "timestamp_ms,gx_dps,gy_dps,gz_dps\n".to_owned();
     for row in 0..100 {
         let time_s = 0.01 * f64::from(row);
@@ -40,7 +40,7 @@ fn logged() -> String {
 fn units_in_column_names_are_converted() {
     let ground = Ground::new();
     ground.write("sym.toml", SYMMETRIC);
-    ground.write("log.csv", &logged());
+    ground.write("log.csv", &logged_rates());
     let fit = "fit log.csv --in sym.toml --free body.part.0.moments_kg_m2.2 --json";
     let maps = [
         "",
@@ -71,7 +71,7 @@ fn units_in_column_names_are_converted() {
 fn data_and_scenarios_are_read_from_standard_input() {
     let ground = Ground::new();
     ground.write("sym.toml", SYMMETRIC);
-    ground.write("log.csv", &logged());
+    ground.write("log.csv", &logged_rates());
     let free = "--free body.part.0.moments_kg_m2.2";
     let from_file = ground.stdout(&format!("fit log.csv --in sym.toml {free} --json"));
     for line in [
@@ -123,7 +123,7 @@ fn one_column_of_repeated_measurements_can_be_fitted() {
 fn rows_outside_the_fitted_time_are_counted() {
     let ground = Ground::new();
     ground.write("sym.toml", SYMMETRIC);
-    ground.write("log.csv", &logged().replacen("\n0,", "\n-1.6,", 1));
+    ground.write("log.csv", &logged_rates().replacen("\n0,", "\n-1.6,", 1));
     let fit = "fit log.csv --in sym.toml --free start.omega_rad_per_s.2 --from 0.1 --to 0.5";
     let told = ground.stderr(fit);
     has_all(

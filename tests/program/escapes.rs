@@ -14,7 +14,7 @@ const BODY: &str = "[[body.point]]\nname = 'top'\nat_m = [0, 0, 1]\nmass_kg = 1\
                     [start]\nmomentum_Js = [0, 0, 9]\n[motion]\ntime_step_s = 0.01\nsteps = 5\n";
 
 #[track_caller]
-fn is_printable(args: &str, output: &Output) {
+fn assert_printable(args: &str, output: &Output) {
     for stream in [&output.stdout, &output.stderr] {
         let text = String::from_utf8_lossy(stream);
         let steering = text.chars().find(|&c| c != '\n' && is_steering(c));
@@ -100,7 +100,7 @@ fn control_sequences_in_arguments_are_escaped() {
         format!("--color {NASTY}"),
     ];
     for args in &commands {
-        is_printable(args, &ground.run(args));
+        assert_printable(args, &ground.run(args));
     }
     let checked = ground.run("check title.toml about.toml view.toml");
     let told = String::from_utf8_lossy(&checked.stderr);

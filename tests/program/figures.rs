@@ -4,7 +4,7 @@ use crate::support::ground::{Ground, code, done, failed, stderr};
 use std::fs;
 
 #[track_caller]
-fn draws(ground: &Ground, args: &[&str]) -> String {
+fn draw(ground: &Ground, args: &[&str]) -> String {
     let output = ground.run(&[&["figure"], args].concat());
     assert!(output.stdout.is_empty(), "{output:?}");
     stderr(&done(output)).to_owned()
@@ -18,13 +18,13 @@ fn a_figure_is_written_in_every_format() {
         ("a.pdf", b"%PDF-"),
         ("a.png", b"\x89PNG"),
     ] {
-        let told = draws(&ground, &["method-2", "--steps", "300", "-o", file]);
+        let told = draw(&ground, &["method-2", "--steps", "300", "-o", file]);
         assert!(told.contains("86 mm x") && told.contains(file), "{told}");
         let bytes = fs::read(ground.file(file)).unwrap();
         assert!(bytes.starts_with(begin), "{file}");
     }
     assert!(ground.read("a.svg").contains("width=\"86mm\""));
-    draws(
+    draw(
         &ground,
         &[
             "method-2", "--steps", "9", "--width", "178mm", "-o", "wide.svg",
@@ -100,7 +100,7 @@ fn a_run_with_non_finite_numbers_is_drawn_up_to_them() {
 fn exported_runs_and_comparisons_are_drawn_from_their_files() {
     let ground = Ground::new();
     done(ground.run("run method-2 --steps 40 -o run.csv"));
-    draws(&ground, &["run.csv", "--kind", "tilt_deg", "-o", "run.svg"]);
+    draw(&ground, &["run.csv", "--kind", "tilt_deg", "-o", "run.svg"]);
     let steps = "0.1,0.05,0.025";
     let compare = [
         "compare",
@@ -111,7 +111,7 @@ fn exported_runs_and_comparisons_are_drawn_from_their_files() {
         "rk4,strang",
     ];
     done(ground.run(&[&compare[..], &["--time-steps", steps, "-o", "error.csv"]].concat()));
-    draws(&ground, &["error.csv", "-o", "error.svg"]);
+    draw(&ground, &["error.csv", "-o", "error.svg"]);
     assert!(ground.read("error.svg").contains("largest error"));
     let alone = ["figure", "error.csv", "method-2", "-o", "both.svg"];
     failed(&ground.run(&alone), &["alone"]);

@@ -174,7 +174,7 @@ fn a_part_of_a_recording_is_fitted_from_its_own_start() {
 }
 
 /// Writes a recording of two throws. The phone rests between them, with a jolt at each catch.
-fn two_throws(ground: &Ground) {
+fn write_two_throws(ground: &Ground) {
     let columns = "--columns t_s,w1_rad_per_s,w2_rad_per_s,w3_rad_per_s";
     let mut recording = String::new();
     let mut time_s = 0.0;
@@ -199,7 +199,7 @@ fn two_throws(ground: &Ground) {
 #[test]
 fn throws_are_found_listed_and_fitted_separately() {
     let ground = Ground::new();
-    two_throws(&ground);
+    write_two_throws(&ground);
     let fit =
         "fit throws.csv --in thrown-phone --free start.omega_rad_per_s.0,start.omega_rad_per_s.1";
     let told = ground.stdout(fit);

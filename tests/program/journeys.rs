@@ -34,7 +34,7 @@ fn resumed(ground: &Ground) -> Terminal {
 }
 
 /// Replaces the text of the open dialog with `text` and confirms it.
-fn answer(lab: &mut Terminal, text: &str) {
+fn answer_dialog(lab: &mut Terminal, text: &str) {
     lab.press(&format!("{CLEAR}{text}\r"));
 }
 
@@ -52,14 +52,14 @@ fn select(lab: &mut Terminal, name: &str) {
 /// Sets the selected value to `value` and reruns.
 fn set(lab: &mut Terminal, value: &str) {
     lab.ask("\r", "Enter: ");
-    answer(lab, value);
+    answer_dialog(lab, value);
 }
 
 /// Sets the selected value to `value` from the next step on.
 fn set_from_now_on(lab: &mut Terminal, value: &str) {
     lab.ask("\r", "Enter: rerun from the start");
     lab.ask("\t", "Enter: from now on");
-    answer(lab, value);
+    answer_dialog(lab, value);
 }
 
 /// Jumps to `step` after all earlier keys have taken effect.
@@ -93,18 +93,18 @@ fn push(lab: &mut Terminal) {
 
 /// Saves the run file as `name` and returns its text.
 #[track_caller]
-fn saved(lab: &mut Terminal, name: &str) -> String {
+fn save_run(lab: &mut Terminal, name: &str) -> String {
     lab.ask("s", "save the run file");
-    answer(lab, name);
+    answer_dialog(lab, name);
     lab.wait_for("the run is in");
     lab.ground().read(name)
 }
 
 /// Exports every row to `name` and returns the bytes.
 #[track_caller]
-fn exported(lab: &mut Terminal, name: &str) -> Vec<u8> {
+fn export_run(lab: &mut Terminal, name: &str) -> Vec<u8> {
     lab.ask("x", "export steps 0 to");
-    answer(lab, name);
+    answer_dialog(lab, name);
     lab.wait_for("wrote ");
     assert!(!lab.screen().contains("scp "), "not over SSH");
     fs::read(lab.ground().file(name)).unwrap()
@@ -141,7 +141,7 @@ fn values_are_nudged_typed_rejected_and_undone() {
     }
     set(&mut lab, "-1");
     lab.wait_for("greater than zero");
-    answer(&mut lab, "0.02");
+    answer_dialog(&mut lab, "0.02");
     lab.wait_for("dt 0.02 s");
     for dt in ["0.05", "0.2", "0.1"] {
         lab.ask("u", &format!("dt {dt} s"));
@@ -151,13 +151,13 @@ fn values_are_nudged_typed_rejected_and_undone() {
         lab.ask("U", &format!("dt {dt} s"));
     }
     lab.wait_for_step(200);
-    let run = saved(&mut lab, "run.toml");
+    let run = save_run(&mut lab, "run.toml");
     assert_eq!(run.matches("[[edit]]").count(), 0, "{run}");
     has(&run, "\ntime_step_s = 0.05\n");
     set_from_now_on(&mut lab, "0.1");
     lab.wait_for("dt 0.1 s");
     steps(&mut lab, ".", 201);
-    let edited = saved(&mut lab, "edited.toml");
+    let edited = save_run(&mut lab, "edited.toml");
     has(&edited, "[[edit]]\nstep = 200\n");
     has(&edited, "\"motion.time_step_s\" = 0.1");
     lab.quit();
@@ -188,8 +188,8 @@ fn an_export_equals_the_csv_of_the_saved_run() {
     lab.press(ESC);
     lab.wait_for("L lessons");
     assert_eq!(ground.files(), ["state"], "what is left of a cancelled one");
-    let csv = exported(&mut lab, "run.csv");
-    saved(&mut lab, "run.toml");
+    let csv = export_run(&mut lab, "run.csv");
+    save_run(&mut lab, "run.toml");
     assert!(csv == run(&ground, "run.toml"), "other bytes");
     assert!(csv == run(&ground, "run.csv"), "other bytes from the CSV");
 
@@ -199,7 +199,7 @@ fn an_export_equals_the_csv_of_the_saved_run() {
     lab.press(ESC);
     lab.wait_for("L lessons");
     lab.ask("x", "export steps 0 to 285");
-    answer(&mut lab, "mine.csv");
+    answer_dialog(&mut lab, "mine.csv");
     lab.wait_for("exists: press Enter again to replace it");
     assert_eq!(ground.read("mine.csv"), "mine");
     lab.ask("\r", "wrote ");
@@ -215,7 +215,7 @@ fn the_present_state_is_saved_as_a_scenario_that_runs() {
     push(&mut lab);
     steps(&mut lab, "100.", 150);
     lab.ask("S", "save the present state");
-    answer(&mut lab, "here.toml");
+    answer_dialog(&mut lab, "here.toml");
     lab.wait_for("the scenario is in");
     let z = shown(&lab)[2].clone();
     lab.quit();
@@ -237,7 +237,7 @@ fn a_rejected_export_gives_the_reason_and_loses_nothing() {
     lab.wait_for("gone/run.csv_");
     fs::remove_dir(ground.file("gone")).unwrap();
     lab.ask("\r", "there is no folder");
-    answer(&mut lab, "state");
+    answer_dialog(&mut lab, "state");
     lab.wait_for("is a folder");
     let locked = ground.file("locked");
     fs::create_dir(&locked).unwrap();
@@ -245,12 +245,12 @@ fn a_rejected_export_gives_the_reason_and_loses_nothing() {
     rights.set_readonly(true);
     fs::set_permissions(&locked, rights).unwrap();
     if fs::write(locked.join("probe"), "").is_err() {
-        answer(&mut lab, "locked/run.csv");
+        answer_dialog(&mut lab, "locked/run.csv");
         lab.wait_for("Permission denied");
     }
-    answer(&mut lab, "/dev/full");
+    answer_dialog(&mut lab, "/dev/full");
     lab.wait_for("not a regular file");
-    answer(&mut lab, "run.csv");
+    answer_dialog(&mut lab, "run.csv");
     lab.wait_for("wrote ");
     lab.wait_for_step(50);
     lab.quit();
@@ -262,7 +262,7 @@ fn an_export_into_a_deleted_folder_fails_and_the_lab_continues() {
     fs::create_dir(ground.file("gone")).unwrap();
     let mut lab = long_run(&ground);
     lab.ask("x", "export steps 0 to");
-    answer(&mut lab, "gone/run.csv");
+    answer_dialog(&mut lab, "gone/run.csv");
     lab.wait_for("in the background");
     fs::remove_dir_all(ground.file("gone")).unwrap();
     lab.wait_for("cannot write");
@@ -282,7 +282,7 @@ fn long_run(ground: &Ground) -> Terminal {
 
 fn begin_export(lab: &mut Terminal) {
     lab.ask("x", "export steps 0 to");
-    answer(lab, "run.csv");
+    answer_dialog(lab, "run.csv");
     lab.wait_for("in the background");
 }
 
@@ -310,7 +310,7 @@ fn a_lost_line_during_an_export_is_reported_and_leaves_no_file() {
         let ground = Ground::new();
         let mut lab = long_run(&ground);
         begin_export(&mut lab);
-        ended(&mut lab, end);
+        end_by(&mut lab, end);
         assert_eq!(ground.files(), ["state"], "{end}");
         let resumed_lab = ground.open("--resume");
         resumed_lab.wait_for("run.csv was cut off, x starts another");
@@ -328,7 +328,7 @@ fn all_at_once(cases: &[&str], test: impl Fn(&str) + Sync) {
 }
 
 /// Ends the lab by the signal `by`, or by closing its line. Returns its exit code.
-fn ended(lab: &mut Terminal, by: &str) -> u32 {
+fn end_by(lab: &mut Terminal, by: &str) -> u32 {
     match by {
         "line" => lab.lose_line(),
         signal => lab.signal(signal),
@@ -357,7 +357,7 @@ fn a_run_edited_at_every_screen_size_is_resumed() {
     lab.resize((40, 10));
     lab.press("\r");
     lab.press("\t");
-    answer(&mut lab, "0.05");
+    answer_dialog(&mut lab, "0.05");
     lab.resize((1, 1));
     lab.press("40.");
     lab.press("s"); // a dialog that the screen is too small to show
@@ -375,14 +375,14 @@ fn a_run_edited_at_every_screen_size_is_resumed() {
     lab.press(" ");
     lab.resize((80, 24));
     lab.wait_for("paused");
-    let before = saved(&mut lab, "before.toml");
+    let before = save_run(&mut lab, "before.toml");
     assert!(before.contains("[[push]]") && before.contains("[[edit]]"));
     let step = lab.step().unwrap();
     lab.quit();
 
     let mut second = resumed(&ground);
     assert_eq!(second.step(), Some(step));
-    assert_eq!(saved(&mut second, "after.toml"), before);
+    assert_eq!(save_run(&mut second, "after.toml"), before);
     second.ask("u", "undone: motion.time_step_s = 0.05, at step 60");
     second.wait_for("dt 0.1 s");
     second.ask("u", "undone: the push on top, at step 40");
@@ -403,7 +403,7 @@ fn a_run_edited_at_every_screen_size_is_resumed() {
     fourth.press("U");
     fourth.wait_for("dt 0.05 s");
     go_to(&mut fourth, step);
-    assert_eq!(saved(&mut fourth, "again.toml"), before);
+    assert_eq!(save_run(&mut fourth, "again.toml"), before);
     fourth.quit();
 }
 
@@ -441,7 +441,7 @@ fn keys_pressed_just_before_the_end_are_saved() {
         lab.press(&format!("p{end}"));
         drop(lab.wait_for_end());
         let mut after = resumed(&ground);
-        let run = saved(&mut after, "run.toml");
+        let run = save_run(&mut after, "run.toml");
         assert!(run.contains("[[push]]"), "{end:?}: {run}");
     });
 }
@@ -453,7 +453,7 @@ fn every_way_to_end_the_lab_saves_all_changes() {
         let mut lab = paused_at(&ground, 30);
         push(&mut lab);
         steps(&mut lab, "5.", 35);
-        let code = ended(&mut lab, end);
+        let code = end_by(&mut lab, end);
         let signals = ["HUP", "INT", "QUIT", "TERM"]
             .iter()
             .zip([129, 130, 131, 143]);
@@ -465,7 +465,7 @@ fn every_way_to_end_the_lab_saves_all_changes() {
         }
         let mut after = resumed(&ground);
         assert_eq!(after.step(), Some(35), "{end}");
-        let run = saved(&mut after, "run.toml");
+        let run = save_run(&mut after, "run.toml");
         assert!(run.contains("[[push]]"), "{end}: {run}");
     });
 }
@@ -492,7 +492,7 @@ fn a_panic_saves_all_changes() {
     });
     let mut after = resumed(&ground);
     assert_eq!(after.step(), Some(35));
-    assert!(saved(&mut after, "run.toml").contains("[[push]]"));
+    assert!(save_run(&mut after, "run.toml").contains("[[push]]"));
 }
 
 #[test]
@@ -520,7 +520,7 @@ fn a_shell_suspends_and_resumes_the_lab() {
     lab.wait_for_end();
     let mut after = resumed(&ground);
     assert_eq!(after.step(), Some(35));
-    assert!(saved(&mut after, "run.toml").contains("[[push]]"));
+    assert!(save_run(&mut after, "run.toml").contains("[[push]]"));
 }
 
 #[test]
@@ -530,11 +530,11 @@ fn two_labs_have_two_sessions_and_a_third_starts_a_new_one() {
     assert_eq!(ground.session_files(".lock").len(), 2);
     let [older, newer] = &mut labs;
     push(older);
-    wait_until_kept(older, &ground);
+    wait_until_saved(older, &ground);
     push(newer);
     newer.press("7.");
     newer.wait_for_step(57);
-    wait_until_kept(newer, &ground);
+    wait_until_saved(newer, &ground);
     labs.iter_mut().for_each(Terminal::kill);
     let first = resumed(&ground);
     first.wait_for_step(57);
@@ -547,7 +547,7 @@ fn two_labs_have_two_sessions_and_a_third_starts_a_new_one() {
 }
 
 /// Waits until the step of `lab` is saved.
-fn wait_until_kept(lab: &Terminal, ground: &Ground) {
+fn wait_until_saved(lab: &Terminal, ground: &Ground) {
     let step = format!("step = {}\n", lab.step().unwrap());
     lab.wait_until("what it does on the disk", |_| kept(ground).contains(&step));
 }
@@ -604,7 +604,7 @@ fn an_unusable_session_folder_is_reported_when_the_lab_opens() {
 fn a_lost_session_folder_is_reported_and_restored() {
     let ground = Ground::new();
     let mut lab = paused_at(&ground, 30);
-    wait_until_kept(&lab, &ground);
+    wait_until_saved(&lab, &ground);
     let folder = ground.state().join("gyrolab");
     fs::remove_dir_all(&folder).unwrap();
     fs::write(&folder, "in the way").unwrap();
@@ -614,7 +614,7 @@ fn a_lost_session_folder_is_reported_and_restored() {
     assert_eq!(said.matches("cannot be saved:").count(), 1, "{said}");
     fs::remove_file(&folder).unwrap();
     push(&mut lab);
-    wait_until_kept(&lab, &ground);
+    wait_until_saved(&lab, &ground);
     lab.kill();
     assert_eq!(resumed(&ground).step(), Some(31));
 }
@@ -626,7 +626,7 @@ fn an_end_while_resuming_loses_nothing() {
     let ground = Ground::new();
     let mut lab = paused_at(&ground, 12_000_000);
     push(&mut lab);
-    wait_until_kept(&lab, &ground);
+    wait_until_saved(&lab, &ground);
     lab.quit();
     for _ in 0..2 {
         let mut after = ground.open("--resume");
@@ -647,7 +647,7 @@ fn an_end_while_seeking_loses_nothing() {
     lab.ask("900000000.", "to go, Esc stops");
     lab.wait_until("a step further on", |lab| lab.step() > Some(1000));
     let step = lab.step();
-    ended(&mut lab, "HUP");
+    end_by(&mut lab, "HUP");
     let after = resumed(&ground);
     assert!(after.step() >= step, "{:?} {step:?}", after.step());
 }
@@ -684,28 +684,28 @@ fn five_kills(seed: u64) {
     let ground = Ground::new();
     let mut lab = paused_at(&ground, 20);
     for kill in 0..5 {
-        let kept = is_used_until_killed(&mut lab, &mut dice, kill);
+        let kept = use_until_killed(&mut lab, &mut dice, kill);
         lab = resumed(&ground);
         let context = format!("seed {seed}, kill {kill}");
         let step = lab.step().unwrap();
         assert!(step >= kept.reached, "{context}: {step} {}", kept.reached);
-        let all = saved(&mut lab, &format!("all-{kill}.toml"));
+        let all = save_run(&mut lab, &format!("all-{kill}.toml"));
         let pushes = all.matches("[[push]]").count();
         assert!(pushes >= kept.pushes, "{context}: {pushes} {}", kept.pushes);
         go_to(&mut lab, kept.step);
-        let again = saved(&mut lab, &format!("again-{kill}.toml"));
+        let again = save_run(&mut lab, &format!("again-{kill}.toml"));
         assert_eq!(again, kept.run, "{context}");
     }
 }
 
 /// Changes the run at random and saves it. Then adds to it for a second or two, and kills the lab.
-fn is_used_until_killed(lab: &mut Terminal, dice: &mut Dice, kill: usize) -> Kept {
+fn use_until_killed(lab: &mut Terminal, dice: &mut Dice, kill: usize) -> Kept {
     for _ in 0..dice.whole(1, 6) {
-        changes_something(lab, dice);
+        make_random_change(lab, dice);
     }
     let step = dice.whole(10, 400);
     go_to(lab, step);
-    let run = saved(lab, &format!("run-{kill}.toml"));
+    let run = save_run(lab, &format!("run-{kill}.toml"));
     let pushes = run.matches("[[push]]").count();
     let mut seen = vec![Observed {
         at: Instant::now(),
@@ -715,7 +715,7 @@ fn is_used_until_killed(lab: &mut Terminal, dice: &mut Dice, kill: usize) -> Kep
     steps(lab, ".", step + 1);
     let until = Instant::now() + Duration::from_millis(dice.whole(1000, 1900));
     while Instant::now() < until {
-        let given = adds_something(lab, dice);
+        let given = make_random_addition(lab, dice);
         seen.push(Observed {
             at: Instant::now(),
             step: lab.step().unwrap(),
@@ -738,7 +738,7 @@ fn is_used_until_killed(lab: &mut Terminal, dice: &mut Dice, kill: usize) -> Kep
 }
 
 /// Makes a random change to the run at any of its steps.
-fn changes_something(lab: &mut Terminal, dice: &mut Dice) {
+fn make_random_change(lab: &mut Terminal, dice: &mut Dice) {
     match dice.whole(0, 7) {
         0 => push(lab),
         1 => select(lab, "gravity"),
@@ -758,7 +758,7 @@ fn changes_something(lab: &mut Terminal, dice: &mut Dice) {
 }
 
 /// Performs a random action that only adds to the run. Returns the number of pushes added.
-fn adds_something(lab: &mut Terminal, dice: &mut Dice) -> usize {
+fn make_random_addition(lab: &mut Terminal, dice: &mut Dice) -> usize {
     match dice.whole(0, 4) {
         0 => {
             push(lab);

@@ -112,7 +112,7 @@ fn the_topics_contain_the_tables_of_the_program() {
 }
 
 /// Returns bash's completions of `line`, split into words like bash does.
-fn in_bash(ground: &Ground, line: &str) -> String {
+fn complete_in_bash(ground: &Ground, line: &str) -> String {
     let words = line.replace('=', " = ");
     let script = format!(
         "gyrolab() {{ \"$G\" \"$@\"; }}; compopt() {{ :; }}; . ./completion.bash; \
@@ -172,7 +172,7 @@ fn bash_completes_presets_files_keys_values_and_names() {
         ("gyrolab man num", "numbers"),
         ("gyrolab ver", "verify"),
     ] {
-        assert_eq!(in_bash(&ground, line), wanted, "{line}");
+        assert_eq!(complete_in_bash(&ground, line), wanted, "{line}");
     }
 }
 

@@ -135,7 +135,7 @@ fn sessions_are_listed_and_resumed_by_name() {
 }
 
 /// Opens a lab confined to the folder `inside`, next to which is `secret.toml`.
-fn confined(ground: &Ground) -> Terminal {
+fn open_confined(ground: &Ground) -> Terminal {
     let inside = ground.file("inside");
     if !inside.exists() {
         fs::create_dir(&inside).unwrap();
@@ -155,7 +155,7 @@ fn confined(ground: &Ground) -> Terminal {
 #[test]
 fn a_confined_lab_writes_only_in_its_folder() {
     let ground = Ground::new();
-    let mut lab = confined(&ground);
+    let mut lab = open_confined(&ground);
     for key in ["x", "s", "S"] {
         for (name, reason) in [
             ("../new.toml", "stays in its folder"),
@@ -189,7 +189,7 @@ fn a_confined_lab_writes_only_in_its_folder() {
 #[test]
 fn a_confined_lab_reads_only_in_its_folder() {
     let ground = Ground::new();
-    let mut lab = confined(&ground);
+    let mut lab = open_confined(&ground);
     lab.press("o");
     lab.ask("/toml", "own.toml");
     assert!(!lab.words().contains("out.toml"), "{}", lab.words());

@@ -10,7 +10,7 @@ const PLAIN: [&str; 2] = ["method-2", "--paused"];
 const BLUE: &str = "\u{1b}[38;";
 
 /// Returns the path of the settings file that the program writes.
-fn remembered(ground: &Ground) -> PathBuf {
+fn settings_file(ground: &Ground) -> PathBuf {
     ground.state().join("gyrolab/settings.toml")
 }
 
@@ -43,7 +43,7 @@ fn choices_are_restored_at_the_next_start() {
     lab.ask("\x1b[B\x1b[B\r", "frames per second 30 at most");
     lab.ask("\x1b", "L lessons");
     lab.quit();
-    let text = fs::read_to_string(remembered(&ground)).unwrap();
+    let text = fs::read_to_string(settings_file(&ground)).unwrap();
     has_all(
         &text,
         ["marker = \"ascii\"", "color = \"never\"", "fps = 30"],
@@ -82,7 +82,7 @@ fn the_users_own_file_takes_precedence_and_is_never_written() {
     lab.ask("\x1b", "L lessons");
     lab.quit();
     assert!(
-        fs::read_to_string(remembered(&ground))
+        fs::read_to_string(settings_file(&ground))
             .unwrap()
             .contains("braille")
     );
@@ -140,7 +140,7 @@ fn a_confined_lab_uses_only_the_settings_in_its_folder() {
     lab.quit();
     let kept = ground.read("inside/.gyrolab/settings.toml");
     assert!(
-        kept.contains("half-block") && !remembered(&ground).exists(),
+        kept.contains("half-block") && !settings_file(&ground).exists(),
         "{kept}"
     );
 }

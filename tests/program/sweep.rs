@@ -15,26 +15,26 @@ const GRID: &str = "cusps --set motion.steps=400 --vary start.momentum_Js.2=10..
     --vary motion.scheme=report,rk4,exact --measure=z_m,tilt_deg,path,measured_tilt_swing_deg,most_distance_m";
 
 /// Returns the command that sweeps `args` into the file `output`.
-fn sweep(args: &str, output: &str) -> String {
+fn sweep_command(args: &str, output: &str) -> String {
     format!("sweep {args} -o {output}")
 }
 
 /// Runs a sweep, which must succeed without output on stdout, and returns its stderr.
 #[track_caller]
-fn make(ground: &Ground, args: &str, output: &str) -> String {
-    made(&ground.run(&sweep(args, output)))
+fn run_sweep(ground: &Ground, args: &str, output: &str) -> String {
+    successful(&ground.run(&sweep_command(args, output)))
 }
 
 #[track_caller]
-fn made(output: &Output) -> String {
+fn successful(output: &Output) -> String {
     assert_eq!(code(output), 0, "{output:?}");
     assert!(output.stdout.is_empty(), "{output:?}");
     String::from_utf8(output.stderr.clone()).unwrap()
 }
 
 #[track_caller]
-fn refuse(ground: &Ground, args: &str, output: &str, words: &[&str]) {
-    ground.refused(&sweep(args, output), 1, words);
+fn assert_rejected(ground: &Ground, args: &str, output: &str, words: &[&str]) {
+    ground.refused(&sweep_command(args, output), 1, words);
 }
 
 /// Returns the lines of a CSV below the sweep file in its header.
@@ -48,17 +48,17 @@ fn remove(ground: &Ground, name: &str) {
 
 /// Computes each shard of the sweep `args` into `1.csv` and so on.
 #[track_caller]
-fn shards(ground: &Ground, args: &str, of: usize) {
+fn run_shards(ground: &Ground, args: &str, of: usize) {
     for shard in 1..=of {
         let args = format!("{args} --shard {shard}/{of}");
-        make(ground, &args, &format!("{shard}.csv"));
+        run_sweep(ground, &args, &format!("{shard}.csv"));
     }
 }
 
 #[test]
 fn rows_equal_single_runs_in_grid_order() {
     let ground = Ground::new();
-    make(&ground, GRID, "grid.csv");
+    run_sweep(&ground, GRID, "grid.csv");
     let csv = ground.read("grid.csv");
     let rows = rows(&csv);
     assert_eq!(
@@ -85,14 +85,14 @@ fn rows_equal_single_runs_in_grid_order() {
 #[test]
 fn the_csv_of_a_sweep_is_its_sweep_file() {
     let ground = Ground::new();
-    make(&ground, GRID, "grid.csv");
-    make(&ground, "grid.csv", "again.csv");
+    run_sweep(&ground, GRID, "grid.csv");
+    run_sweep(&ground, "grid.csv", "again.csv");
     let csv = ground.read("grid.csv");
     assert_eq!(csv, ground.read("again.csv"));
     let header = csv.lines().filter_map(|line| line.strip_prefix("# "));
     let file: String = header.flat_map(|line| [line, "\n"]).collect();
     ground.write("grid.toml", &file);
-    make(&ground, "grid.toml", "file.csv");
+    run_sweep(&ground, "grid.toml", "file.csv");
     assert_eq!(csv, ground.read("file.csv"));
     for name in ["grid.csv", "grid.toml"] {
         has(ground.stdout(&format!("check {name}")), "rows: 60");
@@ -109,11 +109,11 @@ fn scenario_paths_are_relative_to_the_sweep_file() {
     let file = "scenario = \"mine.toml\"\nmeasure = [\"z_m\"]\n\
         [[vary]]\nkey = \"motion.steps\"\nvalues = [1, 2]\n";
     ground.write("deep/sweep.toml", file);
-    make(&ground, "deep/sweep.toml", "out.csv");
+    run_sweep(&ground, "deep/sweep.toml", "out.csv");
     assert_eq!(rows(&ground.read("out.csv")).len(), 3);
     // --vary replaces the values of the file, and --measure its readouts.
     let args = "deep/sweep.toml --vary motion.steps=1..5:5 --measure t_s";
-    make(&ground, args, "other.csv");
+    run_sweep(&ground, args, "other.csv");
     let other = ground.read("other.csv");
     assert_eq!(rows(&other)[0], "motion.steps,t_s");
     assert_eq!(rows(&other).len(), 6);
@@ -122,7 +122,7 @@ fn scenario_paths_are_relative_to_the_sweep_file() {
 #[test]
 fn results_do_not_depend_on_threads_or_shards() {
     let ground = Ground::new();
-    make(&ground, GRID, "whole.csv");
+    run_sweep(&ground, GRID, "whole.csv");
     let whole = ground.read("whole.csv");
     for (variable, value) in [
         ("RAYON_NUM_THREADS", "1"),
@@ -130,21 +130,21 @@ fn results_do_not_depend_on_threads_or_shards() {
         // A thread stack larger than the memory: no thread can be created.
         ("RUST_MIN_STACK", "4611686018427387904"),
     ] {
-        let mut command = ground.command(&sweep(GRID, "threads.csv"));
-        made(&command.env(variable, value).output().unwrap());
+        let mut command = ground.command(&sweep_command(GRID, "threads.csv"));
+        successful(&command.env(variable, value).output().unwrap());
         assert_eq!(ground.read("threads.csv"), whole, "{variable} {value}");
         remove(&ground, "threads.csv");
     }
     for shard in [4, 1, 7, 2, 6, 3, 5] {
         let args = format!("{GRID} --shard {shard}/7");
-        make(&ground, &args, &format!("{shard}.csv"));
+        run_sweep(&ground, &args, &format!("{shard}.csv"));
     }
     let join = "--join 7.csv 3.csv 1.csv 2.csv 5.csv 4.csv 6.csv";
-    make(&ground, join, "joined.csv");
+    run_sweep(&ground, join, "joined.csv");
     assert_eq!(ground.read("joined.csv"), whole);
     // A complete file is left unchanged.
-    make(&ground, join, "joined.csv");
-    make(&ground, join, "whole.csv");
+    run_sweep(&ground, join, "joined.csv");
+    run_sweep(&ground, join, "whole.csv");
 }
 
 #[test]
@@ -152,7 +152,7 @@ fn a_sweep_killed_twenty_times_ends_with_the_same_bytes() {
     let ground = Ground::new();
     let args = "cusps --set motion.steps=4000 --vary start.momentum_Js.2=20..400:60 \
         --measure z_m,measured_precession_rad_per_s";
-    make(&ground, args, "whole.csv");
+    run_sweep(&ground, args, "whole.csv");
     let whole = ground.read("whole.csv");
     let mut dice = Dice(13);
     let part = ground.file("killed.csv.part");
@@ -160,7 +160,7 @@ fn a_sweep_killed_twenty_times_ends_with_the_same_bytes() {
     let mut most = 0;
     for kill in 0..20 {
         let until = there() + dice.whole(0, 4);
-        let mut command = ground.command(&sweep(args, "killed.csv"));
+        let mut command = ground.command(&sweep_command(args, "killed.csv"));
         let mut child = command.stderr(Stdio::null()).spawn().unwrap();
         while there() < until && child.try_wait().unwrap().is_none() {
             sleep(Duration::from_millis(1));
@@ -181,7 +181,7 @@ fn a_sweep_killed_twenty_times_ends_with_the_same_bytes() {
         }
     }
     assert!(most > 1, "it was never killed between two rows");
-    make(&ground, args, "killed.csv");
+    run_sweep(&ground, args, "killed.csv");
     assert_eq!(ground.read("killed.csv"), whole);
     assert_eq!(ground.files(), ["killed.csv", "whole.csv"]);
 }
@@ -189,12 +189,12 @@ fn a_sweep_killed_twenty_times_ends_with_the_same_bytes() {
 #[test]
 fn a_sweep_resumes_from_a_partial_file() {
     let ground = Ground::new();
-    make(&ground, GRID, "whole.csv");
+    run_sweep(&ground, GRID, "whole.csv");
     let whole = ground.read("whole.csv");
     // Asserts that the sweep resumes from `part` and keeps `kept` of its rows.
     let goes_on = |part: &[u8], kept: usize| {
         fs::write(ground.file("cut.csv.part"), part).unwrap();
-        let told = make(&ground, GRID, "cut.csv");
+        let told = run_sweep(&ground, GRID, "cut.csv");
         let words = format!("going on behind {kept} of 60 rows");
         assert!(kept == 0 || told.contains(&words), "{words}: {told}");
         assert_eq!(ground.read("cut.csv"), whole, "{kept}");
@@ -229,16 +229,16 @@ fn a_sweep_resumes_from_a_partial_file() {
 #[test]
 fn files_of_other_sweeps_are_rejected_and_left_alone() {
     let ground = Ground::new();
-    make(&ground, GRID, "grid.csv");
+    run_sweep(&ground, GRID, "grid.csv");
     let whole = ground.read("grid.csv");
-    has(make(&ground, GRID, "grid.csv"), "is whole");
+    has(run_sweep(&ground, GRID, "grid.csv"), "is whole");
     let other = GRID.replace("400:20", "400:21");
     let words = "its line 9 is \"# count = 20\", not \"# count = 21\"";
-    refuse(&ground, &other, "grid.csv", &["grid.csv", words, "--force"]);
+    assert_rejected(&ground, &other, "grid.csv", &["grid.csv", words, "--force"]);
     assert_eq!(ground.read("grid.csv"), whole);
     ground.write("part.csv.part", &whole[..whole.len() - 5]);
     let unfinished = ["part.csv.part", "count = 20", "--force"];
-    refuse(&ground, &other, "part.csv", &unfinished);
+    assert_rejected(&ground, &other, "part.csv", &unfinished);
     assert_eq!(ground.read("part.csv.part"), whole[..whole.len() - 5]);
     let longer = format!("{whole}{}\n", rows(&whole)[60]);
     let shorter = &whole[..whole.len() - rows(&whole)[60].len() - 1];
@@ -252,12 +252,12 @@ fn files_of_other_sweeps_are_rejected_and_left_alone() {
         (&whole.replace(",z_m,", ",y_m,"), ",y_m,"),
     ] {
         ground.write("mine.csv", text);
-        refuse(&ground, GRID, "mine.csv", &["mine.csv", word]);
+        assert_rejected(&ground, GRID, "mine.csv", &["mine.csv", word]);
         assert_eq!(ground.read("mine.csv"), text);
     }
-    make(&ground, &format!("{GRID} --force"), "mine.csv");
+    run_sweep(&ground, &format!("{GRID} --force"), "mine.csv");
     assert_eq!(ground.read("mine.csv"), whole);
-    make(&ground, &format!("{other} --force"), "part.csv");
+    run_sweep(&ground, &format!("{other} --force"), "part.csv");
     assert_eq!(ground.files(), ["grid.csv", "mine.csv", "part.csv"]);
 }
 
@@ -267,7 +267,7 @@ fn two_processes_cannot_write_one_sweep() {
     let file = fs::File::create(ground.file("grid.csv.part")).unwrap();
     file.lock().unwrap();
     let words = ["grid.csv.part", "another gyrolab"];
-    refuse(&ground, GRID, "grid.csv", &words);
+    assert_rejected(&ground, GRID, "grid.csv", &words);
 }
 
 #[test]
@@ -346,7 +346,7 @@ fn wrong_keys_values_and_readouts_are_rejected_before_any_run() {
             &["push.0.from_s: the push counts in steps: vary push.0.first_step"],
         ),
     ] {
-        refuse(&ground, args, "out.csv", words);
+        assert_rejected(&ground, args, "out.csv", words);
         assert_eq!(ground.files(), [""; 0], "{args}");
     }
     for args in [
@@ -361,7 +361,7 @@ fn wrong_keys_values_and_readouts_are_rejected_before_any_run() {
         "wobble-push --measure=z_m --set=motion.steps=10 --vary=push.0.steps=2,3",
         "wobble-push --measure=z_m --set=motion.steps=10 --vary=push.0.for_s=2,3 --time-step=0.1",
     ] {
-        has_no(make(&ground, args, "out.csv"), "without readouts");
+        has_no(run_sweep(&ground, args, "out.csv"), "without readouts");
         remove(&ground, "out.csv");
     }
 }
@@ -407,7 +407,7 @@ fn mistakes_in_a_sweep_file_are_reported_with_their_line() {
         assert_ne!(text, good);
         ground.write("s.toml", &text);
         ground.refused("check s.toml", 1, words);
-        refuse(&ground, "s.toml", "out.csv", words);
+        assert_rejected(&ground, "s.toml", "out.csv", words);
     }
     // The file contains the scenario.
     let inside = "[scenario]\ntitle = \"x\"\n[scenario.start]\nmomentum_Js = [0, 0, 1]\n[scenario.motion]\ntime_step_s = 0.1\nsteps = 0\n";
@@ -425,7 +425,7 @@ fn a_failed_point_has_an_empty_row_and_a_reported_reason() {
     let ground = Ground::new();
     let args =
         format!("{SOME_ROWS_FAIL} --vary=body.rim.height_m=0.5,0,1e200 --measure=z_m,path,steps");
-    let told = make(&ground, &args, "out.csv");
+    let told = run_sweep(&ground, &args, "out.csv");
     let csv = ground.read("out.csv");
     let rows = rows(&csv);
     assert!(rows[1].starts_with("report,0.5,0.8"), "{csv}");
@@ -441,7 +441,7 @@ fn a_failed_point_has_an_empty_row_and_a_reported_reason() {
     );
     let of_height = told.matches("body.rim.height_m = 1e200").count();
     assert_eq!(of_height, 2, "{told}");
-    make(&ground, "out.csv", "again.csv");
+    run_sweep(&ground, "out.csv", "again.csv");
     assert_eq!(csv, ground.read("again.csv"));
 }
 
@@ -461,19 +461,19 @@ fn every_command_reports_the_rows_without_readouts() {
             ],
         );
     };
-    let told = make(&ground, args, "whole.csv");
+    let told = run_sweep(&ground, args, "whole.csv");
     is_told(&told);
     has(&told, "0.5: the numbers are no longer finite");
     let whole = ground.read("whole.csv");
     // A complete file, and files that end after their second row or before their last.
-    is_told(&make(&ground, args, "whole.csv"));
+    is_told(&run_sweep(&ground, args, "whole.csv"));
     for (kept, empty) in [(2, 1), (3, 2)] {
         let lost = rows(&whole)
             .into_iter()
             .skip(1 + kept)
             .map(|row| row.len() + 1);
         ground.write("cut.csv.part", &whole[..whole.len() - lost.sum::<usize>()]);
-        let continued = make(&ground, args, "cut.csv");
+        let continued = run_sweep(&ground, args, "cut.csv");
         has(
             &continued,
             format!("behind {kept} of 4 rows in cut.csv.part, {empty} of them without readouts\n"),
@@ -483,9 +483,9 @@ fn every_command_reports_the_rows_without_readouts() {
         remove(&ground, "cut.csv");
     }
     // Joined shards, and the same once the joined file is complete.
-    shards(&ground, args, 2);
+    run_shards(&ground, args, 2);
     for _ in 0..2 {
-        is_told(&make(&ground, "--join 1.csv 2.csv", "joined.csv"));
+        is_told(&run_sweep(&ground, "--join 1.csv 2.csv", "joined.csv"));
     }
     assert_eq!(ground.read("joined.csv"), whole);
 }
@@ -494,7 +494,7 @@ fn every_command_reports_the_rows_without_readouts() {
 fn varying_the_time_step_keeps_durations_in_seconds() {
     let ground = Ground::new();
     let args = "wobble-push --vary motion.time_step_s=0.1,0.05,0.2,500 --measure t_s,steps,measured_lowest_z_m";
-    let told = make(&ground, args, "out.csv");
+    let told = run_sweep(&ground, args, "out.csv");
     has(&told, "not be longer than the whole run, 230 s");
     let csv = ground.read("out.csv");
     let rows = rows(&csv);
@@ -508,7 +508,7 @@ fn varying_the_time_step_keeps_durations_in_seconds() {
     assert!(rows[2].ends_with(&format!(",{lowest}")), "{csv} {lowest}");
     // An accumulating push depends on the time step.
     let accumulating = "wobble-push-accumulating --vary motion.time_step_s=0.1,0.05 --measure t_s";
-    let of_one = make(&ground, accumulating, "acc.csv");
+    let of_one = run_sweep(&ground, accumulating, "acc.csv");
     has_all(of_one, ["rows without readouts: 1 of 2", "accumulates"]);
 }
 
@@ -517,7 +517,7 @@ fn ctrl_c_keeps_the_finished_rows() {
     let ground = Ground::new();
     let args =
         "cusps --set motion.steps=2000 --vary start.momentum_Js.2=20..400:100000 --measure z_m";
-    let mut command = ground.command(&sweep(args, "out.csv"));
+    let mut command = ground.command(&sweep_command(args, "out.csv"));
     let child = command.stderr(Stdio::piped()).spawn().unwrap();
     let part = ground.file("out.csv.part");
     while fs::read_to_string(&part).map_or(0, |text| rows(&text).len()) < 3 {
@@ -540,9 +540,9 @@ fn a_full_disk_or_unwritable_folder_fails_a_sweep() {
     let words = ["out.csv.part", "large", "of 2000 rows are in", "goes on"];
     refused("a full disk", &full, 1, &words);
     // With space available again, the same command continues; no row is lost or repeated.
-    let told = made(&ground.shell(&format!("{grid} -o out.csv")));
+    let told = successful(&ground.shell(&format!("{grid} -o out.csv")));
     has(&told, "going on behind");
-    made(&ground.shell(&format!("{grid} -o whole.csv")));
+    successful(&ground.shell(&format!("{grid} -o whole.csv")));
     assert_eq!(ground.read("out.csv"), ground.read("whole.csv"));
     fs::create_dir(ground.file("folder")).unwrap();
     symlink("/dev/full", ground.file("link.csv.part")).unwrap();
@@ -558,22 +558,22 @@ fn a_full_disk_or_unwritable_folder_fails_a_sweep() {
         ("/proc/out.csv", &["/proc/out.csv", "cannot write", advice]),
         ("-", &["-", "not written to stdout"]),
     ] {
-        refuse(&ground, args, output, reasons);
+        assert_rejected(&ground, args, output, reasons);
     }
     let files = ["folder", "link.csv.part", "out.csv", "whole.csv"];
     assert_eq!(ground.files(), files);
     // Joining writes the whole file at once.
-    shards(&ground, args, 1);
-    refuse(&ground, "--join 1.csv", "/proc/out.csv", &[advice]);
+    run_shards(&ground, args, 1);
+    assert_rejected(&ground, "--join 1.csv", "/proc/out.csv", &[advice]);
 }
 
 #[test]
 fn only_complete_shards_of_one_sweep_are_joined() {
     let ground = Ground::new();
-    shards(&ground, GRID, 3);
+    run_shards(&ground, GRID, 3);
     let other = GRID.replace("steps=400", "steps=300");
-    make(&ground, &format!("{GRID} --shard 2/4"), "of-4.csv");
-    make(&ground, &format!("{other} --shard 3/3"), "other.csv");
+    run_sweep(&ground, &format!("{GRID} --shard 2/4"), "of-4.csv");
+    run_sweep(&ground, &format!("{other} --shard 3/3"), "other.csv");
     let text = ground.read("3.csv");
     ground.write("torn.csv", &text[..text.len() - 1]);
     let last = text.lines().last().unwrap();
@@ -608,11 +608,11 @@ fn only_complete_shards_of_one_sweep_are_joined() {
         ),
         ("1.csv 2.csv none.csv", &["none.csv"]),
     ] {
-        refuse(&ground, &format!("--join {parts}"), "joined.csv", words);
+        assert_rejected(&ground, &format!("--join {parts}"), "joined.csv", words);
         assert!(!ground.file("joined.csv").exists(), "{parts}");
     }
-    make(&ground, "--join 3.csv 1.csv 2.csv", "joined.csv");
-    make(&ground, GRID, "whole.csv");
+    run_sweep(&ground, "--join 3.csv 1.csv 2.csv", "joined.csv");
+    run_sweep(&ground, GRID, "whole.csv");
     assert_eq!(ground.read("joined.csv"), ground.read("whole.csv"));
 }
 
@@ -635,7 +635,7 @@ fn the_shipped_sweeps_are_listed_and_printed() {
 #[test]
 fn progress_is_shown_from_the_beginning() {
     let args = "cusps --vary start.tilt_deg=10..40:1000 --set motion.steps=100000000 --measure=z_m";
-    let mut terminal = Ground::new().open(&sweep(args, "slow.csv"));
+    let mut terminal = Ground::new().open(&sweep_command(args, "slow.csv"));
     terminal.wait_for("row 0 of 1,000");
     let text = terminal.sent_text();
     assert!(!text.contains("left") && !text.contains("/s"), "{text}");
@@ -648,13 +648,13 @@ fn progress_is_shown_from_the_beginning() {
 fn the_progress_of_a_resumed_sweep_counts_the_whole() {
     let ground = Ground::new();
     let args = "cusps --set=motion.steps=2 --vary=start.tilt_deg=10,20,30 --measure=z_m";
-    make(&ground, args, "out.csv");
+    run_sweep(&ground, args, "out.csv");
     let whole = ground.read("out.csv");
     let begun: Vec<&str> = whole.split_inclusive('\n').collect();
     ground.write("out.csv.part", &begun[..begun.len() - 2].concat());
     remove(&ground, "out.csv");
-    let mut command = ground.command(&sweep(args, "out.csv"));
-    let told = made(&command.env("GYROLAB_PROGRESS", "lines").output().unwrap());
+    let mut command = ground.command(&sweep_command(args, "out.csv"));
+    let told = successful(&command.env("GYROLAB_PROGRESS", "lines").output().unwrap());
     has(&told, "\rrow 1 of 3\n\r\ngyrolab: 3 rows in out.csv\n");
     assert_eq!(ground.read("out.csv"), whole);
 }
@@ -663,11 +663,14 @@ fn the_progress_of_a_resumed_sweep_counts_the_whole() {
 fn a_value_may_be_an_empty_string() {
     let ground = Ground::new();
     let args = "cusps --set=motion.steps=2 --vary 'about=\"\",x,\"a,b\"' --measure=z_m";
-    make(&ground, args, "out.csv");
-    has(make(&ground, args, "out.csv"), "out.csv is whole, 3 rows");
+    run_sweep(&ground, args, "out.csv");
+    has(
+        run_sweep(&ground, args, "out.csv"),
+        "out.csv is whole, 3 rows",
+    );
     ground.stdout("verify out.csv");
-    shards(&ground, args, 2);
-    make(&ground, "--join 1.csv 2.csv", "joined.csv");
+    run_shards(&ground, args, 2);
+    run_sweep(&ground, "--join 1.csv 2.csv", "joined.csv");
     assert_eq!(ground.read("joined.csv"), ground.read("out.csv"));
 }
 
@@ -679,13 +682,13 @@ fn a_different_sweep_is_identified_by_the_first_differing_line() {
         let args = format!(
             "cusps --set=motion.steps=2 '--set=title={title}' --vary=start.momentum_Js.2=10..400:4 --measure=z_m --shard {shard}/2"
         );
-        make(&ground, &args, &format!("{shard}.csv"));
+        run_sweep(&ground, &args, &format!("{shard}.csv"));
     }
     let words = "2.csv: is no shard of the sweep of 1.csv: its line 2 is";
     let words = [words, "a top\"", "a top here and there"];
-    refuse(&ground, "--join 1.csv 2.csv", "joined.csv", &words);
+    assert_rejected(&ground, "--join 1.csv 2.csv", "joined.csv", &words);
     let vary = "cusps --set=motion.steps=2 --vary start.momentum_Js.2";
-    make(&ground, &format!("{vary}=10,20,30"), "all.csv");
+    run_sweep(&ground, &format!("{vary}=10,20,30"), "all.csv");
     for (more, reason) in [
         ("=10,20,30 --measure=steps,z_m", "measure"),
         (
@@ -693,7 +696,7 @@ fn a_different_sweep_is_identified_by_the_first_differing_line() {
             "is \"# values = [10, 20, 30]\", not \"# values = [10, 21, 30]\"; --force replaces it\n",
         ),
     ] {
-        let output = ground.run(&sweep(&format!("{vary}{more}"), "all.csv"));
+        let output = ground.run(&sweep_command(&format!("{vary}{more}"), "all.csv"));
         refused(more, &output, 1, &[reason]);
         assert!(output.stderr.len() < 300, "{output:?}");
     }
@@ -706,8 +709,8 @@ fn a_symbolic_link_is_kept_and_its_target_replaced() {
     fs::create_dir(ground.file("deep")).unwrap();
     ground.write("deep/mine.csv", "mine\n");
     symlink("deep/mine.csv", ground.file("link.csv")).unwrap();
-    refuse(&ground, args, "link.csv", &["link.csv", "--force"]);
-    let told = make(&ground, &format!("{args} --force"), "link.csv");
+    assert_rejected(&ground, args, "link.csv", &["link.csv", "--force"]);
+    let told = run_sweep(&ground, &format!("{args} --force"), "link.csv");
     has(&told, "gyrolab: 2 rows in link.csv\n");
     assert!(ground.file("link.csv").is_symlink());
     assert_eq!(rows(&ground.read("deep/mine.csv")).len(), 3);
@@ -720,12 +723,12 @@ fn joining_works_with_more_shards_than_open_files_allowed() {
     let ground = Ground::new();
     let grid =
         "cusps --set motion.steps=2 --vary start.momentum_Js.2=10..400:200 --measure z_m,x_m,y_m";
-    make(&ground, grid, "whole.csv");
+    run_sweep(&ground, grid, "whole.csv");
     let whole = ground.read("whole.csv");
     let (header, all) = whole.split_at(whole.find("start.momentum_Js.2,z_m").unwrap());
     let all: Vec<&str> = all.split_inclusive('\n').collect();
     const OF: usize = 150;
-    make(&ground, &format!("{grid} --shard 1/{OF}"), "1.csv");
+    run_sweep(&ground, &format!("{grid} --shard 1/{OF}"), "1.csv");
     let first = ground.read("1.csv");
     let of_first = &first[..first.find("start.momentum_Js.2,z_m").unwrap()];
     assert_ne!(of_first, header);
@@ -737,8 +740,8 @@ fn joining_works_with_more_shards_than_open_files_allowed() {
     }
     assert_eq!(ground.read("1.csv"), first);
     let parts: Vec<String> = (1..=OF).map(|number| format!("{number}.csv")).collect();
-    let join = sweep(&format!("--join {}", parts.join(" ")), "joined.csv");
-    made(&ground.shell(&format!("ulimit -n 64; \"$G\" {join}")));
+    let join = sweep_command(&format!("--join {}", parts.join(" ")), "joined.csv");
+    successful(&ground.shell(&format!("ulimit -n 64; \"$G\" {join}")));
     assert_eq!(ground.read("joined.csv"), whole);
 }
 

@@ -7,7 +7,7 @@ use std::thread;
 use std::time::Duration;
 
 /// Opens the lab in a new working directory, and waits until its footer is on the screen.
-fn opened(args: impl Args) -> Terminal {
+fn open_lab(args: impl Args) -> Terminal {
     let terminal = Terminal::open(args);
     terminal.wait_for("L lessons");
     terminal
@@ -15,7 +15,7 @@ fn opened(args: impl Args) -> Terminal {
 
 #[test]
 fn the_lab_opens_runs_and_quits() {
-    let mut terminal = opened("");
+    let mut terminal = open_lab("");
     terminal.wait_for("Method 2");
     terminal.wait_for("► ×20");
     terminal.quit();
@@ -32,7 +32,7 @@ fn one_command_prepares_the_screen() {
 
 #[test]
 fn a_paused_lab_sends_no_bytes() {
-    let terminal = opened("--paused");
+    let terminal = open_lab("--paused");
     thread::sleep(Duration::from_millis(300));
     let before = terminal.sent().len();
     thread::sleep(Duration::from_secs(2));
@@ -41,7 +41,7 @@ fn a_paused_lab_sends_no_bytes() {
 
 #[test]
 fn keys_are_answered_at_top_speed() {
-    let mut terminal = opened("--set motion.steps=1000000000");
+    let mut terminal = open_lab("--set motion.steps=1000000000");
     terminal.press("99+");
     terminal.wait_for("top ×");
     terminal.press("?");
@@ -50,7 +50,7 @@ fn keys_are_answered_at_top_speed() {
 
 #[test]
 fn the_lab_follows_resizes() {
-    let mut terminal = opened("--paused");
+    let mut terminal = open_lab("--paused");
     for size in [(200, 50), (40, 10), (1, 1), (120, 40)] {
         terminal.resize(size);
         thread::sleep(Duration::from_millis(200));
@@ -92,7 +92,7 @@ fn a_panic_of_a_background_thread_is_reported_at_the_end() {
 #[test]
 fn a_lost_line_ends_the_lab() {
     for _ in 0..3 {
-        let mut terminal = opened("");
+        let mut terminal = open_lab("");
         terminal.lose_line();
         // Ended by the signal or by the failed write of a frame, whichever comes first.
         assert!([1, 129].contains(&terminal.wait_for_end().exit_code()));
@@ -120,7 +120,7 @@ fn a_line_lost_without_a_signal_ends_the_lab_and_saves_the_session() {
 
 #[test]
 fn thousands_of_keys_at_once_are_all_handled() {
-    let mut terminal = opened("--paused");
+    let mut terminal = open_lab("--paused");
     terminal.press(&".".repeat(2000));
     terminal.wait_for_step(2000);
     // More bytes than a terminal buffers, with escape sequences that may be split anywhere.
@@ -133,11 +133,11 @@ fn thousands_of_keys_at_once_are_all_handled() {
 #[test]
 fn an_unfinished_escape_sequence_does_not_swallow_later_keys() {
     let cut_off = |sequence: &str| {
-        let mut terminal = opened("--paused");
+        let mut terminal = open_lab("--paused");
         // Ctrl-C ends the lab even immediately after the sequence.
         terminal.press(&format!("{sequence}abc\u{3}"));
         assert_eq!(terminal.wait_for_end().exit_code(), 0, "{sequence:?}");
-        let mut another = opened("--paused");
+        let mut another = open_lab("--paused");
         // After a while, every key has its usual effect.
         another.press(sequence);
         thread::sleep(Duration::from_millis(3500));
@@ -153,7 +153,7 @@ fn an_unfinished_escape_sequence_does_not_swallow_later_keys() {
 
 #[test]
 fn a_long_paste_into_a_field_is_truncated_with_a_message() {
-    let mut terminal = opened("--paused --at 10");
+    let mut terminal = open_lab("--paused --at 10");
     let paste = |text: &str| format!("\u{1b}[200~{text}\u{1b}[201~");
     terminal.ask("x", "export steps 0 to 10");
     terminal.ask(&paste(&"q".repeat(20_000)), "at most 1000 characters");
@@ -260,7 +260,7 @@ fn fifos_and_devices_are_rejected_as_files_to_save() {
 #[test]
 #[ignore = "waits three seconds until the terminal is full"]
 fn a_stopped_terminal_does_not_block_the_exit() {
-    let mut terminal = opened("--fps 60 --set motion.steps=1000000000");
+    let mut terminal = open_lab("--fps 60 --set motion.steps=1000000000");
     terminal.press("99+");
     terminal.set_stopped(true);
     thread::sleep(Duration::from_secs(3)); // until the pty is full and a frame hangs
@@ -271,7 +271,7 @@ fn a_stopped_terminal_does_not_block_the_exit() {
 
 #[test]
 fn ctrl_l_redraws_the_screen() {
-    let mut terminal = opened("--paused");
+    let mut terminal = open_lab("--paused");
     thread::sleep(Duration::from_millis(300));
     terminal.clear_output();
     terminal.press("\u{c}");
@@ -284,7 +284,7 @@ const NO_SHELL: &str = "no shell to return to";
 
 #[test]
 fn ctrl_z_is_rejected_if_the_lab_is_the_session_leader() {
-    let mut terminal = opened("--paused");
+    let mut terminal = open_lab("--paused");
     terminal.ask(CTRL_Z, NO_SHELL);
     terminal.ask(".", "step 1 ");
     // The signal is handled like the key.

@@ -8,7 +8,7 @@ use std::fs;
 /// Draws `figure` with the arguments `what`. Asserts that its file alone reproduces the same bytes and passes `verify`, and
 /// that `verify` detects each of `flips` single-bit changes.
 #[track_caller]
-fn travels(ground: &Ground, what: &str, figure: &str, flips: u32, dice: &mut Dice) {
+fn assert_reproducible(ground: &Ground, what: &str, figure: &str, flips: u32, dice: &mut Dice) {
     done(ground.run(&format!("figure {what} -o {figure}")));
     let again = format!("again-{figure}");
     done(ground.run(&format!("figure {figure} -o {again} --force")));
@@ -39,7 +39,7 @@ fn travels(ground: &Ground, what: &str, figure: &str, flips: u32, dice: &mut Dic
 }
 
 /// Writes tables of each kind, and measured data.
-fn prepare(ground: &Ground) {
+fn write_inputs(ground: &Ground) {
     done(ground.run("sweep cusps --vary start.tilt_deg=10..40:4 --measure measured_tilt_swing_deg,tilt_deg -o sweep.csv"));
     done(ground.run("compare cusps --duration 0.1 --schemes report,rk4 -o compare.csv"));
     let fit =
@@ -50,7 +50,7 @@ fn prepare(ground: &Ground) {
 #[test]
 fn figures_of_every_format_are_reproduced_from_their_files() {
     let (ground, mut dice) = (Ground::new(), Dice(31));
-    prepare(&ground);
+    write_inputs(&ground);
     for (what, figure) in [
         ("cusps --steps 300 --schemes report,rk4 --kind z_m", "a.svg"),
         (
@@ -65,7 +65,7 @@ fn figures_of_every_format_are_reproduced_from_their_files() {
         ("fit.csv", "e.svg"),
         ("compare.csv --log x", "f.pdf"),
     ] {
-        travels(&ground, what, figure, 3, &mut dice);
+        assert_reproducible(&ground, what, figure, 3, &mut dice);
     }
 }
 
@@ -73,7 +73,7 @@ fn figures_of_every_format_are_reproduced_from_their_files() {
 #[ignore = "draws 200 figures of every kind and form, twice each: minutes"]
 fn two_hundred_figures_are_reproduced_from_their_files() {
     let (ground, mut dice) = (Ground::new(), Dice(200));
-    prepare(&ground);
+    write_inputs(&ground);
     let options = [
         "--kind traces",
         "--kind above --exact",
@@ -127,7 +127,7 @@ fn two_hundred_figures_are_reproduced_from_their_files() {
     for (index, what) in whats.iter().enumerate() {
         for form in forms.iter().chain((index % 6 == 0).then_some(&"png")) {
             let (ending, text) = form.split_at(3);
-            travels(
+            assert_reproducible(
                 &ground,
                 &format!("{what}{text}"),
                 &format!("{count}.{ending}"),

@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 const PATIENCE: Duration = Duration::from_secs(20);
 
 /// Saves a session and closes it.
-fn kept(folder: &Path, work: &str, places: &[&str]) {
+fn save_session(folder: &Path, work: &str, places: &[&str]) {
     let session = Session::begin(folder).unwrap();
     let begin = Instant::now();
     for place in places {
@@ -32,7 +32,7 @@ fn kept(folder: &Path, work: &str, places: &[&str]) {
 }
 
 /// The only file whose name ends with `end`.
-fn only(folder: &Path, end: &str) -> PathBuf {
+fn only_file(folder: &Path, end: &str) -> PathBuf {
     let files = fs::read_dir(folder).unwrap();
     let mut paths = files.map(|file| file.unwrap().path());
     paths
@@ -57,8 +57,8 @@ fn links_are_not_followed() {
     let (outer, folder) = folder();
     let victim = outer.path().join("victim");
     fs::write(&victim, "precious").unwrap();
-    kept(&folder, "run", &["one"]);
-    let lock = only(&folder, ".lock");
+    save_session(&folder, "run", &["one"]);
+    let lock = only_file(&folder, ".lock");
     fs::remove_file(&lock).unwrap();
     symlink(&victim, &lock).unwrap();
     let found = resume(&folder, None, |content| Ok(texts(content))).unwrap();
@@ -66,8 +66,8 @@ fn links_are_not_followed() {
     assert_eq!(fs::read_to_string(&victim).unwrap(), "precious");
 
     fs::remove_dir_all(&folder).unwrap();
-    kept(&folder, "run", &["one"]);
-    let file = only(&folder, ".session");
+    save_session(&folder, "run", &["one"]);
+    let file = only_file(&folder, ".session");
     fs::rename(&file, outer.path().join("elsewhere")).unwrap();
     symlink(outer.path().join("elsewhere"), &file).unwrap();
     let of_session = resume(&folder, None, |content| Ok(texts(content))).unwrap();
@@ -79,8 +79,8 @@ fn links_are_not_followed() {
 fn a_fifo_does_not_block_the_search_for_sessions() {
     for end in [".lock", ".session"] {
         let (outer, folder) = folder();
-        kept(&folder, "run", &["one", "two"]);
-        let path = only(&folder, end);
+        save_session(&folder, "run", &["one", "two"]);
+        let path = only_file(&folder, end);
         fs::remove_file(&path).unwrap();
         make_fifo(&path);
         let there = folder.clone();
@@ -100,8 +100,8 @@ fn files_of_another_user_are_not_used() {
     const NOBODY: u32 = 65534;
     for end in [".session", ".lock"] {
         let (_outer, folder) = folder();
-        kept(&folder, "run", &["one"]);
-        let path = only(&folder, end);
+        save_session(&folder, "run", &["one"]);
+        let path = only_file(&folder, end);
         if chown(&path, Some(NOBODY), None).is_err() {
             return;
         }

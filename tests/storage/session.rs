@@ -43,19 +43,19 @@ pub(crate) fn folder() -> (TempDir, PathBuf) {
     (outer, folder)
 }
 
-fn any(folder: &Path) -> SessionSearch<(String, String)> {
+fn resume_any(folder: &Path) -> SessionSearch<(String, String)> {
     resume(folder, None, |content| Ok(texts(content))).unwrap()
 }
 
 /// Returns the content of the newest unused session, and closes the session.
-fn newest(folder: &Path) -> Option<(String, String)> {
-    let found = any(folder);
+fn newest_content(folder: &Path) -> Option<(String, String)> {
+    let found = resume_any(folder);
     assert!(found.left_alone.is_empty(), "{:?}", found.left_alone);
     found.resumed.map(|(_, what)| what)
 }
 
 /// Saves a session and closes it.
-fn kept(folder: &Path, work: &str, place: &str) {
+fn save_session(folder: &Path, work: &str, place: &str) {
     let session = Session::begin(folder).unwrap();
     session.note(content(work, place));
     closed(session);
@@ -63,7 +63,7 @@ fn kept(folder: &Path, work: &str, place: &str) {
 
 /// Flushes until saving has been attempted: on a busy machine one flush may time out.
 #[track_caller]
-fn written(session: &Session) {
+fn flush_until_saved(session: &Session) {
     wait_until(|| session.flush());
 }
 
@@ -81,14 +81,14 @@ fn names(folder: &Path, end: &str) -> Vec<PathBuf> {
     names.into_iter().map(|name| folder.join(name)).collect()
 }
 
-fn only(folder: &Path, end: &str) -> PathBuf {
+fn only_file(folder: &Path, end: &str) -> PathBuf {
     let mut names = names(folder, end);
     assert_eq!(names.len(), 1, "{names:?}");
     names.pop().unwrap()
 }
 
 /// Returns the path of the session file that ends with `text` (its place, then its work).
-fn file_of(folder: &Path, text: &str) -> PathBuf {
+fn find_file(folder: &Path, text: &str) -> PathBuf {
     let mut names = names(folder, ".session").into_iter();
     let end = format!("\n{text}");
     names
@@ -97,7 +97,7 @@ fn file_of(folder: &Path, text: &str) -> PathBuf {
 }
 
 /// Sets the modification time of `path` to `seconds` ago.
-fn age(path: &Path, seconds: u64) {
+fn backdate(path: &Path, seconds: u64) {
     let file = fs::File::options().append(true).open(path).unwrap();
     let time = SystemTime::now() - Duration::from_secs(seconds);
     file.set_modified(time).unwrap();
@@ -115,11 +115,11 @@ fn wait_until(is_so: impl Fn() -> bool) {
 #[test]
 fn an_empty_or_missing_folder_has_no_session() {
     let (_outer, folder) = folder();
-    assert_eq!(newest(&folder), None);
+    assert_eq!(newest_content(&folder), None);
     let session = Session::begin(&folder).unwrap();
-    assert_eq!(newest(&folder), None);
+    assert_eq!(newest_content(&folder), None);
     drop(session);
-    assert_eq!(newest(&folder), None);
+    assert_eq!(newest_content(&folder), None);
     // An empty session leaves nothing.
     assert_eq!(names(&folder, ".lock").len(), 0);
 }
@@ -135,13 +135,13 @@ fn the_last_content_is_resumed_and_the_session_continues() {
         session.note(SessionContent { work, place });
     }
     closed(session);
-    let (resumed, what) = any(&folder).resumed.unwrap();
+    let (resumed, what) = resume_any(&folder).resumed.unwrap();
     assert_eq!(what, pair(text, "step 999"));
     resumed.note(content("another run", "step 5"));
-    written(&resumed);
+    flush_until_saved(&resumed);
     resumed.note(content("another run", "step 6"));
     closed(resumed);
-    assert_eq!(newest(&folder), Some(pair("another run", "step 6")));
+    assert_eq!(newest_content(&folder), Some(pair("another run", "step 6")));
     assert_eq!(names(&folder, ".session").len(), 1, "it is one session");
 }
 
@@ -151,12 +151,12 @@ fn only_the_user_may_read_a_session() {
     let session = Session::begin(&folder).unwrap();
     for place in ["one", "two"] {
         session.note(content("run", place));
-        written(&session);
+        flush_until_saved(&session);
     }
     let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode() & 0o777;
     assert_eq!(mode(&folder), 0o700);
     for end in [".session", ".lock"] {
-        assert_eq!(mode(&only(&folder, end)), 0o600, "{end}");
+        assert_eq!(mode(&only_file(&folder, end)), 0o600, "{end}");
     }
 }
 
@@ -180,8 +180,8 @@ fn a_flush_writes_at_once() {
     for step in 0..50 {
         let place = format!("step {step}.");
         session.note(content("run", &place));
-        written(&session);
-        let text = fs::read_to_string(only(&folder, ".session")).unwrap();
+        flush_until_saved(&session);
+        let text = fs::read_to_string(only_file(&folder, ".session")).unwrap();
         assert!(text.ends_with(&format!("{place}run")));
     }
 }
@@ -189,30 +189,30 @@ fn a_flush_writes_at_once() {
 #[test]
 fn the_newest_session_not_in_use_is_resumed() {
     let (_outer, folder) = folder();
-    kept(&folder, "old", "");
-    age(&only(&folder, ".session"), 100);
+    save_session(&folder, "old", "");
+    backdate(&only_file(&folder, ".session"), 100);
     let middle = Session::begin(&folder).unwrap();
     middle.note(content("middle", "1"));
-    written(&middle);
-    age(&file_of(&folder, "1middle"), 200);
-    kept(&folder, "new", "");
-    assert_eq!(newest(&folder).unwrap().0, "new");
-    let new = any(&folder).resumed.unwrap();
-    assert_eq!(newest(&folder).unwrap().0, "old", "two are in use");
+    flush_until_saved(&middle);
+    backdate(&find_file(&folder, "1middle"), 200);
+    save_session(&folder, "new", "");
+    assert_eq!(newest_content(&folder).unwrap().0, "new");
+    let new = resume_any(&folder).resumed.unwrap();
+    assert_eq!(newest_content(&folder).unwrap().0, "old", "two are in use");
     middle.note(content("middle", "2"));
     closed(middle);
     drop(new);
     // The middle session now has the newest place.
-    assert_eq!(newest(&folder), Some(pair("middle", "2")));
+    assert_eq!(newest_content(&folder), Some(pair("middle", "2")));
 }
 
 #[test]
 fn processes_that_resume_at_the_same_time_get_different_sessions() {
     let (_outer, folder) = folder();
-    (0..8).for_each(|n| kept(&folder, &n.to_string(), ""));
+    (0..8).for_each(|n| save_session(&folder, &n.to_string(), ""));
     let folder = &folder;
     let found: Vec<_> = thread::scope(|scope| {
-        let threads: Vec<_> = (0..8).map(|_| scope.spawn(|| any(folder))).collect();
+        let threads: Vec<_> = (0..8).map(|_| scope.spawn(|| resume_any(folder))).collect();
         threads
             .into_iter()
             .map(|thread| thread.join().unwrap())
@@ -237,13 +237,13 @@ fn a_damaged_session_is_reported_and_left_alone() {
     ];
     for damage in damages {
         let (_outer, folder) = folder();
-        kept(&folder, "the one before", "");
-        age(&only(&folder, ".session"), 100);
-        let before = only(&folder, ".session");
-        kept(&folder, "the newest", "here");
+        save_session(&folder, "the one before", "");
+        backdate(&only_file(&folder, ".session"), 100);
+        let before = only_file(&folder, ".session");
+        save_session(&folder, "the newest", "here");
         let mut names = names(&folder, ".session").into_iter();
         damage(&names.find(|path| *path != before).unwrap());
-        let found = any(&folder);
+        let found = resume_any(&folder);
         assert_eq!(found.resumed.unwrap().1.0, "the one before");
         let [alone] = found.left_alone.as_slice() else {
             panic!("{:?}", found.left_alone);
@@ -257,11 +257,11 @@ fn a_damaged_session_is_reported_and_left_alone() {
 #[test]
 fn an_oversized_session_is_left_alone() {
     let (_outer, folder) = folder();
-    kept(&folder, "the one before", "");
-    age(&only(&folder, ".session"), 100);
+    save_session(&folder, "the one before", "");
+    backdate(&only_file(&folder, ".session"), 100);
     let long = fs::File::create(folder.join("2.session")).unwrap();
     long.set_len(64 << 30).unwrap();
-    let found = any(&folder);
+    let found = resume_any(&folder);
     assert_eq!(found.resumed.unwrap().1.0, "the one before");
     has(&found.left_alone[0].reason, "longer than");
     let listed = list(&folder).unwrap();
@@ -277,9 +277,9 @@ fn cut(path: &Path, bytes: u64) {
 #[test]
 fn a_session_with_invalid_content_is_left_alone() {
     let (_outer, folder) = folder();
-    kept(&folder, "good", "");
-    age(&only(&folder, ".session"), 100);
-    kept(&folder, "bad", "");
+    save_session(&folder, "good", "");
+    backdate(&only_file(&folder, ".session"), 100);
+    save_session(&folder, "bad", "");
     let found = resume(&folder, None, |content| match content.work.as_str() {
         "bad" => Err("line 3: no such key".to_owned()),
         work => Ok(work.to_owned()),
@@ -298,18 +298,18 @@ fn the_oldest_sessions_not_in_use_are_deleted() {
     let (_outer, folder) = folder();
     let in_use = Session::begin(&folder).unwrap();
     in_use.note(content("in use", ""));
-    written(&in_use);
-    age(&only(&folder, ".session"), 100_000);
+    flush_until_saved(&in_use);
+    backdate(&only_file(&folder, ".session"), 100_000);
     for n in 0..30 {
-        kept(&folder, &n.to_string(), "");
-        age(&file_of(&folder, &n.to_string()), 1000 - n);
+        save_session(&folder, &n.to_string(), "");
+        backdate(&find_file(&folder, &n.to_string()), 1000 - n);
     }
     drop(Session::begin(&folder).unwrap());
     assert_eq!(names(&folder, ".session").len(), 21);
     assert_eq!(names(&folder, ".lock").len(), 21);
     closed(in_use);
     let mut found = Vec::new();
-    while let Some(resumed) = any(&folder).resumed {
+    while let Some(resumed) = resume_any(&folder).resumed {
         found.push(resumed);
     }
     let works: Vec<_> = found.iter().map(|(_, what)| what.0.clone()).collect();
@@ -338,28 +338,28 @@ fn saving_is_retried_and_errors_are_reported_until_it_succeeds() {
     let (_outer, folder) = folder();
     let session = Session::begin(&folder).unwrap();
     session.note(content("run", "one"));
-    written(&session);
+    flush_until_saved(&session);
     assert_eq!(session.trouble(), None);
     // A folder in its place cannot be replaced: writing fails, as on a full disk.
-    let path = only(&folder, ".session");
+    let path = only_file(&folder, ".session");
     let in_the_way = || {
         fs::remove_file(&path).unwrap();
         fs::create_dir(&path).unwrap();
     };
     in_the_way();
     session.note(content("run", "two"));
-    written(&session);
+    flush_until_saved(&session);
     for place in ["three", "four"] {
         assert!(session.trouble().unwrap().contains("cannot be saved"));
         session.note(content("run", place));
-        written(&session);
+        flush_until_saved(&session);
     }
     fs::remove_dir(&path).unwrap();
     wait_until(|| session.trouble().is_none());
     assert_eq!(fs::read_dir(&folder).unwrap().count(), 2, "with its lock");
     in_the_way();
     session.note(content("run", "five"));
-    written(&session);
+    flush_until_saved(&session);
     assert!(session.trouble().is_some(), "it is new again");
     let closed = session.close(PATIENCE);
     assert!(closed.trouble.is_some());
@@ -376,12 +376,12 @@ fn a_session_without_content_saves_nothing() {
 #[test]
 fn sessions_keep_their_short_names() {
     let (_outer, folder) = folder();
-    kept(&folder, "first", "");
+    save_session(&folder, "first", "");
     let second = Session::begin(&folder).unwrap();
     second.note(content("second", ""));
-    written(&second);
+    flush_until_saved(&second);
     assert_eq!(second.name(), "2");
-    kept(&folder, "third", "");
+    save_session(&folder, "third", "");
     let mut listed = list(&folder).unwrap();
     listed.sort_unstable_by(|a, b| a.name.cmp(&b.name));
     let listed = listed
@@ -406,12 +406,12 @@ fn a_deleted_folder_is_created_again() {
     let (_outer, folder) = folder();
     let session = Session::begin(&folder).unwrap();
     session.note(content("run", "one"));
-    written(&session);
+    flush_until_saved(&session);
     fs::remove_dir_all(&folder).unwrap();
     session.note(content("run", "two"));
-    written(&session);
+    flush_until_saved(&session);
     closed(session);
-    assert_eq!(newest(&folder), Some(pair("run", "two")));
+    assert_eq!(newest_content(&folder), Some(pair("run", "two")));
 }
 
 /// Not a test by itself, but the body of a child process: it keeps a session and notes each line of its input.
@@ -420,7 +420,7 @@ fn child() {
     let Some(folder) = std::env::var_os(CHILD) else {
         return;
     };
-    let found = any(Path::new(&folder));
+    let found = resume_any(Path::new(&folder));
     let (session, (_, was)) = match found.resumed {
         Some(resumed) => resumed,
         None => (Session::begin(Path::new(&folder)).unwrap(), pair("", "new")),
@@ -486,9 +486,9 @@ fn a_killed_process_loses_at_most_a_second_and_releases_its_session() {
         other.note(&n.to_string());
     }
     thread::sleep(Duration::from_secs(1));
-    assert_eq!(newest(&folder), None, "it is in use");
+    assert_eq!(newest_content(&folder), None, "it is in use");
     other.kill();
-    assert_eq!(newest(&folder), Some(pair("run", "99")));
+    assert_eq!(newest_content(&folder), Some(pair("run", "99")));
     let mut next = Other::begin(&folder);
     assert_eq!(next.hear("begins"), "begins at 99");
     let third = Other::begin(&folder).hear("begins");
@@ -503,7 +503,7 @@ fn the_exit_hook_saves_the_last_content() {
     (0..1000).for_each(|n| other.note(&n.to_string()));
     writeln!(other.child.stdin.as_mut().unwrap(), "{END}").unwrap();
     assert!(other.child.wait().unwrap().success());
-    assert_eq!(newest(&folder), Some(pair("run", "999")));
+    assert_eq!(newest_content(&folder), Some(pair("run", "999")));
 }
 
 #[test]
@@ -515,21 +515,21 @@ fn a_process_killed_at_any_time_leaves_a_valid_session() {
         other.note(&n.to_string().repeat(1 << 22)); // takes a while to write
         thread::sleep(Duration::from_millis(n % 10));
         other.kill();
-        assert!(any(&folder).left_alone.is_empty());
+        assert!(resume_any(&folder).left_alone.is_empty());
     }
 }
 
 #[test]
 fn the_processes_that_use_newer_sessions_are_reported() {
     let (_outer, folder) = folder();
-    kept(&folder, "old", "");
-    age(&only(&folder, ".session"), 100);
+    save_session(&folder, "old", "");
+    backdate(&only_file(&folder, ".session"), 100);
     let newer = Session::begin(&folder).unwrap();
     newer.note(content("newer", ""));
-    written(&newer);
-    let found = any(&folder);
+    flush_until_saved(&newer);
+    let found = resume_any(&folder);
     assert_eq!(found.resumed.unwrap().1.0, "old");
     assert_eq!(found.in_use_by, [std::process::id()]);
     closed(newer);
-    assert!(any(&folder).in_use_by.is_empty());
+    assert!(resume_any(&folder).in_use_by.is_empty());
 }

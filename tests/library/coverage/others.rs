@@ -33,7 +33,7 @@ fn both(instruments: &Instruments) -> Both {
 }
 
 /// Measures the whole run, its first half and its second half. Returns `None` if the run breaks down.
-fn measured(scenario: &Arc<Scenario>) -> Option<[Both; 3]> {
+fn measure_halves(scenario: &Arc<Scenario>) -> Option<[Both; 3]> {
     let mut simulation = Simulation::new(Arc::clone(scenario));
     let mut whole = Instruments::new(simulation.now());
     let (mut first, mut second) = (whole.clone(), whole.clone());
@@ -58,7 +58,7 @@ fn dice(seed: u64) -> Dice {
 }
 
 /// Returns `scenario` with another scheme, time step and number of steps.
-fn again(scenario: &Scenario, scheme: &str, time_step_s: f64, steps: u64) -> Arc<Scenario> {
+fn with_motion(scenario: &Scenario, scheme: &str, time_step_s: f64, steps: u64) -> Arc<Scenario> {
     let mut file = scenario.file.clone();
     file.motion.scheme = Some(scheme.to_owned());
     file.motion.time_step_s = time_step_s;
@@ -84,7 +84,7 @@ fn stepped(seed: u64, scheme: &str, rows: [f64; 2]) -> Option<Pair> {
     let time_step_s = quickest_s / log_between(&mut dice, rows[0], rows[1]);
     let nutations = log_between(&mut dice, lasts[0], lasts[1]);
     let steps = (nutations * truth[1] / time_step_s).max(2.0) as u64;
-    let run = |count| measured(&again(&scenario, scheme, time_step_s, count));
+    let run = |count| measure_halves(&with_motion(&scenario, scheme, time_step_s, count));
     Some(Pair {
         seed,
         short: run(steps)?[0],
@@ -117,19 +117,19 @@ fn lopsided(seed: u64) -> Option<Pair> {
         Arc::new(parse(&text))
     };
     let guess_s = TAU * across / spin;
-    let period_s = measured(&build(guess_s / 40.0, 800))?[0][1]?.value;
+    let period_s = measure_halves(&build(guess_s / 40.0, 800))?[0][1]?.value;
     let per_nutation = log_between(dice, 2.2, 60.0);
     let nutations = log_between(dice, 3.0, 40.0);
     let steps = (nutations * per_nutation) as u64;
     Some(Pair {
         seed,
-        short: measured(&build(period_s / per_nutation, steps))?[0],
-        long: measured(&build(period_s / 40.0, (400.0 * nutations) as u64))?,
+        short: measure_halves(&build(period_s / per_nutation, steps))?[0],
+        long: measure_halves(&build(period_s / 40.0, (400.0 * nutations) as u64))?,
     })
 }
 
 /// Compares the short runs with the long ones; at least `fewest` of them must have a true value.
-fn hold(what: &str, pairs: &[Pair], fewest: usize) {
+fn assert_coverage(what: &str, pairs: &[Pair], fewest: usize) {
     let is_exact = what == "strobed" || what.starts_with("lopsided");
     for (which, name) in ["precession", "nutation"].into_iter().enumerate() {
         let mut off: Vec<(f64, u64)> = Vec::new();
@@ -174,7 +174,7 @@ fn stated_uncertainties_cover_the_motion_of_each_scheme() {
         let pairs: Vec<_> = seeds
             .filter_map(|seed| stepped(seed, scheme, [20.0, 200.0]))
             .collect();
-        hold(scheme, &pairs, fewest);
+        assert_coverage(scheme, &pairs, fewest);
     }
 }
 
@@ -184,14 +184,14 @@ fn stated_uncertainties_cover_under_sampled_runs() {
     let pairs: Vec<_> = seeds
         .filter_map(|seed| stepped(seed, "exact", [0.6, 1.9]))
         .collect();
-    hold("strobed", &pairs, 100);
+    assert_coverage("strobed", &pairs, 100);
 }
 
 #[test]
 #[ignore = "measures 800 runs: seconds"]
 fn stated_uncertainties_cover_lopsided_bodies() {
     let pairs: Vec<_> = (1..=800_u64).into_par_iter().filter_map(lopsided).collect();
-    hold("lopsided", &pairs, 100);
+    assert_coverage("lopsided", &pairs, 100);
 }
 
 /// Measures a random body of three solids on the axle and a lump off it under `exact`, and the same in steps of
@@ -236,8 +236,8 @@ fn lopsided_of_parts(seed: u64) -> Option<Pair> {
     let steps = (nutations * per_nutation) as u64;
     Some(Pair {
         seed,
-        short: measured(&build(momentum, period_s / per_nutation, steps))?[0],
-        long: measured(&build(
+        short: measure_halves(&build(momentum, period_s / per_nutation, steps))?[0],
+        long: measure_halves(&build(
             momentum,
             period_s / 40.0,
             (800.0 * nutations) as u64,
@@ -250,21 +250,21 @@ fn lopsided_of_parts(seed: u64) -> Option<Pair> {
 fn stated_uncertainties_cover_lopsided_bodies_of_parts() {
     let seeds = (1..=200_u64).into_par_iter();
     let pairs: Vec<_> = seeds.filter_map(lopsided_of_parts).collect();
-    hold("lopsided of parts", &pairs, 60);
+    assert_coverage("lopsided of parts", &pairs, 60);
 }
 
 /// Parses the scenario in `text` and extends it to `times` its duration.
-fn for_times_as_long(text: &str, times: u64) -> Arc<Scenario> {
+fn extended(text: &str, times: u64) -> Arc<Scenario> {
     let scenario = parse(text);
     let (motion, steps) = (scenario.motion, scenario.steps * times);
-    again(&scenario, motion.scheme.name, motion.time_step_s, steps)
+    with_motion(&scenario, motion.scheme.name, motion.time_step_s, steps)
 }
 
 #[test]
 fn the_uncertainty_of_a_lopsided_top_includes_its_beats() {
     let beats = include_str!("../../reference/lopsided/beats.toml");
-    let short = measured(&for_times_as_long(beats, 1)).unwrap()[0];
-    let long = measured(&for_times_as_long(beats, 20)).unwrap()[0];
+    let short = measure_halves(&extended(beats, 1)).unwrap()[0];
+    let long = measure_halves(&extended(beats, 20)).unwrap()[0];
     for (of_short, of_long) in short.into_iter().zip(long) {
         let (stated, truth) = (of_short.unwrap(), of_long.unwrap());
         let off = (stated.value - truth.value).abs() / stated.uncertainty;
@@ -274,7 +274,7 @@ fn the_uncertainty_of_a_lopsided_top_includes_its_beats() {
 
 #[test]
 fn an_ambiguous_nutation_period_is_not_stated() {
-    let uneven = for_times_as_long(include_str!("../../reference/lopsided/uneven.toml"), 1);
+    let uneven = extended(include_str!("../../reference/lopsided/uneven.toml"), 1);
     let mut simulation = Simulation::new(Arc::clone(&uneven));
     let mut instruments = Instruments::new(simulation.now());
     while simulation.step_number() < uneven.steps {
@@ -300,7 +300,7 @@ fn tumbling(seed: u64) -> Option<[MeasuredNumber; 2]> {
              [motion]\nscheme = 'exact'\ntime_step_s = {step}\nsteps = {steps}\n",
             aside[0], aside[1]
         );
-        super::measured(&Arc::new(parse(&text)))[1]
+        super::measure_halves(&Arc::new(parse(&text)))[1]
     };
     let period_s = nutation(TAU / spin / 60.0, 2400)?.value;
     let (per_nutation, nutations) = (log_between(dice, 2.2, 60.0), log_between(dice, 16.0, 60.0));
@@ -334,7 +334,7 @@ fn a_nutation_produced_by_the_scheme_has_its_own_period() {
         let steady = ["start.tilt_deg=30", &start, "start.steady=true"];
         let motion = ["motion.time_step_s=0.001", "motion.steps=10000"];
         let steady = preset("method-2", &[&steady[..], &motion].concat());
-        let [_, nutation] = measured(&steady).unwrap()[0];
+        let [_, nutation] = measure_halves(&steady).unwrap()[0];
         let nutation = nutation.unwrap();
         let off = (nutation.value - period_s).abs();
         assert!(off < 2e-3, "{spin_rpm}: {nutation:?}");
