@@ -59,7 +59,7 @@ pub(super) struct SweepArgs {
     #[arg(long, value_name = "PART.csv", num_args = 1.., requires = "output", conflicts_with_all = ["scenario", "set", "time_step", "scheme", "steps", "duration"])]
     pub(super) join: Vec<PathBuf>,
 
-    /// Write the CSV to this file; until it is whole the rows are in FILE.part, and the same command goes on there
+    /// Write the CSV to this file; until it is complete, the rows are in FILE.part, and the same command continues it
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
 
@@ -106,7 +106,7 @@ fn open_document(name: &str) -> Result<Document, Problems> {
             let sweeps = SWEEPS.iter().map(|sweep| sweep.name);
             let near = nearest(name, sweeps.chain(PRESETS.iter().map(|preset| preset.name)));
             let rule = format!(
-                "no sweep and no preset of that name: {near} (a file's name holds a / or ends in .toml or .csv)"
+                "no sweep and no preset of that name: {near} (a file's name contains a / or ends in .toml or .csv)"
             );
             Err(Problems::one(name, Problem::at("", rule)))
         }
@@ -197,7 +197,7 @@ fn run(sweep: &Sweep, output: &Path, may_replace: bool) -> anyhow::Result<ExitCo
             tell_of(&tally, sweep, &interruption);
             let rows = counted(sweep.rows(), "row");
             tell(format_args!(
-                "gyrolab: {} is whole, {rows} of this very sweep",
+                "gyrolab: {} is complete: {rows}",
                 PrintablePath(output)
             ));
             return Ok(ExitCode::SUCCESS);
@@ -210,7 +210,7 @@ fn run(sweep: &Sweep, output: &Path, may_replace: bool) -> anyhow::Result<ExitCo
     tell_of(&part.tally, sweep, &interruption);
     if added.is_err() || rows < all {
         tell(format_args!(
-            "gyrolab: {rows} of {} are in {}: the same command goes on behind them",
+            "gyrolab: {rows} of {} are in {}: run the same command again to continue",
             counted(all, "row"),
             PrintablePath(&part.path)
         ));
@@ -233,7 +233,7 @@ fn tell_of_part(sweep: &Sweep, part: &PartialSweep) {
         empty => format!(", {empty} of them without readouts"),
     };
     tell(format_args!(
-        "gyrolab: going on behind {rows} of {all} rows in {path}{empty}"
+        "gyrolab: continuing after {rows} of {all} rows in {path}{empty}"
     ));
 }
 

@@ -195,7 +195,7 @@ fn a_sweep_resumes_from_a_partial_file() {
     let goes_on = |part: &[u8], kept: usize| {
         fs::write(ground.file("cut.csv.part"), part).unwrap();
         let told = run_sweep(&ground, GRID, "cut.csv");
-        let words = format!("going on behind {kept} of 60 rows");
+        let words = format!("continuing after {kept} of 60 rows");
         assert!(kept == 0 || told.contains(&words), "{words}: {told}");
         assert_eq!(ground.read("cut.csv"), whole, "{kept}");
         remove(&ground, "cut.csv");
@@ -231,7 +231,7 @@ fn files_of_other_sweeps_are_rejected_and_left_alone() {
     let ground = Ground::new();
     run_sweep(&ground, GRID, "grid.csv");
     let whole = ground.read("grid.csv");
-    has(run_sweep(&ground, GRID, "grid.csv"), "is whole");
+    has(run_sweep(&ground, GRID, "grid.csv"), "is complete");
     let other = GRID.replace("400:20", "400:21");
     let words = "its line 9 is \"# count = 20\", not \"# count = 21\"";
     assert_rejected(&ground, &other, "grid.csv", &["grid.csv", words, "--force"]);
@@ -537,11 +537,16 @@ fn a_full_disk_or_unwritable_folder_fails_a_sweep() {
     let ground = Ground::new();
     let grid = "\"$G\" sweep cusps --set motion.steps=2 --vary start.momentum_Js.2=10..400:2000 --measure z_m,x_m,y_m";
     let full = ground.shell(&format!("ulimit -f 40; {grid} -o out.csv"));
-    let words = ["out.csv.part", "large", "of 2000 rows are in", "goes on"];
+    let words = [
+        "out.csv.part",
+        "large",
+        "of 2000 rows are in",
+        "to continue",
+    ];
     refused("a full disk", &full, 1, &words);
     // With space available again, the same command continues; no row is lost or repeated.
     let told = successful(&ground.shell(&format!("{grid} -o out.csv")));
-    has(&told, "going on behind");
+    has(&told, "continuing after");
     successful(&ground.shell(&format!("{grid} -o whole.csv")));
     assert_eq!(ground.read("out.csv"), ground.read("whole.csv"));
     fs::create_dir(ground.file("folder")).unwrap();
@@ -666,7 +671,7 @@ fn a_value_may_be_an_empty_string() {
     run_sweep(&ground, args, "out.csv");
     has(
         run_sweep(&ground, args, "out.csv"),
-        "out.csv is whole, 3 rows",
+        "out.csv is complete: 3 rows",
     );
     ground.stdout("verify out.csv");
     run_shards(&ground, args, 2);
