@@ -528,7 +528,7 @@ fn ctrl_c_keeps_the_finished_rows() {
     let text = fs::read_to_string(&part).unwrap();
     assert!(text.ends_with('\n'));
     let kept = format!("{} of 100000 rows", rows(&text).len() - 1);
-    let words = ["rows are in", "out.csv.part", "goes on", &kept];
+    let words = ["rows are in", "out.csv.part", "to continue", &kept];
     refused(args, &output, 130, &words);
 }
 
