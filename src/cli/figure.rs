@@ -18,8 +18,10 @@ use crate::plot::{PT_PER_MM, PageFormat};
 use crate::report::figure::kind::{ERROR, FIGURE_KIND_NAMES, FigureKind};
 use crate::report::figure::of_runs::FigureRun;
 use crate::report::figure::of_table::TABLE_KIND_NAMES;
-use crate::report::figure::{FigureSource, FigureSpec, WIDTHS_MM};
-use crate::studies::sweep::axis;
+use crate::report::figure::{
+    FONT_SIZES_PT, FigureSource, FigureSpec, PAGE_STYLE_NAMES, PageStyle, WIDTHS_MM,
+};
+use crate::studies::sweep::{TIME_STEP, axis};
 use crate::studies::table::TableSource;
 use anyhow::{bail, ensure};
 use clap::Args;
@@ -28,6 +30,7 @@ use clap::error::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
+use toml::Value;
 
 #[derive(Debug, Args)]
 pub(super) struct FigureArgs {
@@ -124,9 +127,25 @@ struct LabelArgs {
     #[arg(long, value_name = "AXES", value_parser = axes)]
     log: Option<String>,
 
-    /// Show this range of the axis at the left, such as 0..1
-    #[arg(long, value_name = "A..B", allow_hyphen_values = true, value_parser = range)]
-    y_range: Option<(f64, f64)>,
+    /// Show this range of the axis at the left, such as 0..1, or of one panel, such as z_m=0..1; may be repeated
+    #[arg(long, value_name = "[NAME=]A..B", allow_hyphen_values = true, value_parser = panel_range)]
+    y_range: Vec<(Option<String>, (f64, f64))>,
+
+    /// Height of the page [default: as the figure needs it]
+    #[arg(long, value_name = "MM", value_parser = width)]
+    height: Option<f64>,
+
+    /// Size of the axis titles, pt; other letters, lines and marks change with it [default: 8]
+    #[arg(long, value_name = "PT", value_parser = font_size)]
+    font_size: Option<f64>,
+
+    /// Make the figure for a paper, or for a slide: 254mm x 143mm with letters of 18 pt [default: paper]
+    #[arg(long, value_name = "STYLE", value_parser = PossibleValuesParser::new(PAGE_STYLE_NAMES))]
+    style: Option<String>,
+
+    /// Write numbers with a decimal comma: 0,5
+    #[arg(long)]
+    decimal_comma: bool,
 
     /// In SVG write text as text, in the reader's fonts: it can be selected [default: outlines]
     #[arg(long)]
@@ -183,7 +202,30 @@ fn range(text: &str) -> Result<(f64, f64), String> {
     ends.ok_or_else(|| "must be two numbers, the lower one first, such as 0..1".to_owned())
 }
 
-/// A width in mm: 86mm, 8.6cm or 86.
+/// A range of one panel or of all: z_m=0..1, 0..1.
+fn panel_range(text: &str) -> Result<(Option<String>, (f64, f64)), String> {
+    match text.split_once('=') {
+        Some((name, text)) => Ok((Some(name.trim().to_owned()), range(text)?)),
+        None => Ok((None, range(text)?)),
+    }
+}
+
+/// A size of letters in pt: 8 or 8pt.
+fn font_size(text: &str) -> Result<f64, String> {
+    let number = text.strip_suffix("pt").unwrap_or(text).trim().parse();
+    number
+        .ok()
+        .filter(|pt| FONT_SIZES_PT.contains(pt))
+        .ok_or_else(|| {
+            format!(
+                "must be a size of letters such as 8, from {} to {} pt",
+                FONT_SIZES_PT.start(),
+                FONT_SIZES_PT.end()
+            )
+        })
+}
+
+/// A length in mm: 86mm, 8.6cm or 86.
 fn width(text: &str) -> Result<f64, String> {
     let (number, unit) = match (text.strip_suffix("mm"), text.strip_suffix("cm")) {
         (Some(number), _) => (number, 1.0),
@@ -194,7 +236,7 @@ fn width(text: &str) -> Result<f64, String> {
     match width_mm {
         Ok(width_mm) if WIDTHS_MM.contains(&width_mm) => Ok(width_mm),
         _ => Err(format!(
-            "must be a width such as 86mm, from {}mm to {}mm",
+            "must be a length such as 86mm, from {}mm to {}mm",
             WIDTHS_MM.start(),
             WIDTHS_MM.end()
         )),
@@ -351,7 +393,14 @@ fn add_runs(
         changes.scheme = scheme.cloned().or(changes.scheme);
         for values in combinations(&args.vary)? {
             let mut varied = changes.clone();
-            varied.set.extend(values);
+            for (key, value) in values {
+                if key == TIME_STEP {
+                    // As --time-step does: pushes and the run keep their seconds.
+                    varied.time_step = value.as_float();
+                } else {
+                    varied.set.push(format!("{key}={value}"));
+                }
+            }
             source.runs.push(FigureRun {
                 scenario: Arc::new(changed(document.clone(), &varied, &args.length)?),
                 named: named.to_owned(),
@@ -366,16 +415,16 @@ fn add_runs(
 }
 
 /// Returns what to `--set` for each combination of the values that `vary`, arguments of `--vary`, names.
-fn combinations(vary: &[String]) -> anyhow::Result<Vec<Vec<String>>> {
+fn combinations(vary: &[String]) -> anyhow::Result<Vec<Vec<(String, Value)>>> {
     let mut all = vec![Vec::new()];
     for argument in vary {
         let axis = axis::axis(argument)?;
         let mut longer = Vec::new();
         for before in &all {
             for values in axis.points.iter().take(MOST_CURVES + 1) {
-                let mut all_values: Vec<String> = before.clone();
-                let pairs = axis.keys.iter().zip(values);
-                all_values.extend(pairs.map(|(key, value)| format!("{key}={value}")));
+                let mut all_values: Vec<(String, Value)> = before.clone();
+                let pairs = axis.keys.iter().cloned().zip(values.iter().cloned());
+                all_values.extend(pairs);
                 longer.push(all_values);
             }
         }
@@ -398,6 +447,15 @@ fn ask(args: &FigureArgs, spec: &mut FigureSpec) {
     spec.exact |= args.exact;
     spec.text |= args.labels.text;
     spec.width_pt = args.width.map(|mm| mm * PT_PER_MM).or(spec.width_pt);
+    spec.height_pt = args
+        .labels
+        .height
+        .map(|mm| mm * PT_PER_MM)
+        .or(spec.height_pt);
+    spec.font_pt = args.labels.font_size.or(spec.font_pt);
+    let style = args.labels.style.as_deref().and_then(PageStyle::named);
+    spec.style = style.unwrap_or(spec.style);
+    spec.decimal_comma |= args.labels.decimal_comma;
     let (given, labels) = (&args.labels, &mut spec.labels);
     labels.title = given.title.clone().or(labels.title.take());
     labels.x = given.x_label.clone().or(labels.x.take());
@@ -413,7 +471,14 @@ fn ask(args: &FigureArgs, spec: &mut FigureSpec) {
         labels.is_log = ["x", "y"].map(|axis| log.contains(axis));
         labels.is_log_color = log.contains('z');
     }
-    labels.y_range = given.y_range.or(labels.y_range);
+    for (name, range) in &given.y_range {
+        match name {
+            Some(name) => {
+                labels.y_ranges.insert(name.clone(), *range);
+            }
+            None => labels.y_range = Some(*range),
+        }
+    }
 }
 
 fn refuse_for_table(args: &FigureArgs) -> anyhow::Result<()> {

@@ -85,6 +85,7 @@ pub fn rounded(scene: &PageScene) -> Result<PageScene, Unwritable> {
         width_pt: hundredths(width_pt),
         height_pt: hundredths(height_pt),
         title: scene.title.clone(),
+        decimal_comma: scene.decimal_comma,
         items: numbered
             .map(|(index, item)| rounded_item(item).ok_or(Unwritable::Place(index)))
             .collect::<Result<_, _>>()?,
@@ -133,6 +134,7 @@ mod tests {
             height_pt: 50.0,
             title: String::new(),
             items,
+            decimal_comma: false,
         }
     }
 

@@ -3,7 +3,8 @@
 use super::letters::{self, SetLabel};
 pub use super::scene::at;
 use super::scene::{
-    Color, PageScene, Paint, Point, SceneItem, Segment, StrokeStyle, TextItem, VectorPath,
+    Color, PageScene, Paint, Point, SceneItem, Segment, StrokeStyle, TextAnchor, TextItem,
+    VectorPath,
 };
 
 pub const TITLE_PT: f64 = 8.0;
@@ -156,6 +157,7 @@ impl PageScene {
             height_pt,
             title: title.to_owned(),
             items: Vec::new(),
+            decimal_comma: false,
         }
     }
 
@@ -175,25 +177,51 @@ impl PageScene {
         self.stroke(VectorPath::polyline(ends), pen(width_pt, color), None);
     }
 
-    /// Writes `markup` with `share` of its length to the left of `place`, which is on its baseline.
-    pub fn write(&mut self, markup: &str, size_pt: f64, place: Point, share: f64) {
-        let label = letters::label(markup, size_pt);
-        let left = place.x - share * label.width_pt;
-        self.letters(label, false, |p| at(left + p.x, place.y + p.y));
+    /// Writes `markup` with its `anchor` at `place`, which is on its baseline.
+    pub fn write(&mut self, markup: &str, size_pt: f64, place: Point, anchor: TextAnchor) {
+        let label = letters::label(&self.with_comma(markup), size_pt);
+        let left = place.x - anchor.share() * label.width_pt;
+        self.letters(label, anchor, false, |p| at(left + p.x, place.y + p.y));
     }
 
     /// Writes `markup` upwards, its middle at `middle`, which is on its baseline.
     pub fn write_up(&mut self, markup: &str, size_pt: f64, middle: Point) {
-        let label = letters::label(markup, size_pt);
+        let label = letters::label(&self.with_comma(markup), size_pt);
         let bottom = middle.y + 0.5 * label.width_pt;
-        self.letters(label, true, |p| at(middle.x + p.y, bottom - p.x));
+        let to = |p: Point| at(middle.x + p.y, bottom - p.x);
+        self.letters(label, TextAnchor::Middle, true, to);
     }
 
-    fn letters(&mut self, label: SetLabel, is_upward: bool, to: impl Fn(Point) -> Point) {
+    /// Returns `markup` with the decimal sign of this page in its numbers. Both signs are equally wide.
+    fn with_comma(&self, markup: &str) -> String {
+        let letters: Vec<char> = markup.chars().collect();
+        let is_digit = |place: Option<usize>| {
+            place.is_some_and(|place| letters.get(place).is_some_and(char::is_ascii_digit))
+        };
+        let is_sign = |place: usize| {
+            self.decimal_comma
+                && letters[place] == '.'
+                && is_digit(place.checked_sub(1))
+                && is_digit(place.checked_add(1))
+        };
+        (0..letters.len())
+            .map(|place| if is_sign(place) { ',' } else { letters[place] })
+            .collect()
+    }
+
+    fn letters(
+        &mut self,
+        label: SetLabel,
+        anchor: TextAnchor,
+        is_upward: bool,
+        to: impl Fn(Point) -> Point,
+    ) {
         let words = TextItem {
             text: label.words,
             letters: label.letters,
             is_upward,
+            place: at(anchor.share() * label.width_pt, 0.0),
+            anchor,
         };
         let item = SceneItem {
             path: label.path,

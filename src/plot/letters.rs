@@ -7,8 +7,10 @@
 pub mod font;
 mod setter;
 pub mod table;
+mod user;
 
 use self::setter::Setter;
+pub use self::user::markup;
 use super::scene::{PlacedLetter, VectorPath};
 use crate::engine::text::printable::printable;
 
@@ -62,23 +64,29 @@ pub fn escape(text: &str) -> String {
 
 /// Escapes a text, and cuts it with "…" if it is wider than `width_pt`.
 pub fn shortened(text: &str, size_pt: f64, width_pt: f64) -> String {
+    cut(text, size_pt, width_pt, escape)
+}
+
+/// Converts the [markup of a user](markup), and cuts the text with "…" if it is wider than `width_pt`.
+pub fn marked(text: &str, size_pt: f64, width_pt: f64) -> String {
+    cut(text, size_pt, width_pt, markup)
+}
+
+/// Converts the longest beginning of `text` that is not wider than `width_pt`, with "…" if some of it is missing.
+fn cut(text: &str, size_pt: f64, width_pt: f64, convert: fn(&str) -> String) -> String {
     let letters: Vec<char> = text.chars().take(LONGEST_LABEL + 1).collect();
-    let whole = beginning(&letters, letters.len());
+    let beginning = |length: usize| {
+        let dots = if length < letters.len() { "…" } else { "" };
+        convert(&letters[..length].iter().collect::<String>()) + dots
+    };
+    let whole = beginning(letters.len());
     if letters.len() <= LONGEST_LABEL && label(&whole, size_pt).width_pt <= width_pt {
         return whole;
     }
     let lengths: Vec<usize> = (1..letters.len()).collect();
-    let longest = lengths.partition_point(|length| {
-        let shorter = beginning(&letters, *length);
-        label(&shorter, size_pt).width_pt <= width_pt
-    });
-    beginning(&letters, longest)
-}
-
-/// Returns the first `length` of `letters` as markup, with "…" if some are missing.
-fn beginning(letters: &[char], length: usize) -> String {
-    let dots = if length < letters.len() { "…" } else { "" };
-    escape(&letters[..length].iter().collect::<String>()) + dots
+    let longest =
+        lengths.partition_point(|length| label(&beginning(*length), size_pt).width_pt <= width_pt);
+    beginning(longest)
 }
 
 #[cfg(test)]

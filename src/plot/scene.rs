@@ -40,7 +40,7 @@ pub enum Unwritable {
     Origin,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Point {
     pub x: f64,
     pub y: f64,
@@ -205,19 +205,45 @@ pub struct SceneItem {
     pub words: Option<TextItem>,
 }
 
+/// Which part of a text is at its place.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TextAnchor {
+    #[default]
+    Start,
+    Middle,
+    End,
+}
+
+impl TextAnchor {
+    /// Returns the part of a text's length before its place.
+    pub fn share(self) -> f64 {
+        match self {
+            Self::Start => 0.0,
+            Self::Middle => 0.5,
+            Self::End => 1.0,
+        }
+    }
+}
+
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TextItem {
     pub text: String,
     pub letters: Vec<PlacedLetter>,
     pub is_upward: bool,
+    /// The point to which the text is aligned, on its baseline, and which part of it is there.
+    pub place: Point,
+    pub anchor: TextAnchor,
 }
 
 impl SceneItem {
     /// Maps all points of the item with `to`. The clip rectangle is not changed.
     #[must_use]
     pub fn mapped(mut self, to: impl Fn(Point) -> Point) -> Self {
-        for letter in self.words.iter_mut().flat_map(|words| &mut words.letters) {
-            letter.origin = to(letter.origin);
+        if let Some(words) = &mut self.words {
+            words.place = to(words.place);
+            for letter in &mut words.letters {
+                letter.origin = to(letter.origin);
+            }
         }
         self.path = self.path.mapped(to);
         self
@@ -231,9 +257,38 @@ pub struct PageScene {
     /// The title in the file's metadata, which is not drawn.
     pub title: String,
     pub items: Vec<SceneItem>,
+    /// Whether numbers that are written on it have a decimal comma.
+    pub decimal_comma: bool,
 }
 
 impl PageScene {
+    /// Moves each point of the page to where `to` says, clip rectangles included.
+    pub fn map(&mut self, to: impl Fn(Point) -> Point) {
+        for item in &mut self.items {
+            *item = item.clone().mapped(&to);
+            item.clip = item.clip.map(|corners| corners.map(&to));
+        }
+    }
+
+    /// Magnifies the page and everything on it by `factor`.
+    pub fn magnify(&mut self, factor: f64) {
+        if factor == 1.0 {
+            return;
+        }
+        self.width_pt *= factor;
+        self.height_pt *= factor;
+        self.map(|point| at(factor * point.x, factor * point.y));
+        for item in &mut self.items {
+            if let Paint::Stroke(pen) = &mut item.paint {
+                pen.width_pt *= factor;
+                pen.dash_pt.iter_mut().for_each(|length| *length *= factor);
+            }
+            for letter in item.words.iter_mut().flat_map(|words| &mut words.letters) {
+                letter.size_pt *= factor;
+            }
+        }
+    }
+
     /// Groups consecutive items with the same paint and clip rectangle.
     pub fn groups(&self) -> impl Iterator<Item = &[SceneItem]> {
         self.items

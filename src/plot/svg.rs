@@ -2,7 +2,7 @@
 
 use std::fmt::Write; // cannot fail on a `String`
 
-use super::scene::TextItem;
+use super::scene::{TextAnchor, TextItem};
 use super::{Color, PageScene, Paint, Point, SceneItem, Segment, StrokeStyle, VectorPath};
 use crate::engine::text::printable::xml;
 use crate::plot::PT_PER_MM;
@@ -89,22 +89,35 @@ fn put_group(out: &mut String, items: &[SceneItem], has_text: bool) {
 const SVG_TEXT_FONTS: &str =
     "STIX Two Text,STIXTwoText,Times New Roman,Times,Liberation Serif,serif";
 
-/// Writes words as text. Letters of one style and height form a part, which starts at the position of their outlines.
+/// Writes words as text, aligned as on the page: the reader's fonts may be wider or narrower than the outlines. Parts of one
+/// style follow each other; a script is shifted across the line.
 fn put_text(out: &mut String, words: &TextItem) {
-    let turned = if words.is_upward {
-        " transform=\"rotate(-90)\""
+    let Point { x, y } = words.place;
+    let ((x, y), turned) = if words.is_upward {
+        ((-y, x), " transform=\"rotate(-90)\"")
     } else {
-        ""
+        ((x, y), "")
     };
+    let anchor = match words.anchor {
+        TextAnchor::Start => "",
+        TextAnchor::Middle => " text-anchor=\"middle\"",
+        TextAnchor::End => " text-anchor=\"end\"",
+    };
+    let (x, baseline) = (number(x), number(y));
     let _ = write!(
         out,
-        "<text xml:space=\"preserve\" font-family=\"{SVG_TEXT_FONTS}\"{turned}>"
+        "<text xml:space=\"preserve\" x=\"{x}\" y=\"{baseline}\" font-family=\"{SVG_TEXT_FONTS}\"{anchor}{turned}>"
     );
+    let mut line = hundredths(y);
     for part in words.letters.chunk_by(|a, b| {
         let [a_line, b_line] = [a, b].map(|it| hundredths(it.along_and_across(words.is_upward).1));
         (a.is_italic, a.size_pt, a_line) == (b.is_italic, b.size_pt, b_line)
     }) {
-        let (x, y) = part[0].along_and_across(words.is_upward);
+        let own = hundredths(part[0].along_and_across(words.is_upward).1);
+        let shift = match own - std::mem::replace(&mut line, own) {
+            0 => String::new(),
+            shift => format!(" dy=\"{}\"", number(shift as f64 / 100.0)),
+        };
         let size = number(part[0].size_pt);
         let style = if part[0].is_italic {
             " font-style=\"italic\""
@@ -112,10 +125,10 @@ fn put_text(out: &mut String, words: &TextItem) {
             ""
         };
         let text: String = part.iter().map(|placed| placed.letter).collect();
-        let (x, y, text) = (number(x), number(y), xml(&text));
+        let text = xml(&text);
         let _ = write!(
             out,
-            "<tspan x=\"{x}\" y=\"{y}\" font-size=\"{size}\"{style}>{text}</tspan>"
+            "<tspan font-size=\"{size}\"{shift}{style}>{text}</tspan>"
         );
     }
     *out += "</text>\n";

@@ -3,6 +3,7 @@
 use crate::support::words::{has, has_all};
 use gyrolab::engine::text::checksum::crc32;
 use gyrolab::plot::ink::{BLACK, at, circle, pen};
+use gyrolab::plot::scene::TextAnchor;
 use gyrolab::plot::{
     Color, PageFormat, PageScene, Paint, Point, SceneItem, Segment, StrokeStyle, VectorPath,
     letters, write,
@@ -28,7 +29,12 @@ fn page(title: &str, words: &str) -> PageScene {
     });
     let corners = [(70.0, 10.0), (80.0, 10.0), (80.0, 20.0), (70.0, 20.0)];
     scene.fill(VectorPath::polygon(corners.map(|(x, y)| at(x, y))), BLACK);
-    scene.write(&letters::escape(words), 8.0, at(50.0, 58.0), 0.5);
+    scene.write(
+        &letters::escape(words),
+        8.0,
+        at(50.0, 58.0),
+        TextAnchor::Middle,
+    );
     scene
 }
 

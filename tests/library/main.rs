@@ -18,6 +18,7 @@ mod every_key;
 mod exact;
 mod exported;
 mod figure_files;
+mod figure_pages;
 mod figures;
 mod finding;
 mod fits;

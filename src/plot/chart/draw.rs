@@ -9,7 +9,7 @@ use super::{Chart, ChartSeries, Panel};
 use crate::engine::text::number::significant;
 use crate::plot::ink::{self, BLACK, LABEL_PT, MARK_PT, at, pen};
 use crate::plot::letters;
-use crate::plot::scene::{PageScene, Point};
+use crate::plot::scene::{PageScene, Point, TextAnchor};
 use std::collections::HashSet;
 
 /// The most marks in a panel.
@@ -120,6 +120,7 @@ impl Chart {
             None => ChartLayout::new(self, legend.height_above(self.width_pt)),
         };
         let mut scene = PageScene::new(self.width_pt, layout.height_pt, &self.title);
+        scene.decimal_comma = self.decimal_comma;
         for (panel, placed) in self.panels.iter().zip(&layout.panels) {
             panel.draw(placed, &mut scene);
             panel.write_beside(placed, &layout, &mut scene);
@@ -269,7 +270,7 @@ fn write_below(chart: &Chart, panels: &[PlacedPanel], layout: &ChartLayout, scen
     };
     for tick in &last.below.major {
         let place = at(last.x.place(tick.at), layout.labels_at());
-        scene.write(&tick.label, LABEL_PT, place, 0.5);
+        scene.write(&tick.label, LABEL_PT, place, TextAnchor::Middle);
     }
     let columns = if layout.magnified.is_empty() {
         1.0
@@ -282,7 +283,12 @@ fn write_below(chart: &Chart, panels: &[PlacedPanel], layout: &ChartLayout, scen
     let middle = (0.5 * (last.frame.left + last.frame.right))
         .min(chart.width_pt - PAGE_EDGE - half)
         .max(PAGE_EDGE + half);
-    scene.write(&title, size, at(middle, layout.title_at()), 0.5);
+    scene.write(
+        &title,
+        size,
+        at(middle, layout.title_at()),
+        TextAnchor::Middle,
+    );
 }
 
 impl Panel {
@@ -331,7 +337,7 @@ impl Panel {
                 frame.left - layout.tick_gap,
                 placed.y.place(tick.at) + 0.5 * label,
             );
-            scene.write(&tick.label, LABEL_PT, place, 1.0);
+            scene.write(&tick.label, LABEL_PT, place, TextAnchor::End);
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Where the parts of a chart stand on the page. Every label is measured, so that none is cut and none overlaps another.
 
 use super::axis::{AxisScale, BESIDE, widest};
+use super::legend::Legend;
 use super::map::PlacedBar;
 use super::ticks::{Tick, Ticks};
 use super::{Chart, Panel};
@@ -92,7 +93,7 @@ impl ChartLayout {
         let label = ink::height(LABEL_PT);
         let y_ranges: Vec<_> = chart.panels.iter().map(y_range).collect();
         let tick_gap = tick_gap(chart);
-        let (left, right, height) = sides(chart, x_range(chart), &y_ranges);
+        let (left, right, height) = sides(chart, above, x_range(chart), &y_ranges);
         let top = above + PAGE_EDGE + 0.5 * label;
         let [x, beside] = columns(chart, left, right);
         let panels = placed(chart, x, &y_ranges, top, height);
@@ -185,8 +186,13 @@ fn over_edge(along: &AxisScale, tick: Option<&Tick>, edge: f64) -> f64 {
 }
 
 /// Where the panels begin and end, and how high each is, pt.
-fn sides(chart: &Chart, x_range: (f64, f64), y_ranges: &[(f64, f64)]) -> (f64, f64, f64) {
-    let mut height = panel_height(chart);
+fn sides(
+    chart: &Chart,
+    above: f64,
+    x_range: (f64, f64),
+    y_ranges: &[(f64, f64)],
+) -> (f64, f64, f64) {
+    let mut height = panel_height(chart, above);
     let (mut left, mut right) = (PAGE_EDGE, chart.width_pt - PAGE_EDGE - 1.0);
     // Which ticks there are depends on the room, and the room on their labels: three rounds settle both.
     for _ in 0..3 {
@@ -221,8 +227,32 @@ pub fn fitted(title: String, room: f64) -> (String, f64) {
     (title, size.max(LEAST_TITLE_PT))
 }
 
-fn panel_height(chart: &Chart) -> f64 {
+/// Returns the least height of `chart` with its legend, pt.
+pub fn least_height_pt(chart: &Chart) -> f64 {
+    const LEAST_PANEL_PT: f64 = 18.0;
+    let legend_pt = Legend::from_chart(chart, []).height_above(chart.width_pt);
     let count = chart.panels.len();
+    around_pt(count, legend_pt) + LEAST_PANEL_PT * count as f64
+}
+
+/// Returns the height of everything but its panels in a chart of `count` panels, `above` pt below the upper edge, pt.
+fn around_pt(count: usize, above: f64) -> f64 {
+    let label = ink::height(LABEL_PT);
+    let between = (label + PANEL_GAP) * count.saturating_sub(1) as f64;
+    above + PAGE_EDGE + 0.5 * label + between + below_pt()
+}
+
+/// Returns the height of what is below the panels, pt.
+fn below_pt() -> f64 {
+    TICK_LABEL_GAP + 1.5 * ink::height(LABEL_PT) + TITLE_BELOW + title_height() + PAGE_EDGE
+}
+
+/// Returns the height of each panel of `chart`, `above` pt below the upper edge, pt.
+fn panel_height(chart: &Chart, above: f64) -> f64 {
+    let count = chart.panels.len();
+    if let Some(height_pt) = chart.height_pt {
+        return (height_pt - around_pt(count, above)) / count as f64;
+    }
     let height = HEIGHTS[count.clamp(1, HEIGHTS.len()) - 1];
     let is_log = chart.panels.iter().any(|panel| panel.y.is_log);
     let height = if is_log { LOG * height } else { height };

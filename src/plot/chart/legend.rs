@@ -4,7 +4,7 @@ use super::curve::{BAND_WHITE, hatch};
 use super::layout::{ChartLayout, PAGE_EDGE};
 use super::{Chart, SeriesStyle};
 use crate::plot::ink::{self, LABEL_PT, PageRectangle, WHITE, at, paler};
-use crate::plot::scene::{PageScene, Point, StrokeStyle, VectorPath};
+use crate::plot::scene::{PageScene, Point, StrokeStyle, TextAnchor, VectorPath};
 
 /// Length of the line of an entry, and its distance from the name, pt.
 const KEY: f64 = 17.0;
@@ -157,7 +157,7 @@ impl LegendEntry {
     /// Draws it with its name's baseline at the height of `place`.
     fn draw(&self, place: Point, scene: &mut PageScene) {
         let Some(style) = &self.style else {
-            scene.write(&self.name, LABEL_PT, place, 0.0);
+            scene.write(&self.name, LABEL_PT, place, TextAnchor::Start);
             return;
         };
         let y = place.y - 0.5 * ink::height(LABEL_PT);
@@ -191,6 +191,6 @@ impl LegendEntry {
             scene.mark(mark, at(place.x + 0.5 * KEY, y), style.color);
         }
         let name = at(place.x + KEY + AFTER_KEY, place.y);
-        scene.write(&self.name, LABEL_PT, name, 0.0);
+        scene.write(&self.name, LABEL_PT, name, TextAnchor::Start);
     }
 }

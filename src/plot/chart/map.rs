@@ -7,7 +7,7 @@ use super::layout::{AXIS_TITLE_GAP, PlacedPanel, TICK_LABEL_GAP, fitted, title_h
 use super::ticks::Ticks;
 use crate::plot::extent;
 use crate::plot::ink::{self, BLACK, LABEL_PT, PageRectangle, at, grey, pen};
-use crate::plot::scene::{Color, PageScene, VectorPath};
+use crate::plot::scene::{Color, PageScene, TextAnchor, VectorPath};
 
 /// A quantity over two others. Around each pair of their values is a cell, which has the color of the quantity there.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -180,7 +180,7 @@ impl PlacedBar {
             ];
             scene.line(ends, FRAME_PT, BLACK);
             let place = at(frame.right + TICK_LABEL_GAP, y + 0.5 * label);
-            scene.write(&tick.label, LABEL_PT, place, 0.0);
+            scene.write(&tick.label, LABEL_PT, place, TextAnchor::Start);
         }
         let middle = at(self.title_at, 0.5 * (frame.top + frame.bottom));
         scene.write_up(&self.title.0, self.title.1, middle);

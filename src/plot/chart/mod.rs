@@ -30,6 +30,10 @@ pub struct Chart {
     pub magnified: Option<Box<Chart>>,
     /// Whether its errors are those of reading a number off a run: they do not hold what the scheme does to the run.
     pub are_read_off: bool,
+    /// Its height with its legend, pt; `None`: as its panels need it. A chart that is true to scale has its own.
+    pub height_pt: Option<f64>,
+    /// Whether its numbers have a decimal comma.
+    pub decimal_comma: bool,
 }
 
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -53,6 +57,8 @@ pub struct Panel {
     pub series: Vec<ChartSeries>,
     /// A quantity over both axes, as colors behind the series.
     pub map: Option<ColorMap>,
+    /// The name of the column along its axis y; empty if there is none.
+    pub column: String,
 }
 
 impl Panel {
@@ -61,6 +67,16 @@ impl Panel {
             y,
             series,
             map: None,
+            column: String::new(),
+        }
+    }
+
+    /// Sets the name of the column along its axis y.
+    #[must_use]
+    pub fn of_column(self, name: &str) -> Self {
+        Self {
+            column: name.to_owned(),
+            ..self
         }
     }
 }

@@ -101,6 +101,17 @@ pub(super) fn are_drawn(scenario: &Scenario, wanted: &SampleRequest) -> bool {
     is_enough && is_shown(scenario.first_motion(), turn_rad)
 }
 
+/// Returns whether figures of the whole run of `scenario` show its motion within long time steps.
+pub fn show_whole_run(scenario: &Scenario) -> bool {
+    let whole = SampleRequest {
+        columns: Vec::new(),
+        path: true,
+        from_s: 0.0,
+        to_s: None,
+    };
+    are_drawn(scenario, &whole)
+}
+
 /// Returns whether straight lines between the steps of the run of `scenario` would cut bends off.
 pub(super) fn are_bent(scenario: &Scenario) -> bool {
     first_turn_rad(scenario) > STRAIGHT_RAD

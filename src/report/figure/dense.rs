@@ -200,7 +200,7 @@ fn of_path(
 }
 
 fn width_mm(spec: &FigureSpec) -> f64 {
-    (spec.page_width_pt() / PT_PER_MM).round()
+    (spec.given_width_pt() / PT_PER_MM).round()
 }
 
 fn proposal(window_s: f64, spec: &FigureSpec, what: String) -> Dense {

@@ -38,8 +38,10 @@ fn of_table(table: &TableSource, spec: &FigureSpec) -> Result<DrawnFigure, Strin
     let mut chart = of_table::chart(table, &TableView::new(table, spec))?;
     let without_point = of_table::warning(table, &chart);
     let hidden = spec.labels.apply(&mut chart)?;
-    let mut figure = DrawnFigure::without_remarks(chart.scene());
-    spec.labels.write_title(&mut figure.scene);
+    spec.labels.check_ranges(&chart)?;
+    spec.set_height(&mut chart)?;
+    chart.decimal_comma = spec.decimal_comma;
+    let mut figure = DrawnFigure::without_remarks(spec.on_page(chart.scene()));
     figure
         .warnings
         .extend(without_point.into_iter().chain(hidden));

@@ -99,6 +99,7 @@ impl FigureJob<'_> {
         Chart {
             title: self.title(),
             width_pt: self.spec.page_width_pt(),
+            decimal_comma: self.spec.decimal_comma,
             x,
             panels,
             ..Chart::default()

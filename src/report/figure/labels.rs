@@ -1,10 +1,13 @@
 //! Words and axes that a figure has instead of its own.
 
-use crate::plot::chart::{Chart, ChartAxis};
+use crate::engine::text::number::{shortest, significant};
+use crate::plot::chart::{Chart, ChartAxis, Panel};
+use crate::plot::extent;
 use crate::plot::ink::{self, TITLE_PT, at};
 use crate::plot::letters;
-use crate::plot::scene::PageScene;
+use crate::plot::scene::{PageScene, TextAnchor};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -21,7 +24,11 @@ pub struct FigureLabels {
     /// Whether the colors of a map are logarithmic.
     #[serde(default)]
     pub is_log_color: bool,
+    /// The range of the axis y of every panel that `y_ranges` does not name.
     pub y_range: Option<(f64, f64)>,
+    /// The ranges of the axes y of panels, by column.
+    #[serde(default)]
+    pub y_ranges: BTreeMap<String, (f64, f64)>,
 }
 
 /// The longest title of an axis y, pt.
@@ -36,7 +43,7 @@ impl FigureLabels {
     /// Where something is asked for that a path in space does not have.
     pub fn check_in_space(&self) -> Result<(), String> {
         let is_named = self.x.is_some() || !self.y.is_empty();
-        if is_named || self.is_log != [false; 2] || self.y_range.is_some() {
+        if is_named || self.is_log != [false; 2] || self.has_y_range() {
             return Err(
                 "--x-label, --y-label, --log and --y-range are not for a path in space".to_owned(),
             );
@@ -52,16 +59,61 @@ impl FigureLabels {
                 self.y.len()
             ));
         }
-        if chart.is_true_to_scale && (self.is_log != [false; 2] || self.y_range.is_some()) {
+        if chart.is_true_to_scale && (self.is_log != [false; 2] || self.has_y_range()) {
             return Err(
                 "--log and --y-range are not for a path from above: its axes have one scale"
                     .to_owned(),
             );
         }
-        if let (Some((low, _)), [_, true]) = (self.y_range, self.is_log)
-            && low <= 0.0
-        {
-            return Err("--y-range of a logarithmic axis begins above 0".to_owned());
+        let columns: Vec<&str> = chart.panels.iter().map(|panel| &*panel.column).collect();
+        let unknown = self
+            .y_ranges
+            .keys()
+            .find(|name| !columns.contains(&&***name));
+        if let Some(name) = unknown {
+            return Err(format!(
+                "--y-range {name}=...: this figure has no panel of that name, but {}",
+                columns.join(", ")
+            ));
+        }
+        Ok(())
+    }
+
+    fn has_y_range(&self) -> bool {
+        self.y_range.is_some() || !self.y_ranges.is_empty()
+    }
+
+    /// Returns the range of the axis y of `panel` that was asked for.
+    fn range_of(&self, panel: &Panel) -> Option<(f64, f64)> {
+        self.y_ranges.get(&panel.column).copied().or(self.y_range)
+    }
+
+    /// Checks that each panel of `chart` shows something in the range that was asked for.
+    ///
+    /// # Errors
+    /// Returns an error if a panel is empty.
+    pub(super) fn check_ranges(&self, chart: &Chart) -> Result<(), String> {
+        for panel in &chart.panels {
+            let Some((low, high)) = self.range_of(panel) else {
+                continue;
+            };
+            let points = panel.series.iter().flat_map(|series| &series.points);
+            let shown = points.filter(|[x, _]| {
+                let range = chart.x.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+                (range.0..=range.1).contains(x)
+            });
+            let values = shown.map(|[_, y]| *y).filter(|y| y.is_finite());
+            let outside = extent(values).filter(|(least, most)| *most < low || *least > high);
+            if let Some((least, most)) = outside {
+                return Err(format!(
+                    "--y-range {}..{} shows nothing: the values of {} are from {} to {}",
+                    shortest(low),
+                    shortest(high),
+                    panel.column,
+                    significant(least, 6),
+                    significant(most, 6)
+                ));
+            }
         }
         Ok(())
     }
@@ -85,7 +137,12 @@ impl FigureLabels {
         }
         for panel in &mut chart.panels {
             panel.y.is_log |= self.is_log[1];
-            panel.y.range = self.y_range.or(panel.y.range);
+            if let Some((low, high)) = self.range_of(panel) {
+                if panel.y.is_log && low <= 0.0 {
+                    return Err("--y-range of a logarithmic axis begins above 0".to_owned());
+                }
+                panel.y.range = Some((low, high));
+            }
         }
         let mut points = chart
             .panels
@@ -107,25 +164,27 @@ impl FigureLabels {
         let Some(title) = &self.title else {
             return;
         };
-        scene.title.clone_from(title);
-        let height = ink::height(TITLE_PT);
-        let down = height + 2.0 * AROUND_PT;
-        for item in &mut scene.items {
-            *item = item.clone().mapped(|p| at(p.x, p.y + down));
-            item.clip = item
-                .clip
-                .map(|corners| corners.map(|p| at(p.x, p.y + down)));
-        }
+        scene.title = letters::label(&letters::markup(title), TITLE_PT).words;
+        let down = self.title_height_pt();
+        scene.map(|p| at(p.x, p.y + down));
         scene.height_pt += down;
         let room = scene.width_pt - 2.0 * AROUND_PT;
-        let markup = letters::shortened(title, TITLE_PT, room);
-        let place = at(0.5 * scene.width_pt, AROUND_PT + height);
-        scene.write(&markup, TITLE_PT, place, 0.5);
+        let markup = letters::marked(title, TITLE_PT, room);
+        let place = at(0.5 * scene.width_pt, down - AROUND_PT);
+        scene.write(&markup, TITLE_PT, place, TextAnchor::Middle);
+    }
+
+    /// Returns the height that the title takes, pt.
+    pub(super) fn title_height_pt(&self) -> f64 {
+        match self.title {
+            Some(_) => ink::height(TITLE_PT) + 2.0 * AROUND_PT,
+            None => 0.0,
+        }
     }
 }
 
 /// Writes `text` at `axis` in place of its name and unit.
 fn rename(axis: &mut ChartAxis, text: &str, room_pt: f64) {
-    axis.name = letters::shortened(text, TITLE_PT, room_pt);
+    axis.name = letters::marked(text, TITLE_PT, room_pt);
     axis.unit.clear();
 }

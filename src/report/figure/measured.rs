@@ -190,8 +190,9 @@ pub(super) fn residuals(
     }
     let mut chart = job.chart(quantity::axis("t_s").within(range), panels);
     spec.labels.apply(&mut chart)?;
-    let mut scene = chart.scene();
-    spec.labels.write_title(&mut scene);
+    spec.labels.check_ranges(&chart)?;
+    spec.set_height(&mut chart)?;
+    let scene = spec.on_page(chart.scene());
     Ok(Some(DrawnFigure::without_remarks(scene)))
 }
 
@@ -199,7 +200,7 @@ pub(super) fn residuals(
 fn empty(curve: &MeasuredCurve, range: (f64, f64)) -> Panel {
     let axis = quantity::axis(curve.quantity.name);
     let y = ChartAxis::new(format!("{}, measured − run", axis.name), axis.unit);
-    Panel::new(y, vec![ChartSeries::level(range)])
+    Panel::new(y, vec![ChartSeries::level(range)]).of_column(curve.quantity.name)
 }
 
 /// Returns the values of `run` for each curve of `series`; `None` if `watch` stopped the computation.

@@ -7,12 +7,13 @@
 //!   and `size` separates values from rounding. `job` is a figure that is being drawn.
 //! - [`of_table`]: figures of a comparison, a sweep or a fit, read by [`table`](crate::studies::table).
 //! - `spec`: the request for a figure.
+//! - `page`: the size of the page and of the letters on it.
 //! - `source`: the runs or the table of a figure, and their embedding in its file.
 //! - `drawing`: draws a figure from its source.
 //! - `redraw`: redraws a figure from its file.
 //! - [`quantity`]: axis labels of columns and readouts.
 
-mod arcs;
+pub mod arcs;
 mod chords;
 pub mod course;
 mod dense;
@@ -24,6 +25,7 @@ mod measured;
 mod names;
 pub mod of_runs;
 pub mod of_table;
+mod page;
 mod path;
 pub mod quantity;
 mod redraw;
@@ -33,6 +35,7 @@ mod source;
 mod space;
 mod spec;
 
+pub use page::{FONT_SIZES_PT, PAGE_STYLE_NAMES, PageStyle};
 pub use redraw::redraw;
 pub use source::FigureSource;
 pub use spec::{FigureSpec, WIDTHS_MM};

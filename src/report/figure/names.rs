@@ -17,7 +17,7 @@ pub(super) fn names(job: &FigureJob<'_>) -> Vec<String> {
     if !given.is_empty() {
         let names = given.iter();
         return names
-            .map(|name| letters::shortened(name, LABEL_PT, room_pt))
+            .map(|name| letters::marked(name, LABEL_PT, room_pt))
             .collect();
     }
     let mut differs = PARTS.map(|of| runs.iter().any(|run| of(run) != of(&runs[0])));

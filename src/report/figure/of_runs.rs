@@ -193,11 +193,13 @@ fn draw(
     let mut warnings = played.warnings.clone();
     let labels = &job.spec.labels;
     let dense;
-    let mut scene = match job.kind {
+    let scene = match job.kind {
         FigureKind::OverTime(columns) | FigureKind::Error(columns) => {
             let (mut chart, told) = over_time(job, columns, drawn)?;
             warnings.extend(told);
             warnings.extend(measured::beyond_runs(job));
+            labels.check_ranges(&chart)?;
+            job.spec.set_height(&mut chart)?;
             dense = dense::over_time(&chart, columns, drawn, job.spec);
             if let Some(dense) = &dense {
                 let Some(magnified) = magnified(job, columns, dense, watch)? else {
@@ -215,20 +217,27 @@ fn draw(
             labels.apply(&mut chart)?;
             dense = charts::path_warning(&chart, drawn, job.spec);
             warnings.extend(chords::warning(drawn, |course| &course.above));
-            chart.scene()
+            job.spec.fitted(|spec| {
+                chart.width_pt = spec.page_width_pt();
+                chart.scene()
+            })
         }
         FigureKind::ThreeD | FigureKind::Residuals => {
             labels.check_in_space()?;
-            let scene;
-            (scene, dense) = space::scene(job, drawn);
+            let mut proposed = None;
+            let scene = job.spec.fitted(|spec| {
+                let (scene, dense) = space::scene(&FigureJob { spec, ..*job }, drawn);
+                proposed = dense;
+                scene
+            });
+            dense = proposed;
             warnings.extend(chords::warning(drawn, |course| &course.path));
             warnings.extend(measured::in_space(job));
             scene
         }
     };
-    labels.write_title(&mut scene);
     Ok(Some(DrawnFigure {
-        scene,
+        scene: job.spec.on_page(scene),
         warnings,
         dense,
         broke: played.broke.clone(),

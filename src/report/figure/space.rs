@@ -17,7 +17,7 @@ use crate::plot::chart::legend::Legend;
 use crate::plot::chart::ticks::{Tick, Ticks};
 use crate::plot::chart::{ChartAxis, SeriesStyle};
 use crate::plot::ink::{self, BLACK, LABEL_PT, TITLE_PT, at, grey, pen};
-use crate::plot::scene::{Color, PageScene, Point, StrokeStyle};
+use crate::plot::scene::{Color, PageScene, Point, StrokeStyle, TextAnchor};
 use nalgebra::Vector3;
 
 /// Height of the box, relative to its sides.
@@ -43,6 +43,7 @@ struct Space {
     /// Ranges of the three axes.
     ranges: [(f64, f64); 3],
     side_pt: f64,
+    decimal_comma: bool,
 }
 
 /// Draws the figure of paths in space. If a path is too dense, also returns a time range in which it is not.
@@ -51,7 +52,7 @@ pub(super) fn scene(
     drawn: &[SampledRunNumbers],
 ) -> (PageScene, Option<Dense>) {
     let width_pt = job.spec.page_width_pt();
-    let space = Space::fitted(job.runs, drawn, width_pt);
+    let space = Space::fitted(job, drawn);
     let (names, styles): (Vec<_>, Vec<_>) = drawn
         .iter()
         .map(|drawn| chords::as_drawn(drawn, &drawn.course.path))
@@ -117,11 +118,13 @@ fn extent(scene: &PageScene) -> (f64, f64, f64, f64) {
 
 impl Space {
     /// Creates the space, scaled so that box and labels are as wide as the page.
-    fn fitted(runs: &[FigureRun], drawn: &[SampledRunNumbers], width_pt: f64) -> Self {
+    fn fitted(job: &FigureJob<'_>, drawn: &[SampledRunNumbers]) -> Self {
+        let (runs, width_pt) = (job.runs, job.spec.page_width_pt());
         let mut space = Self {
             view: camera(runs).view(),
             ranges: ranges(drawn, &size::axis(runs, "z_m")),
             side_pt: 0.5 * width_pt,
+            decimal_comma: job.spec.decimal_comma,
         };
         // The labels do not grow with the box, so its size is adjusted to the remaining width. The paths are always
         // inside the box.
@@ -173,6 +176,7 @@ impl Space {
     /// Draws the box with the paths of `drawn` in `styles`.
     fn draw(&self, drawn: &[SampledRunNumbers], styles: &[SeriesStyle]) -> PageScene {
         let mut scene = PageScene::new(0.0, 0.0, "");
+        scene.decimal_comma = self.decimal_comma;
         let edges = [self.edge(0), self.edge(1), self.edge(2)];
         let ticks = [0, 1, 2].map(|axis| self.ticks(axis, &edges[axis]));
         self.walls(&ticks, &mut scene);
@@ -286,7 +290,7 @@ impl Space {
             scene.line([foot, end], 0.5, BLACK);
             reach = reach.max(clear + half.x * out.x.abs() + half.y * out.y.abs());
             let base = at(middle.x, middle.y + half.y);
-            scene.write(&tick.label, LABEL_PT, base, 0.5);
+            scene.write(&tick.label, LABEL_PT, base, TextAnchor::Middle);
         }
         let name = ["x_m", "y_m", "z_m"][axis];
         let title = quantity::axis(name).title(ticks);
@@ -303,7 +307,7 @@ impl Space {
             middle.x + out.x * clear,
             middle.y + out.y * clear + 0.5 * cap,
         );
-        scene.write(&title, size, base, 0.5);
+        scene.write(&title, size, base, TextAnchor::Middle);
     }
 
     /// Returns the direction on the page from an axis out of the box.

@@ -1,7 +1,7 @@
 //! What a figure shows, in words of its options.
 
 use super::labels::FigureLabels;
-use crate::plot::{COLUMN_PT, PT_PER_MM};
+use super::page::PageStyle;
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
@@ -30,16 +30,19 @@ pub struct FigureSpec {
     pub measured_until_s: Option<f64>,
     /// The width of a column where there is none.
     pub width_pt: Option<f64>,
+    /// The height that the figure needs if there is none.
+    pub height_pt: Option<f64>,
+    /// The size of the letters of axis titles, pt; other letters change with it.
+    pub font_pt: Option<f64>,
+    pub style: PageStyle,
+    /// Whether numbers have a decimal comma.
+    pub decimal_comma: bool,
     /// Whether an SVG has its text as text.
     pub text: bool,
     pub labels: FigureLabels,
 }
 
 impl FigureSpec {
-    pub fn page_width_pt(&self) -> f64 {
-        self.width_pt.unwrap_or(COLUMN_PT)
-    }
-
     /// Whether all of its numbers can be those of a figure: no command line gives others.
     pub(super) fn is_sound(&self) -> bool {
         let times_s = [Some(self.from_s), self.to_s, self.measured_until_s];
@@ -47,10 +50,9 @@ impl FigureSpec {
             .into_iter()
             .flatten()
             .all(|time_s| time_s >= 0.0 && time_s.is_finite())
-            && self
-                .width_pt
-                .is_none_or(|pt| WIDTHS_MM.contains(&((pt / PT_PER_MM * 1e6).round() / 1e6)))
+            && self.has_page()
             && self.labels.y_range.is_none_or(is_range)
+            && self.labels.y_ranges.values().copied().all(is_range)
             && self.x_range.is_none_or(is_range)
     }
 }

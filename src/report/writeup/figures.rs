@@ -11,7 +11,7 @@ use crate::plot::{COLUMN_PT, PageScene};
 use crate::report::figure::course::{RunSampler, SampleRequest, SampledRun};
 use crate::report::figure::kind::{FigureKind, RESIDUALS};
 use crate::report::figure::of_runs::{self, DrawnFigure, FigureRun, KnownNumbers};
-use crate::report::figure::{FigureSource, FigureSpec};
+use crate::report::figure::{FigureSource, FigureSpec, arcs};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -146,7 +146,8 @@ fn also(scenario: &Scenario, readouts: &Readouts, is_exact: bool, exact: bool) -
         .swing_s()
         .map(|swing_s| swing_s / scenario.motion.time_step_s);
     let joined = steps
-        .filter(|steps| *steps < SMOOTH_SWING_STEPS && !is_exact)
+        .filter(|steps| *steps < SMOOTH_SWING_STEPS)
+        .filter(|_| !is_exact && !arcs::show_whole_run(scenario))
         .map(|steps| format!("; straight lines join the run's steps, about {steps:.0} a swing"));
     format!("{beneath}{}", joined.unwrap_or_default())
 }

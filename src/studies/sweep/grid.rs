@@ -18,7 +18,7 @@ use std::path::Path;
 use toml::Value;
 
 /// The key that, as it varies, leaves the seconds of a run as they are and not its steps.
-const TIME_STEP: &str = "motion.time_step_s";
+pub const TIME_STEP: &str = "motion.time_step_s";
 
 /// The keys of a push in steps, and those that say the same in seconds.
 const IN_STEPS_OR_SECONDS: [(&str, &str); 2] = [("first_step", "from_s"), ("steps", "for_s")];

@@ -15,7 +15,7 @@ pub mod part;
 
 use crate::engine::text::shipped::{Shipped, shipped};
 pub use file::{MAP, Shard, SweepFigure, SweepFile};
-pub use grid::{Reliability, Sweep, SweepRow};
+pub use grid::{Reliability, Sweep, SweepRow, TIME_STEP};
 pub use part::{EmptyRows, ReliabilityCount, RowTally};
 
 /// The sweeps that come with the program, compiled in.

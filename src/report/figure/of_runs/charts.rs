@@ -46,7 +46,7 @@ pub(super) fn over_time(
         }
         series.extend(pushes(job.runs, from_s, end_s));
         series.extend(unpredictable(drawn, from_s, end_s));
-        Panel::new(size::axis(job.runs, column.name), series)
+        Panel::new(size::axis(job.runs, column.name), series).of_column(column.name)
     });
     job.chart(x, panels.collect())
 }

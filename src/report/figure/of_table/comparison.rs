@@ -49,7 +49,7 @@ pub(super) fn drawn(
         if column.starts_with(ERROR) || column == "error_at_end_m" {
             series.extend(rounding(source, &values));
         }
-        panels.push(Panel::new(logarithmic(of_comparison(column)), series));
+        panels.push(Panel::new(logarithmic(of_comparison(column)), series).of_column(column));
     }
     Ok((logarithmic(x), panels))
 }

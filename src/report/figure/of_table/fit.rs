@@ -242,7 +242,7 @@ impl FitFigure<'_> {
                 ..self.series("measured", rows)?
             });
         }
-        Ok(Panel::new(quantity::axis(name), series))
+        Ok(Panel::new(quantity::axis(name), series).of_column(name))
     }
 
     /// The panel of what is left, in units of the uncertainties where all are stated.
@@ -265,6 +265,6 @@ impl FitFigure<'_> {
             left.style = SeriesStyle::points(index);
             series.push(left);
         }
-        Ok(Panel::new(ChartAxis::new("residual", unit), series))
+        Ok(Panel::new(ChartAxis::new("residual", unit), series).of_column(column))
     }
 }

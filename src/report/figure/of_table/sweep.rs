@@ -237,7 +237,8 @@ impl SweepFigure<'_> {
             is_log: spans_decades(values.map(|point| point[1]), DECADES),
             ..columns::axis(quantity)
         };
-        Ok(Panel::new(y, series))
+        let column = quantity.first().map_or("", |part| &part.name);
+        Ok(Panel::new(y, series).of_column(column))
     }
 
     /// What a curve with these `settings` is called in the legend.

@@ -54,7 +54,7 @@ pub(in crate::report::figure::of_table) fn drawn(
         };
         panels.push(Panel {
             map: Some(map),
-            ..Panel::new(y.clone(), Vec::new())
+            ..Panel::new(y.clone(), Vec::new()).of_column(&column)
         });
     }
     Ok((x, panels))
