@@ -227,7 +227,10 @@ fn a_damaged_count_of_wrong_codes_does_not_block() {
         board::lines(&folder, 80);
         refused(&folder, &wrong_word("anna", &[&seat]), 0, NO_SEAT);
         login::claim(&folder, &seat.word, 0).unwrap();
-        assert!(fs::symlink_metadata(&count).is_err(), "it was replaced");
+        assert!(
+            fs::symlink_metadata(&count).is_err(),
+            "the count was replaced"
+        );
     }
 }
 

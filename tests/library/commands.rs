@@ -275,7 +275,7 @@ fn setting_body_and_start_starts_one_new_run() {
         "set = { 'start.tilt_deg' = 30, 'body.rim.radius_m' = 0.5, 'motion.time_step_s' = 0.05 }",
     );
     let file = desk.scenario().file;
-    assert_eq!(desk.step(), 200, "it is played to the same time");
+    assert_eq!(desk.step(), 200, "played to the same time");
     assert_eq!(file.start.tilt_deg, Some(30.0));
     assert_eq!(file.body.rim.unwrap().radius_m, 0.5);
     assert_eq!(desk.lab.player().motion().time_step_s, 0.05);
@@ -619,7 +619,7 @@ fn the_focus_leaves_a_hidden_pane() {
         stage.commands("show = ['3d', 'parameters']\nhide = []");
         assert_eq!(stage.focus(), "3d", "at {size}");
         stage.commands("fill = 'traces'");
-        assert_eq!(stage.focus(), "traces", "what is named fills the screen");
+        assert_eq!(stage.focus(), "traces", "the named pane fills the screen");
         stage.commands("fill = 'none'");
         assert_eq!(stage.focus(), "3d", "at {size}");
     }

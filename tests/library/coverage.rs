@@ -141,7 +141,7 @@ fn stated_uncertainties_cover_theory_in_random_runs() {
             Some((seed, measured(&case.scenario), case))
         })
         .collect();
-    assert_eq!(runs.len(), 1000, "theory speaks of all of them");
+    assert_eq!(runs.len(), 1000, "theory covers every run");
     for (which, name) in ["precession", "nutation"].into_iter().enumerate() {
         let mut errors = Vec::new();
         for (seed, measured, case) in &runs {

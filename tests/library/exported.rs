@@ -52,12 +52,12 @@ fn verified(bytes: &[u8]) -> Result<Verified, Unverified> {
 }
 
 fn no_fit(_: &str) -> Result<Vec<u8>, Unverified> {
-    unreachable!("it is no fit")
+    unreachable!("not a fit")
 }
 
 #[track_caller]
 fn difference(bytes: &[u8]) -> gyrolab::studies::verify::FileDifference {
-    verified(bytes).unwrap().difference.expect("it is the same")
+    verified(bytes).unwrap().difference.expect("a difference")
 }
 
 #[track_caller]
@@ -220,7 +220,11 @@ fn the_layout_precedes_the_run_file_and_is_read_back() {
     let path = folder.path().join("run.csv");
     std::fs::write(&path, &bytes).unwrap();
     let again = Document::read(&path).unwrap().scenario().unwrap();
-    assert_eq!(again.to_toml(), scenario.to_toml(), "it runs again");
+    assert_eq!(
+        again.to_toml(),
+        scenario.to_toml(),
+        "the run file is read back"
+    );
     let layout = CsvLayout::read(&header.replace("\n# ", "\n")[2..]).unwrap();
     assert_eq!(*layout.file(), file);
     let plain = csv(&scenario, whole());
@@ -421,7 +425,7 @@ fn a_run_that_ends_early_is_verified_up_to_its_end() {
     ];
     let scenario = preset("method-2", &sets);
     let mut run = Simulation::new(Arc::new(scenario.clone()));
-    let end = run.step_to(400).expect_err("it breaks down");
+    let end = run.step_to(400).expect_err("a breakdown");
     let result = verified(&csv(&scenario, whole())).unwrap();
     assert_eq!(result.difference, None);
     assert_eq!(result.notes[0], format!("its run ends early: {end}"));

@@ -275,7 +275,7 @@ fn a_png_has_the_pixels_of_the_page() {
     );
     let grey = PageScene::new(10.0, 10.0, "");
     let bytes = write(&grey, PageFormat::Png, None).unwrap();
-    assert_eq!(bytes[25], 0, "a page without colour is in grey");
+    assert_eq!(bytes[25], 0, "a page without color is gray");
     assert!(Picture::of(&bytes).dots.iter().all(|dot| *dot == white));
 }
 

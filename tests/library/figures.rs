@@ -234,7 +234,7 @@ fn traces_show_x_y_and_z_with_units_and_every_extreme() {
     let left = panels[0][0].x;
     assert!(
         panels.iter().all(|panel| panel[0].x == left),
-        "one left edge"
+        "a common left edge"
     );
     let seen = places(&runs[0]);
     for (axis, [top_left, bottom_right]) in panels.into_iter().enumerate() {

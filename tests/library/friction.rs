@@ -449,18 +449,18 @@ fn a_sleeping_top_falls_when_its_spin_drops_below_the_limit() {
         let mut run = Run::new("exact", &body, &loads, begin);
         while observables::tilt_deg(&run.state).to_radians() < 10.0 * tilt {
             run.step(0.01, 1);
-            assert!(spin_momentum(&run.state) > 0.5 * limit, "it sleeps on");
+            assert!(spin_momentum(&run.state) > 0.5 * limit, "still sleeping");
         }
         let found = spin_momentum(&run.state) / limit;
         let expected = waking_momentum(across, load, 1.1 * limit, decay_s) / limit;
         is_near(found, expected, 2e-4, &format!("{decay_s} s"));
         let is_below = (0.85..0.99).contains(&found);
-        assert!(is_below, "where it is said to be: {found}");
+        assert!(is_below, "within the stated range: {found}");
         let mut lowest: f64 = 0.0;
         for _ in 0..300 {
             lowest = lowest.max(observables::tilt_deg(run.step(0.1, 1)));
         }
-        assert!(lowest > 30.0, "it falls: {lowest} degrees");
+        assert!(lowest > 30.0, "the top falls: {lowest} degrees");
     }
 }
 

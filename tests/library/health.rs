@@ -311,7 +311,7 @@ fn check_verdict(scenario: &Scenario) {
     let seen = health.most_distance_m.unwrap() / scenario.arm_m();
     let most = largest_distance(scenario.clone());
     if most.is_infinite() {
-        assert_eq!(health.is_believed(), Some(false), "its numbers break");
+        assert_eq!(health.is_believed(), Some(false), "the run breaks down");
         return;
     }
     let is_right = seen <= most * (1.0 + 1e-9) && seen > 0.9 * most - 1e-12;
@@ -571,7 +571,10 @@ fn the_cost_of_a_body_at_rest_assumes_that_it_will_swing() {
     let push = "[[push]]\npoint = 'top'\nforce_N = [1, 0, 0]\nsteps = 3\n";
     let start = "[start]\ntilt_deg = 45\nmomentum_Js = [0, 0, 0]\n";
     let at_rest = wheel(1.0, 0.5, &format!("{start}{motion}{push}"));
-    assert!(is_affordable(&at_rest), "pushed on the axle: closed form");
+    assert!(
+        is_affordable(&at_rest),
+        "a push on the axle keeps the closed form"
+    );
     let mut lopsided = at_rest.file.clone();
     lopsided.body.point[0].at_m[0] = 0.3;
     let lopsided = Document::from_file("lopsided", &lopsided).unwrap();

@@ -31,7 +31,7 @@ fn undo_restores_backdated_edits_after_resume() {
     assert_eq!(back.step(), 400);
     for step in 402..=600 {
         back.commands("undo = 1");
-        assert_eq!(back.step(), step - 1, "the undo of the push there");
+        assert_eq!(back.step(), step - 1, "undoes the push at that step");
     }
     assert_eq!(back.scenario().file.push.len(), 1);
     back.commands("undo = 1");
@@ -92,7 +92,7 @@ fn await_pinned(desk: &mut Desk) {
         std::thread::sleep(std::time::Duration::from_millis(5));
         desk.wait(1);
     }
-    panic!("the pinned run has not come back");
+    panic!("the pinned run was not restored");
 }
 
 #[test]
@@ -106,7 +106,7 @@ fn the_pinned_run_is_restored_with_its_edits() {
     assert!(back.lab.comparison().is_pinned());
     let is_same = |now: SessionContent| now.place == content.place && **now.work == **content.work;
     let made_again = back.lab.content(&Default::default());
-    assert!(is_same(made_again), "it is kept while it is made again");
+    assert!(is_same(made_again), "saved while it is recomputed");
     await_pinned(&mut back);
     assert!(is_same(back.lab.content(&Default::default())));
     let again = back.lab.comparison().pinned().unwrap();

@@ -94,7 +94,7 @@ pub fn read(text: &str) -> Lesson {
 #[track_caller]
 fn unreadable(text: &str) -> String {
     match reading::read("a.md", text) {
-        Ok(_) => panic!("taken: {text}"),
+        Ok(_) => panic!("accepted: {text}"),
         Err(problems) => problems.to_string(),
     }
 }
@@ -424,7 +424,7 @@ fn a_check_without_a_task_applies_to_the_lab_block() {
         "# A\n\n## B\n\n```lab\nopen = \"method-2\"\n```\n\n```check\nthat = \"steps == 0\"\n```\n";
     assert!(
         checked(&read(first)).is_ok(),
-        "before a run is open nothing holds"
+        "no condition holds before a run is open"
     );
 }
 
@@ -541,7 +541,7 @@ fn a_jump_executes_only_the_blocks_that_the_page_needs() {
     assert_eq!(
         lines(3, &kept),
         [2],
-        "page 3 has a task, which is the student's"
+        "the task on page 3 is left to the student"
     );
     assert!(lesson.stage_of(3, &Predictions::default()).is_none());
     assert!(lesson.task_of(3, &Predictions::default()).is_some());

@@ -167,7 +167,7 @@ fn a_prediction_is_requested_locked_and_compared_with_the_outcome() {
     stage.shows("It goes on here").shows("How large is it?");
     assert!(
         stage.lab.view().hides(HideablePart::Health),
-        "one is still open"
+        "one prediction is still open"
     );
     stage.press("\n").shows("your prediction").shows("deg");
     stage.press("much\n").shows("must be a number");
@@ -250,7 +250,7 @@ fn hidden_items_are_hidden_in_every_pane() {
     let numbers = row
         .split_whitespace()
         .filter(|word| word.parse::<f64>().is_ok());
-    assert!(numbers.count() <= 1, "the run's alone: {row}");
+    assert!(numbers.count() <= 1, "only the number of the run: {row}");
     stage.commands("exact = false").wait(6.0);
     assert_eq!(stage.picture(), picture);
 }
@@ -277,7 +277,7 @@ fn the_run_stays_visible_with_every_pane() {
         assert_eq!(panes(&stage), [run[0], run[1], values], "{keys}");
         let step = stage.step();
         stage.press(" ").wait(0.5).press(" p");
-        assert!(stage.step() > step, "the run goes on from there");
+        assert!(stage.step() > step, "the run continues from there");
         assert!(!stage.lab.player().run().scenario().pushes.is_empty());
         // This also holds while a value is typed.
         stage.press("e\n").shows("Enter: ");

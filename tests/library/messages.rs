@@ -223,8 +223,11 @@ fn a_pause_keeps_the_remaining_wait_and_playback() {
     assert_eq!((desk.step(), desk.lab.script().count()), (paused, 2));
     desk.press(&[Key::Char(' ')]);
     desk.pass(Duration::from_secs(1));
-    assert!(desk.step() > paused, "it plays again");
-    assert!(!desk.lab.script().is_done(), "a second is left of the wait");
+    assert!(desk.step() > paused, "the run plays again");
+    assert!(
+        !desk.lab.script().is_done(),
+        "one second of the wait remains"
+    );
     desk.pass(Duration::from_secs(2));
     assert!(desk.lab.script().is_done());
 }

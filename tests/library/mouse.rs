@@ -81,7 +81,7 @@ fn a_press_on_the_traces_sets_the_cursor_and_a_drag_moves_it() {
         assert!(early < dragged && dragged < late, "{dragged}");
         desk.does(Did::Release, at(2));
         desk.does(Did::Drag, at(9));
-        assert_eq!(desk.cursor_s(), Some(dragged), "it was released");
+        assert_eq!(desk.cursor_s(), Some(dragged), "the button was released");
     }
 }
 

@@ -61,7 +61,7 @@ fn every_preset_meets_its_expected_values() {
         expected.sort_by_key(|entry| entry.at_step);
         let mut simulation = Simulation::new(Arc::new(scenario));
         for entry in expected {
-            simulation.step_to(entry.at_step).expect("finite");
+            simulation.step_to(entry.at_step).expect("finite numbers");
             let column = CsvColumn::find(&entry.readout).expect("a column");
             let value = column.value(simulation.scenario(), &simulation.sample());
             let off = (value - entry.value).abs();

@@ -15,9 +15,9 @@ fn reference(name: &str) -> Vec<[f64; 8]> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("tests/reference")
         .join(format!("{name}.csv"));
-    let mut rows = csv::Reader::from_path(path).expect("the reference is there");
+    let mut rows = csv::Reader::from_path(path).expect("the reference file");
     rows.deserialize()
-        .map(|row| row.expect("eight numbers a row"))
+        .map(|row| row.expect("eight numbers per row"))
         .collect()
 }
 
@@ -28,7 +28,7 @@ fn deviations(name: &str) -> (f64, f64) {
     let rows = reference(name);
     assert!(rows.len() > 40, "{name} has its rows");
     for [step, t, x, y, z, lx, ly, lz] in rows {
-        simulation.step_to(step as u64).expect("finite");
+        simulation.step_to(step as u64).expect("finite numbers");
         let sample = simulation.sample();
         assert!(
             (sample.time_s - t).abs() <= 1e-12 * t,

@@ -155,9 +155,13 @@ fn a_run_that_broke_down_continues_after_a_fix() {
     assert!((41..2000).contains(&ended_at), "{ended_at}");
     assert!(desk.simulation().has_ended());
     desk.commands("go_to = 40\nset = { 'motion.time_step_s' = 0.001 }\nstep = 50");
-    assert_eq!(desk.step(), 90, "an edit before the end mends it");
+    assert_eq!(desk.step(), 90, "an edit before the breakdown fixes it");
     desk.commands(&format!("undo = 1\ngo_to = {}", ended_at + 9));
-    assert_eq!(desk.step(), ended_at, "without it the run ends again");
+    assert_eq!(
+        desk.step(),
+        ended_at,
+        "without the edit, the run breaks down again"
+    );
 }
 
 #[test]

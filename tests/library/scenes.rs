@@ -60,7 +60,7 @@ fn the_camera_does_not_move_during_playback() {
     }
     assert!(
         shortest < 0.6,
-        "it points at the eye on its way: {shortest}"
+        "the axle points toward the viewer at times: {shortest}"
     );
 }
 

@@ -22,7 +22,7 @@ const SMALL: &str = "scenario = \"cusps\"\nmeasure = [\"z_m\", \"path\"]\n\
     [[vary]]\nkey = \"start.momentum_Js.2\"\nfrom = 10\nto = 60\ncount = 2\n";
 
 fn no_fit(_: &str) -> Result<Vec<u8>, Unverified> {
-    unreachable!("it is no fit")
+    unreachable!("not a fit")
 }
 
 fn csv(sweep: &Sweep) -> String {
@@ -83,7 +83,7 @@ fn shipped_sweeps_support_their_claims() {
     }
     assert!(
         (slow[3] / slow[4] - 1.0).abs() > 0.05,
-        "a slow top is no fast one: {slow:?}"
+        "a slow top is not a fast top: {slow:?}"
     );
     assert!((fast[3] / fast[4] - 1.0).abs() < 0.01, "{fast:?}");
 

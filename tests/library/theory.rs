@@ -158,7 +158,7 @@ fn steady_roots_belong_to_the_current_tilt() {
     close("fast", start.fast_precession.unwrap(), 9.6047, 1e-4);
     let slow = theory(&preset("sleeping-unstable", &[]), 0.0).unwrap();
     let roots = (slow.slow_precession, slow.fast_precession);
-    assert_eq!(roots, (None, None), "too slow to precess steadily");
+    assert_eq!(roots, (None, None), "too slow for steady precession");
     let level = theory(&preset("cusps", &["start.tilt_deg=90"]), 0.0).unwrap();
     let level_slow = level.slow_precession.unwrap();
     close("level: slow", level_slow, 49.0 / 60.0, 1e-12);
@@ -216,7 +216,7 @@ fn the_azimuth_reverses_at_the_cusp_tilt() {
             turned += 1;
         }
     }
-    assert_eq!(turned, 2, "at both ends of one loop");
+    assert_eq!(turned, 2, "two reversals per loop");
 }
 
 #[test]
@@ -420,7 +420,10 @@ fn uncertainties_are_right_with_few_steps_per_nutation() {
     println!("at most {worst:?} standard errors; {precise:?} of 184 known to a thousandth");
     for which in [0, 1] {
         assert!(worst[which] < 5.0, "honest");
-        assert!(worst[which] > 0.2 && precise[which] > 80, "nor too modest");
+        assert!(
+            worst[which] > 0.2 && precise[which] > 80,
+            "uncertainties not too large"
+        );
     }
 }
 

@@ -393,7 +393,10 @@ fn the_overview_shows_window_push_and_edit() {
     let dim = cells_of(Role::RunEarlier, area, &buf);
     assert!(!bright.is_empty() && dim.len() > bright.len());
     let left = |cells: &[(u16, u16)]| cells.iter().map(|(x, _)| *x).max();
-    assert!(left(&dim) <= left(&bright), "the future is empty");
+    assert!(
+        left(&dim) <= left(&bright),
+        "nothing is drawn after the current time"
+    );
 }
 
 #[test]
@@ -450,7 +453,7 @@ fn the_wheel_zooms_about_the_pointer() {
     assert!((length_s - 0.5 * before.1).abs() < 1e-9);
     assert!(
         (time_s(&stage) - before.0).abs() < 0.05 * length_s,
-        "the pointer's time stays"
+        "the time under the pointer stays"
     );
     for _ in 0..10 {
         Pointer::default().act(mouse(Did::WheelDown), stage.size, &mut stage.lab);

@@ -212,7 +212,7 @@ fn the_browser_enters_and_leaves_folders() {
     };
     // There is no entry that leads out of the folder.
     assert_eq!(shown(&browser), ["/runs/", "/first.toml"]);
-    assert!(!browser.enter(may_be_read), "a preset is no folder");
+    assert!(!browser.enter(may_be_read), "a preset is not a folder");
     let enter = |list: &mut gyrolab::lab::browser::Browser, name: &str| {
         list.filter_by(|line| line.push_str(name));
         list.enter(may_be_read)
@@ -228,7 +228,10 @@ fn the_browser_enters_and_leaves_folders() {
         let folder = browser.folder().map(Path::to_path_buf);
         let wanted = (!above.is_empty()).then(|| root.path().join("runs"));
         assert_eq!(folder, wanted);
-        assert!(browser.choice().unwrap().is_folder, "the one that was left");
+        assert!(
+            browser.choice().unwrap().is_folder,
+            "the folder that was left"
+        );
     }
     assert_eq!(shown(&browser), ["/runs/", "/first.toml"]);
     // An unconfined lab can also go up from the first folder.
@@ -240,7 +243,7 @@ fn the_browser_enters_and_leaves_folders() {
     let wanted = std::fs::canonicalize(&runs).unwrap();
     assert_eq!(browser.folder(), wanted.parent());
     let back = browser.choice().unwrap().name.clone();
-    assert_eq!(Path::new(&back), wanted, "the one that was left");
+    assert_eq!(Path::new(&back), wanted, "the folder that was left");
 }
 
 #[test]

@@ -253,7 +253,7 @@ fn two_hundred_kills_during_a_vote_lose_no_locked_votes() {
     let rows = votes.matches(&format!("{LESSON},finer,")).count();
     assert_eq!(rows, 200, "{votes}");
     println!(
-        "{kills} kills, {locked} after the vote was seen as locked, {open} before it was kept"
+        "{kills} kills, {locked} after the vote was seen as locked, {open} before it was saved"
     );
 }
 

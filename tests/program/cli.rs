@@ -777,7 +777,7 @@ fn an_export_removes_the_temporary_files_of_killed_ones() {
     let mut child = command.stderr(Stdio::null()).spawn().unwrap();
     wait_until(&mut child, || !ground.files().is_empty());
     ground.stderr("run cusps --steps 2 -o 1.csv");
-    assert_eq!(ground.files().len(), 2, "one is being written");
+    assert_eq!(ground.files().len(), 2, "one file is being written");
     child.kill().unwrap();
     child.wait().unwrap();
     ground.stderr("run cusps --steps 2 -o 2.csv");

@@ -87,7 +87,7 @@ fn the_orders_of_the_schemes_are_in_the_table() {
         let csv = told(&lab, &format!("{args} -o -"));
         let rows = rows(&csv);
         assert_eq!(rows.len(), 3);
-        assert_eq!(rows[0][5], "n/a", "there is none before the first");
+        assert_eq!(rows[0][5], "n/a", "no order for the first time step");
         for pair in rows.windows(2) {
             assert!((number(&pair[1], "order") - order).abs() < 0.1, "{csv}");
             assert!(number(&pair[0], "error_m") > number(&pair[1], "error_m"));

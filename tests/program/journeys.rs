@@ -187,7 +187,7 @@ fn an_export_equals_the_csv_of_the_saved_run() {
     }
     lab.press(ESC);
     lab.wait_for("L lessons");
-    assert_eq!(ground.files(), ["state"], "what is left of a cancelled one");
+    assert_eq!(ground.files(), ["state"], "no files of a canceled export");
     let csv = export_run(&mut lab, "run.csv");
     save_run(&mut lab, "run.toml");
     assert!(csv == run(&ground, "run.toml"), "other bytes");

@@ -180,7 +180,7 @@ fn a_sweep_killed_twenty_times_ends_with_the_same_bytes() {
             fs::write(&part, &text[..text.len() - 1]).unwrap();
         }
     }
-    assert!(most > 1, "it was never killed between two rows");
+    assert!(most > 1, "never killed between two rows");
     run_sweep(&ground, args, "killed.csv");
     assert_eq!(ground.read("killed.csv"), whole);
     assert_eq!(ground.files(), ["killed.csv", "whole.csv"]);

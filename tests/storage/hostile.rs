@@ -49,7 +49,9 @@ fn make_fifo(path: &Path) {
 fn within_patience<T: Send + 'static>(what: impl FnOnce() -> T + Send + 'static) -> T {
     let (done, result) = mpsc::channel();
     thread::spawn(move || done.send(what()));
-    result.recv_timeout(PATIENCE).expect("it hangs, or panics")
+    result
+        .recv_timeout(PATIENCE)
+        .expect("no timeout and no panic")
 }
 
 #[test]
@@ -108,6 +110,6 @@ fn files_of_another_user_are_not_used() {
         let before = fs::read(&path).unwrap();
         let found = resume(&folder, None, |content| Ok(texts(content))).unwrap();
         assert!(found.resumed.is_none(), "{end}");
-        assert_eq!(fs::read(&path).unwrap(), before, "{end}: it is as it was");
+        assert_eq!(fs::read(&path).unwrap(), before, "{end}: unchanged");
     }
 }

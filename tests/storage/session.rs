@@ -107,7 +107,7 @@ fn backdate(path: &Path, seconds: u64) {
 fn wait_until(is_so: impl Fn() -> bool) {
     let begin = Instant::now();
     while !is_so() {
-        assert!(begin.elapsed() < PATIENCE, "it does not come");
+        assert!(begin.elapsed() < PATIENCE, "condition never became true");
         thread::sleep(Duration::from_millis(5));
     }
 }
@@ -198,7 +198,11 @@ fn the_newest_session_not_in_use_is_resumed() {
     save_session(&folder, "new", "");
     assert_eq!(newest_content(&folder).unwrap().0, "new");
     let new = resume_any(&folder).resumed.unwrap();
-    assert_eq!(newest_content(&folder).unwrap().0, "old", "two are in use");
+    assert_eq!(
+        newest_content(&folder).unwrap().0,
+        "old",
+        "two sessions are in use"
+    );
     middle.note(content("middle", "2"));
     closed(middle);
     drop(new);
@@ -360,7 +364,7 @@ fn saving_is_retried_and_errors_are_reported_until_it_succeeds() {
     in_the_way();
     session.note(content("run", "five"));
     flush_until_saved(&session);
-    assert!(session.trouble().is_some(), "it is new again");
+    assert!(session.trouble().is_some(), "reported again");
     let closed = session.close(PATIENCE);
     assert!(closed.trouble.is_some());
     assert_eq!(texts(&closed.kept.unwrap()), pair("run", "four"));
@@ -486,13 +490,13 @@ fn a_killed_process_loses_at_most_a_second_and_releases_its_session() {
         other.note(&n.to_string());
     }
     thread::sleep(Duration::from_secs(1));
-    assert_eq!(newest_content(&folder), None, "it is in use");
+    assert_eq!(newest_content(&folder), None, "the session is in use");
     other.kill();
     assert_eq!(newest_content(&folder), Some(pair("run", "99")));
     let mut next = Other::begin(&folder);
     assert_eq!(next.hear("begins"), "begins at 99");
     let third = Other::begin(&folder).hear("begins");
-    assert_eq!(third, "begins at new", "it is in use");
+    assert_eq!(third, "begins at new", "the session is in use");
     next.kill();
 }
 

@@ -270,7 +270,7 @@ impl Terminal {
             }
             assert!(
                 begin.elapsed() < PATIENCE,
-                "it does not end:\n{}",
+                "the program does not end:\n{}",
                 self.screen()
             );
             thread::sleep(Duration::from_millis(10));
@@ -318,9 +318,12 @@ impl Terminal {
             left.is_some_and(|left| is_last && sent[left..].contains(SHOWS_CURSOR))
         });
         let sent = self.sent_text();
-        assert!(!sent.contains("\u{1b}[?1003h"), "moves are not asked for");
+        assert!(
+            !sent.contains("\u{1b}[?1003h"),
+            "mouse motion is not requested"
+        );
         let [on, off] = [MOUSE_ON, MOUSE_OFF].map(|mode| sent.matches(mode).count());
-        assert_eq!(on, off, "the mouse is given back as often as it was taken");
+        assert_eq!(on, off, "the mouse is released as often as it was taken");
         assert!(sent.rfind(MOUSE_OFF) >= sent.rfind(MOUSE_ON));
         assert!(sent.rfind(MOUSE_OFF) < sent.rfind(LEAVES_ALTERNATE_SCREEN));
     }

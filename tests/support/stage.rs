@@ -77,7 +77,7 @@ impl Stage {
                 return self.wait(0.1);
             }
         }
-        panic!("the page does not come to its end");
+        panic!("the commands never finish");
     }
 
     pub fn press(&mut self, keys: &str) -> &mut Self {

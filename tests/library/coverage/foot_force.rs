@@ -87,7 +87,10 @@ fn the_stated_uncertainty_covers_the_weight_in_random_runs() {
     let mut errors = Vec::new();
     for (seed, nutations, (mean, weight)) in &runs {
         let Some(mean) = mean else {
-            assert!(*nutations < 2.0, "none of {seed}, {nutations} nutations");
+            assert!(
+                *nutations < 2.0,
+                "no mean for seed {seed}, {nutations} nutations"
+            );
             continue;
         };
         let off = (mean.value - weight).abs() / mean.uncertainty;
@@ -99,6 +102,6 @@ fn the_stated_uncertainty_covers_the_weight_in_random_runs() {
     let median = errors[count / 2];
     println!("foot force: {count} given, {within} within 2 standard errors, median {median}");
     assert!(within as f64 >= 0.93 * count as f64, "{within} of {count}");
-    assert!(median >= 0.2, "padded: {median}");
-    assert!(count >= 700, "withheld: {count} given");
+    assert!(median >= 0.2, "uncertainties too large: {median}");
+    assert!(count >= 700, "too few stated: {count}");
 }

@@ -133,7 +133,10 @@ fn spin_vertical_momentum_and_energy_are_constant_at_any_time() {
             let now = constants(&start, &top, t);
             for k in 0..3 {
                 let change = (now[k] - first[k]).abs() / units[k];
-                assert!(change < 4e-14, "constant {k} moved by {change:e} at {t} s");
+                assert!(
+                    change < 4e-14,
+                    "constant {k} changed by {change:e} at {t} s"
+                );
             }
         }
     }

@@ -99,7 +99,7 @@ fn pendulum_has_the_textbook_period() {
         .sum();
     let swing = std::f64::consts::TAU * (6.6_f64 / 49.0).sqrt() * series;
     // The tilt has two periods in each full swing.
-    let period = top.nutation_period().expect("it swings");
+    let period = top.nutation_period().expect("a period");
     let off = (2.0 * period / swing - 1.0).abs();
     assert!(off < 1e-14, "{period} against {}", swing / 2.0);
 }

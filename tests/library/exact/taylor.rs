@@ -188,7 +188,7 @@ fn energy_is_constant() {
         let scale = body.momentum.norm_squared() + body.moment.norm();
         for t in [1.0, 5.0, 20.0] {
             let change = (body.energy(&motion.state_at(t)) - first).abs() / scale;
-            assert!(change < 2e-12, "energy moved by {change:e} at {t} s");
+            assert!(change < 2e-12, "energy changed by {change:e} at {t} s");
         }
     }
 }

@@ -8,7 +8,7 @@ use std::fs;
 #[track_caller]
 fn refusal(text: &str) -> String {
     match read("lab.csv", text) {
-        Ok(_) => panic!("not refused: {text}"),
+        Ok(_) => panic!("accepted: {text}"),
         Err(problems) => problems.to_string(),
     }
 }

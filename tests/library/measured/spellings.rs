@@ -24,7 +24,7 @@ fn mapped(text: &str, map: &str) -> MeasuredData {
 #[track_caller]
 fn refusal(origin: &str, text: &str, map: &str) -> String {
     match read_with(origin, text, &options(map, "")) {
-        Ok(_) => panic!("not refused: {text}"),
+        Ok(_) => panic!("accepted: {text}"),
         Err(problems) => problems.to_string(),
     }
 }
