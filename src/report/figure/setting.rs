@@ -9,7 +9,7 @@ use toml::{Table, Value};
 
 /// The key whose values are names.
 pub(super) const SCHEME_KEY: &str = "motion.scheme";
-/// The keys of a scenario file that say nothing of its motion, and those that a name tells in other ways.
+/// Keys of a scenario file that do not affect the motion, and keys that names show in other ways.
 const NOT_NAMED: [&str; 8] = [
     "gyrolab",
     "title",
@@ -22,18 +22,18 @@ const NOT_NAMED: [&str; 8] = [
 ];
 const STEPS_KEY: &str = "motion.steps";
 
-/// A key and its value: as at an axis, "*θ*_{0} = 20°", and in full.
+/// A key and its value: as on an axis, such as "*θ*_{0} = 20°", and in full.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct CurveSetting {
     markup: String,
     plain: String,
 }
 
-/// Fewest digits of a value, and most: as many as a number has.
+/// Minimum and maximum number of digits of a value.
 const FEWEST_DIGITS: usize = 4;
 const MOST_DIGITS: usize = 17;
 
-/// Returns how many digits tell those of `values` apart that are different numbers.
+/// Returns the number of digits that distinguish all different numbers among `values`.
 pub(super) fn telling_digits<'a>(values: impl Iterator<Item = &'a str>) -> usize {
     let mut numbers: Vec<f64> = values.filter_map(|text| text.parse().ok()).collect();
     numbers.sort_by(f64::total_cmp);
@@ -48,7 +48,7 @@ pub(super) fn telling_digits<'a>(values: impl Iterator<Item = &'a str>) -> usize
 }
 
 impl CurveSetting {
-    /// Returns the setting of `key` in `scenario` to `value`, a number with so many `digits`.
+    /// Creates the setting `key` = `value` in `scenario`, with `digits` digits for a number.
     pub fn new(scenario: &Table, key: &str, value: &str, digits: usize) -> Self {
         if key == SCHEME_KEY {
             return Self {
@@ -75,8 +75,8 @@ impl CurveSetting {
         }
     }
 
-    /// Returns the settings in which `scenarios` differ, of each of them: what it has at the keys at which not all have the
-    /// same. Title, scheme, time step and number of steps are left out.
+    /// Returns the settings in which `scenarios` differ, for each scenario: its values of the keys that are not the
+    /// same in all of them. Title, scheme, time step and number of steps are ignored.
     pub fn that_differ(scenarios: &[Table]) -> Vec<Vec<Self>> {
         let all: Vec<Vec<(String, String)>> = scenarios.iter().map(flat).collect();
         let entry = |of: usize, key: &str| all[of].iter().find(|(other, _)| other == key);
@@ -102,7 +102,7 @@ impl CurveSetting {
     }
 }
 
-/// Returns the keys of `scenario` that a name tells, and their values as text.
+/// Returns the keys of `scenario` that a name can contain, with their values as text.
 fn flat(scenario: &Table) -> Vec<(String, String)> {
     let mut found = Vec::new();
     for (key, value) in scenario {
@@ -131,7 +131,7 @@ fn add_flat(key: String, value: &Value, found: &mut Vec<(String, String)>) {
     }
 }
 
-/// Returns what a curve with these `settings` is called, as markup no longer than `room_pt`; `word` stands before.
+/// Returns the name of a curve with these `settings` after `word`, as markup of at most `room_pt`.
 pub(super) fn name(word: &str, settings: &[CurveSetting], room_pt: f64) -> String {
     let before = Some((word, word)).filter(|_| !word.is_empty());
     let written = settings.iter().map(|it| (&*it.markup, &*it.plain));

@@ -1,4 +1,4 @@
-//! How large the quantities of a run are by their nature: a difference far below that is rounding.
+//! Typical sizes of the quantities of a run. Differences far below them are rounding errors.
 
 use super::job::FigureRun;
 use super::quantity;
@@ -7,8 +7,8 @@ use crate::engine::scenario::start;
 use crate::physics::observables;
 use crate::plot::chart::ChartAxis;
 
-/// The axis of the column `name` of `runs`, which shows no differences that are rounding. Drawn as high as the page, an error
-/// of the scheme in the eighth digit of a position or an angle looks like a motion.
+/// Returns the axis of the column `name` of `runs`, which hides differences that are only rounding. Magnified to the
+/// height of the page, an error in the eighth digit of a position or an angle would look like a motion.
 pub(super) fn axis(runs: &[FigureRun], name: &str) -> ChartAxis {
     let sizes = runs.iter().map(|run| of_run(&run.scenario, name));
     ChartAxis {
@@ -21,8 +21,8 @@ pub(super) fn axis(runs: &[FigureRun], name: &str) -> ChartAxis {
     }
 }
 
-/// The size of the column `name` in a run of `scenario`: the traced point's arm, one radian, or the value at the start; 0
-/// where none is known.
+/// Returns the typical size of the column `name` in a run of `scenario`: the traced point's arm, one radian, or the
+/// value at the start; 0 if unknown.
 fn of_run(scenario: &Scenario, name: &str) -> f64 {
     let (body, state) = (&scenario.body.mechanics, &scenario.start);
     let rate = observables::angular_velocity(body, state).norm();
@@ -42,10 +42,11 @@ fn of_run(scenario: &Scenario, name: &str) -> f64 {
     }
 }
 
-/// A distance from the exact motion below this part of the arm is rounding, and not the error of a scheme.
+/// A distance from the exact motion below this fraction of the arm is rounding, not an error of the scheme.
 const DISTANCE_ROUNDING: f64 = 1e-12;
 
-/// Returns the distance of the traced point from the exact motion, m, below which it is rounding in a run of `scenario`.
+/// Returns the distance of the traced point from the exact motion, m, below which it is only rounding in a run of
+/// `scenario`.
 pub(super) fn rounding_m(scenario: &Scenario) -> f64 {
     DISTANCE_ROUNDING * scenario.arm_m()
 }

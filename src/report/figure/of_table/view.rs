@@ -1,14 +1,14 @@
-//! What of a table is drawn, and how: what the command line asks for, and for the rest the `[figure]` of a sweep.
+//! The request for the figure of a table: options of the command line, completed by the `[figure]` of a sweep.
 
 use crate::plot::chart::{Chart, ChartAxis, Panel};
 use crate::report::figure::spec::FigureSpec;
 use crate::studies::sweep::{MAP, SweepFigure};
 use crate::studies::table::{TableSource, TableSubject};
 
-/// How a table is drawn.
+/// Kind of a table's figure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TableKind {
-    /// Columns over a column, as points and lines.
+    /// Columns over another column, as points and lines.
     #[default]
     Curves,
     /// A column of a sweep over two keys, as colors.
@@ -19,25 +19,25 @@ pub enum TableKind {
 
 const WORK_PRECISION: &str = "work-precision";
 
-/// The kinds of figure of tables that have a name; any other figure is named by its columns.
+/// Names of the kinds of figures of tables. Other figures are named by their columns.
 pub const TABLE_KIND_NAMES: [&str; 2] = [MAP, WORK_PRECISION];
 
-/// What of a table is drawn, and how.
+/// The request for the figure of a table.
 #[derive(Clone, Debug, Default)]
 pub struct TableView {
     pub kind: TableKind,
-    /// The columns along the axis at the left, or as colors; all that make sense where there are none.
+    /// Columns on the vertical axis, or shown as colors; if empty, all that make sense.
     pub y: Vec<String>,
-    /// The column along the axis below; what is usual where there is none.
+    /// Column on the horizontal axis; `None` for the default.
     pub x: Option<String>,
-    /// Whether the axes x and y and the colors are logarithmic.
+    /// True for each of the x axis, the y axis and the colors that is logarithmic.
     pub is_log: [bool; 3],
     pub x_range: Option<(f64, f64)>,
     pub width_pt: f64,
 }
 
 impl TableView {
-    /// Returns the curves of these columns on a page of that width.
+    /// Creates a request for curves of these columns on a page of this width.
     pub fn of_columns(columns: &[&str], width_pt: f64) -> Self {
         Self {
             y: columns.iter().map(|name| (*name).to_owned()).collect(),
@@ -46,7 +46,7 @@ impl TableView {
         }
     }
 
-    /// Returns what `spec` asks for of `table`.
+    /// Creates the view of `table` that `spec` requests.
     pub fn new(table: &TableSource, spec: &FigureSpec) -> Self {
         let asked = spec.kind.as_deref().unwrap_or_default();
         let named = [
@@ -75,8 +75,8 @@ impl TableView {
         }
     }
 
-    /// Takes over from `figure` what is not asked for. A figure of another kind has nothing for it; which kind that is may be
-    /// asked for or not.
+    /// Completes missing options from `figure`, unless the figure's kind differs from the requested kind. `is_any_kind`
+    /// is true if no kind is requested.
     fn completed(self, figure: &SweepFigure, is_any_kind: bool) -> Self {
         let kind = match figure.kind.as_deref() {
             Some(MAP) => TableKind::Map,
@@ -101,10 +101,10 @@ impl TableView {
         }
     }
 
-    /// Gives `chart` the axes that are asked for.
+    /// Applies the requested axes to `chart`.
     ///
     /// # Errors
-    /// When no point lies between the ends of the axis x.
+    /// Returns an error if no point is within the range of the x axis.
     pub(super) fn set_axes(&self, chart: &mut Chart) -> Result<(), String> {
         chart.x.is_log |= self.is_log[0];
         for panel in &mut chart.panels {
@@ -135,7 +135,7 @@ impl TableView {
     }
 }
 
-/// Returns the values of the points of `panel`, with their error bars, between two places along the axis x.
+/// Returns the y values of the points of `panel` between two positions on the x axis, including their error bars.
 fn values_within(panel: &Panel, (low, high): (f64, f64)) -> Vec<f64> {
     let of_series = panel.series.iter().flat_map(|series| {
         let points = series.points.iter().enumerate();
