@@ -1,5 +1,5 @@
-//! Figures of tables. A comparison shows errors over time steps, with slopes, or over cost. A sweep shows readouts over
-//! the varied keys, or as a map. A fit shows measured values, the model and residuals.
+//! Figures of tables: error over time step with its slope, or over its cost; readouts over what was varied, measured beside
+//! predicted, or as colors on a map; what was measured on the model that was fitted, and what is left of it.
 
 mod comparison;
 mod fit;
@@ -13,13 +13,13 @@ use crate::plot::letters;
 use crate::studies::table::{TableSource, TableSubject};
 pub use view::{TABLE_KIND_NAMES, TableKind, TableView};
 
-/// Indices of rows.
+/// A list of rows, by their places.
 type RowIndices = Vec<usize>;
 
-/// Draws `table` as `view` requests.
+/// Draws `table` as `view` says.
 ///
 /// # Errors
-/// Returns an error if the table lacks a requested column, or if the figure cannot be drawn.
+/// When the table has not what is asked for, or that cannot be drawn.
 pub fn chart(table: &TableSource, view: &TableView) -> Result<Chart, String> {
     for column in view.y.iter().chain(&view.x) {
         if !table.names().contains(column) {
@@ -55,7 +55,7 @@ pub fn chart(table: &TableSource, view: &TableView) -> Result<Chart, String> {
     Ok(chart)
 }
 
-/// Returns a warning with the number of values in the `chart` of `table` that are not shown.
+/// How many values of the `chart` of `table` have no point, where some have none.
 pub fn warning(table: &TableSource, chart: &Chart) -> Option<String> {
     let values = chart.panels.iter().flat_map(|panel| {
         let points = panel.series.iter().flat_map(|series| &series.points);
@@ -78,7 +78,7 @@ fn numbers(table: &TableSource, name: &str) -> Result<Vec<f64>, String> {
         .ok_or_else(|| format!("{name}: its values are no numbers, and cannot be drawn"))
 }
 
-/// Returns `markup` if it fits into `room_pt`, else `plain`, shortened if necessary.
+/// `markup`, or where it is longer than `room_pt` `plain`, which is cut where that is too long as well.
 pub(super) fn within_room(markup: String, plain: &str, room_pt: f64) -> String {
     if ink::width(&markup, LABEL_PT) <= room_pt {
         markup
@@ -87,7 +87,7 @@ pub(super) fn within_room(markup: String, plain: &str, room_pt: f64) -> String {
     }
 }
 
-/// Returns the points of the `rows` that have a position on the horizontal axis, from left to right.
+/// Returns the points of those of `rows` that have a place along the axis below, from left to right.
 fn points(rows: &RowIndices, along: &[f64], values: &[f64]) -> Vec<[f64; 2]> {
     let mut points: Vec<_> = rows
         .iter()
@@ -98,7 +98,7 @@ fn points(rows: &RowIndices, along: &[f64], values: &[f64]) -> Vec<[f64; 2]> {
     points
 }
 
-/// Groups rows by their text, in order of the first occurrence.
+/// The rows of each text, in the order in which the texts come first.
 fn grouped<T: AsRef<str>>(texts: &[T]) -> Vec<(String, RowIndices)> {
     let mut groups: Vec<(String, RowIndices)> = Vec::new();
     for (row, text) in texts.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! The columns of a sweep, by origin and quantity.
+//! The columns of a sweep: whose number each is, and which of them are the same quantity.
 
 use crate::engine::analysis::readouts::{self, ReadoutSource};
 use crate::engine::text::unit::Unit;
@@ -10,17 +10,17 @@ use crate::studies::table::{SweepTable, TableSource};
 const PREDICTED_PREFIX: &str = "predicted_";
 const TRUE_PREFIX: &str = "true_";
 const UNCERTAINTY_INFIX: &str = "_uncertainty";
-/// The column that tells if the other numbers of a row are reliable.
+/// The column that says whether the other numbers of a row hold.
 pub(super) const RELIABLE: &str = "reliable";
 
-/// Origin of the numbers in a column.
+/// Whose number a column holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum QuantityOwner {
-    /// Theory of the exact motion or of the scheme.
+    /// What theory says, of the exact motion or of the scheme.
     Theory,
-    /// Measured in the run.
+    /// What was measured on the run.
     Measured,
-    /// A value of the run that is not a measurement, such as its tilt at the end, or the turns of its wheel per step.
+    /// A value of the run that is no measurement: its tilt at the end, the turns of its wheel in a step.
     Value,
 }
 
@@ -36,24 +36,25 @@ impl QuantityOwner {
     }
 }
 
-/// The columns of one quantity: theory first, because it is drawn below the points.
+/// A quantity of a sweep, by its columns: what was measured of it, and what theory says. Theory comes first: the points stand
+/// on it.
 pub(super) type QuantityColumns = Vec<QuantityColumn>;
 
-/// A column of a sweep.
+/// A column.
 pub(super) struct QuantityColumn {
     pub name: String,
     pub role: QuantityOwner,
-    /// The column with the standard errors.
+    /// The column of its standard errors.
     pub uncertainty: Option<String>,
 }
 
-/// Removes the prefix that tells the origin of a number from a name.
+/// What a name is without saying whose number it is.
 fn bare(name: &str) -> &str {
     let parts = [MEASURED_PREFIX, PREDICTED_PREFIX].map(|word| name.strip_prefix(word));
     parts.into_iter().flatten().next().unwrap_or(name)
 }
 
-/// Returns the quantities of a sweep in the order of its columns: all, or the requested ones.
+/// The quantities of a sweep in the order of its columns: all of them, or those that are asked for.
 pub(super) fn quantities(
     table: &TableSource,
     swept: &SweepTable,
@@ -94,8 +95,8 @@ pub(super) fn quantities(
     quantities
 }
 
-/// Returns the quantity of the column `name`. Theory of a special case, such as `fast_top_precession_rad_per_s`,
-/// belongs to the measured quantity, here `measured_precession_rad_per_s`.
+/// What quantity the column `name` holds a number of. Theory of a special case, such as `fast_top_precession_rad_per_s`, is
+/// of the quantity that was measured beside it, `measured_precession_rad_per_s`.
 fn what<'a>(name: &'a str, names: &[&'a String]) -> &'a str {
     let own = bare(name);
     if QuantityOwner::from_name(name) != QuantityOwner::Theory {
@@ -112,8 +113,7 @@ fn what<'a>(name: &'a str, names: &[&'a String]) -> &'a str {
         .unwrap_or(own)
 }
 
-/// Returns the column with the standard errors of `name`, such as measured_precession_uncertainty_rad_per_s for
-/// measured_precession_rad_per_s.
+/// The column of the standard errors of `name`: measured_precession_uncertainty_rad_per_s of measured_precession_rad_per_s.
 fn uncertainty_of(table: &TableSource, name: &str) -> Option<String> {
     table
         .names()
@@ -125,7 +125,7 @@ fn uncertainty_of(table: &TableSource, name: &str) -> Option<String> {
         .cloned()
 }
 
-/// Returns the axis of a quantity, named after the measured column if there are several, else after the only column.
+/// The axis of a quantity: named by what was measured where theory stands beside it, else by the column.
 pub(super) fn axis(parts: &[QuantityColumn]) -> ChartAxis {
     let named = parts
         .iter()
@@ -135,7 +135,7 @@ pub(super) fn axis(parts: &[QuantityColumn]) -> ChartAxis {
         return ChartAxis::default();
     };
     let own = quantity::axis(&part.name);
-    // With several columns, the legend already tells their origins.
+    // Words say whose number it is; the legend says so already where both stand beside each other.
     if parts.len() == 1 {
         return own;
     }
@@ -151,14 +151,14 @@ pub(super) fn axis(parts: &[QuantityColumn]) -> ChartAxis {
 }
 
 impl QuantityColumn {
-    /// Returns true if the column holds the theory of the exact motion, not an approximation.
+    /// Whether it holds what theory says of the exact motion, and no approximation of that.
     pub fn is_of_exact_motion(&self) -> bool {
         let source = readouts::find(&self.name).map(|readout| readout.source);
         let is_of_exact = [PREDICTED_PREFIX, TRUE_PREFIX].map(|word| self.name.starts_with(word));
         source == Some(ReadoutSource::Theory) && is_of_exact.contains(&true)
     }
 
-    /// Returns the name in the legend, as markup. `is_alone` is true if the axis already names the theory.
+    /// What the legend calls it, as markup; `is_alone`: the axis says which theory it is.
     pub fn word(&self, is_alone: bool) -> String {
         let source = readouts::find(&self.name).map(|readout| readout.source);
         match self.role {
@@ -178,7 +178,7 @@ impl QuantityColumn {
     }
 }
 
-/// Returns two columns as an example of a choice, measured ones first.
+/// Two of the columns as an example of a choice, those that were measured before others.
 pub(super) fn example(quantities: &[QuantityColumns]) -> String {
     let (measured, others): (Vec<_>, Vec<_>) = quantities
         .iter()

@@ -1,5 +1,5 @@
-//! The curves of a sweep: its rows grouped by the other varied keys, and the lines of theory, which curves with the
-//! same theory share.
+//! The curves of a sweep: its rows by what else was varied, and what each is called; and the lines of theory, one for all
+//! curves of which it says the same.
 
 use crate::plot::COLUMN_PT;
 use crate::plot::chart::{EXACT_COLOR, SeriesStyle};
@@ -7,29 +7,29 @@ use crate::report::figure::of_table::{RowIndices, grouped};
 use crate::report::figure::setting::{CurveSetting, SCHEME_KEY, telling_digits};
 use crate::studies::table::{SweepTable, TableSource};
 
-/// Numbers with at most this relative difference are equal.
+/// Numbers that differ by no more than this part of themselves are the same.
 const SAME_NUMBER: f64 = 1e-6;
-/// Number of rows above which a line looks smooth at the width of a column. With fewer rows, its points are marked.
+/// From this many rows on a line looks smooth at the width of a column; with fewer its points are marked.
 const SMOOTH_CURVE_ROWS: f64 = 40.0;
 
-/// The scheme of the exact motion.
+/// The scheme that is the exact motion.
 const EXACT: &str = "exact";
 
-/// One curve of a sweep.
+/// The rows of one curve.
 #[derive(Clone, Debug)]
 pub(super) struct SweepCurve {
-    /// Index of the curve.
+    /// Which of the curves it is, from 0.
     pub index: usize,
-    /// Indices of its rows.
+    /// Its rows.
     pub rows: RowIndices,
-    /// Values of the other varied keys.
+    /// The values of what else was varied.
     pub settings: Vec<CurveSetting>,
-    /// True if its runs use the scheme `exact`.
+    /// Whether its runs are by the scheme `exact`.
     pub is_exact: bool,
 }
 
 impl SweepCurve {
-    /// Returns `style`, in the color of the exact motion for a curve of exact runs.
+    /// Returns `style` in the color of the exact motion, if its runs are that.
     pub fn style(&self, style: SeriesStyle) -> SeriesStyle {
         SeriesStyle {
             color: if self.is_exact {
@@ -42,7 +42,7 @@ impl SweepCurve {
     }
 }
 
-/// Returns the curves of a sweep. The key `along`, and the keys that vary together with it, vary along a curve.
+/// Returns the curves of a sweep, along which the key `along`, and what varies together with it, varies.
 pub(super) fn curves(table: &TableSource, swept: &SweepTable, along: &str) -> Vec<SweepCurve> {
     let axes = swept.axes.iter();
     let others = axes.filter(|keys| !keys.iter().any(|key| key == along));
@@ -81,16 +81,16 @@ pub(super) fn curves(table: &TableSource, swept: &SweepTable, along: &str) -> Ve
 
 /// A line of theory.
 pub(super) struct TheoryLine {
-    /// Index of the first curve with this theory.
+    /// The first of the curves that it is for.
     index: usize,
-    /// Points from left to right.
+    /// Its points from left to right.
     pub points: Vec<[f64; 2]>,
-    /// Settings that all curves of the line share.
+    /// What is set alike for all of them.
     pub settings: Vec<CurveSetting>,
 }
 
-/// Returns the lines of theory for these curves, whose points are sorted from left to right. A curve without theory has
-/// no line.
+/// The lines of what theory says of each of these curves, whose points run from left to right. A curve of which it says
+/// nothing has none.
 pub(super) fn lines<'a>(
     curves: impl Iterator<Item = (&'a SweepCurve, Vec<[f64; 2]>)>,
 ) -> Vec<TheoryLine> {
@@ -116,7 +116,7 @@ impl TheoryLine {
         self.points.binary_search_by(|point| point[0].total_cmp(&x))
     }
 
-    /// Returns true if the line agrees with `points` wherever both have a value, and if there is such a position.
+    /// Whether it has the values of `points`, wherever both have one, and they do somewhere.
     fn says(&self, points: &[[f64; 2]]) -> bool {
         let pairs = points.iter().filter_map(|&[x, value]| {
             let own = self.points[self.place(x).ok()?][1];
@@ -127,7 +127,7 @@ impl TheoryLine {
             && pairs.all(|(a, b)| (a - b).abs() <= SAME_NUMBER * a.abs().max(b.abs()))
     }
 
-    /// Adds a curve with the same theory, and the `points` that were missing.
+    /// Takes in a curve of which theory says the same, and the `points` that were missing.
     fn take_in(&mut self, curve: &SweepCurve, points: Vec<[f64; 2]>) {
         self.settings.retain(|it| curve.settings.contains(it));
         for point in points.into_iter().filter(|point| point[1].is_finite()) {
@@ -139,9 +139,8 @@ impl TheoryLine {
         }
     }
 
-    /// Returns the style of the line on a page of this width, for the theory at index `place` of its panel. It is a
-    /// line if the rows are close together, else marks, since straight strokes between distant rows do not follow the
-    /// theory.
+    /// How it is drawn on a page of that width, the theory at `place` of its panel: as a line where the rows are close, else
+    /// as marks at the rows, since theory goes another way between them than the fine strokes that join them.
     pub fn style(&self, place: usize, width_pt: f64) -> SeriesStyle {
         if self.points.len() as f64 > SMOOTH_CURVE_ROWS * width_pt / COLUMN_PT {
             SeriesStyle::theory(self.index, place)
