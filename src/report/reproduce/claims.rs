@@ -144,7 +144,7 @@ fn of_method_1(numbers: &Numbers) -> [Claim; 3] {
 }
 
 fn z_swings(run: &Measured, more_tilted: &Measured) -> String {
-    let [swing, more] = [run, more_tilted].map(|it| with_digits(it.z_m.size() * 1000.0, 3, "mm"));
+    let [swing, more] = [run, more_tilted].map(|it| with_digits(it.z_m.size_mm(), 3, "mm"));
     format!("z swings by {swing}, and with the more tilted $L$ by {more}.")
 }
 
@@ -218,7 +218,7 @@ fn goes_around(run: &Run, measured: &Measured) -> String {
 fn swings_mm(measured: &Measured) -> String {
     format!(
         "z swings by {}.",
-        with_decimals(measured.z_m.size() * 1000.0, 2, "mm")
+        with_decimals(measured.z_m.size_mm(), 2, "mm")
     )
 }
 
@@ -250,7 +250,7 @@ fn of_long_steps(numbers: &Numbers) -> [Claim; 4] {
             scheme: swings_percent(run.report.z_m),
             truth: swings_percent(run.exact.z_m),
             verdict: Verdict::TimeStep,
-            tables: &["method-2-numbers", "comb", "lag"],
+            tables: &["method-2-numbers", "comb"],
         },
         Claim {
             section: "4, Method 2",

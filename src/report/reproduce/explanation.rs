@@ -21,15 +21,15 @@ pub(super) fn summary(document: &mut Document, numbers: &Numbers) {
     );
     document.list(findings(numbers));
     document.table(
-        "The report's five computations. The height z is that of the upper end of the axle above the lower one. The distance \
-         is the largest one between the two computations of the upper end at the same time.",
+        "The report's five computations: how often the wheel turns in a time step; by how much the height z of the axle's \
+         upper end swings, by the report's method and in the exact motion; and how far the two are apart at most.",
         [
             Column::text("run"),
             Column::number("time step (s)"),
-            Column::number("turns of the wheel per step"),
-            Column::text("z, report (m)"),
-            Column::text("z, exact (m)"),
-            Column::number("distance (m)"),
+            Column::number("turns per step"),
+            Column::number("swing, report (mm)"),
+            Column::number("swing, exact (mm)"),
+            Column::number("apart (mm)"),
         ],
         numbers.runs().map(|(name, run)| summary_row(name, run)),
     );
@@ -43,7 +43,7 @@ pub(super) fn summary(document: &mut Document, numbers: &Numbers) {
 fn findings(numbers: &Numbers) -> [String; 4] {
     let push = &numbers.push;
     let [swing, true_swing] =
-        [push.report, push.exact].map(|it| with_digits(1000.0 * it.z_m.size(), 2, "mm"));
+        [push.report, push.exact].map(|it| with_digits(it.z_m.size_mm(), 3, "mm"));
     let times = with_digits(push.report.z_m.size() / push.exact.z_m.size(), 2, "");
     let turns = with_decimals(push.exact.turns_per_step, 2, "");
     let slow = &numbers.method_2_slow;
@@ -79,9 +79,9 @@ fn summary_row(name: &str, run: &Run) -> [Text; 6] {
         Text::plain(name),
         Text::number(&significant(run.time_step_s, 3)),
         Text::number(&fixed(run.exact.turns_per_step, 3)),
-        Text::marked(&run.report.z_m.markup(4)),
-        Text::marked(&run.exact.z_m.markup(4)),
-        Text::number(&significant(run.most_distance_m, 2)),
+        Text::number(&significant(run.report.z_m.size_mm(), 3)),
+        Text::number(&significant(run.exact.z_m.size_mm(), 3)),
+        Text::number(&significant(1000.0 * run.most_distance_m, 2)),
     ]
 }
 
@@ -125,7 +125,7 @@ fn nutation(document: &mut Document, numbers: &Numbers) {
          body has the same moment of inertia about every axis through the foot, {inertia}. So one round takes exactly as \
          long as one turn of the wheel, in Method 2 {spin}. The upper end of the axle rises and falls once per round."
     ));
-    let swing = with_decimals(numbers.method_2.exact.z_m.size() * 1000.0, 2, "mm");
+    let swing = with_decimals(numbers.method_2.exact.z_m.size_mm(), 2, "mm");
     document.paragraph(&format!(
         "How wide the cone is depends on the start. Method 2 lets the top go with the axle along $L$. The axle begins to \
          fall, is turned aside at once, and moves on in a chain of tiny arcs. Its upper end rises and falls by {swing}: the \
@@ -175,7 +175,7 @@ pub(super) fn sampling(document: &mut Document, numbers: &Numbers) {
     ));
     figure(
         document,
-        "sampling",
+        ["sampling"],
         "A point on a circle, seen too rarely. Dashed: a coordinate of the upper end of the axle in Method 1 without weight, \
          which circles about 100 times in a second. Black: the same, looked at after every 0.9 of a round. The points seem \
          to lie on a circle that is nine times slower.",
@@ -198,22 +198,21 @@ pub(super) fn sampling(document: &mut Document, numbers: &Numbers) {
          up."
     ));
     lag(document, numbers);
-    let apart = with_digits(numbers.top.spin_s(), 3, "s");
     let number = with_digits(turns.round(), 2, "");
     figure(
         document,
-        "comb",
+        ["comb"],
         &format!(
-            "The wobble and the time step: how far the tilt swings in Method 2, computed with many different time steps, and \
-             in the exact motion. The peaks are {apart} apart: there the wheel makes 1, 2, 3 and more whole turns per step. \
-             The report's time step, 0.1 s, is just before peak number {number}."
+            "How far the tilt swings in Method 2, computed with many different time steps. The axis below counts how often \
+             the wheel turns per step. Points: the report's method. Solid: the formula above, where it holds. Dashed: the \
+             exact motion. The report's long time step, at {all_turns} turns, is just before peak number {number}."
         ),
     );
     document.subsection("How to find out");
     document.paragraph(
-        "One need not know the theory to find such a wobble. *Halve the time step and compute again.* What belongs to the \
-         gyroscope stays. What belongs to the time step changes. [#push-finer], in the section on the push, does this with \
-         seven time steps. To be safe, the wheel should make less than a tenth of a turn per step.",
+        "One need not know the theory to find such a wobble. *Halve the time step and compute again, until nothing changes \
+         any more.* What belongs to the gyroscope stays. What belongs to the time step changes. [#push-finer], in the section \
+         on the push, does this. To be safe, the wheel should make less than a tenth of a turn per step.",
     );
 }
 
@@ -228,13 +227,15 @@ fn lag(document: &mut Document, numbers: &Numbers) {
     ));
     document.formula("δ / (2 |sin(ψ/2)|)");
     let sine = with_digits(chord(run.exact.turns_per_step), 2, "");
-    let [of_scheme, of_exact] =
-        [lag.of_scheme_deg, lag.of_exact_deg].map(|angle| with_digits(angle, 2, "deg"));
+    let psi = TAU * run.exact.turns_per_step;
+    let true_lag = numbers.top.kick_deg(run.time_step_s) / psi;
+    let [lag_of_scheme, true_lag_text] =
+        [lag.lag_deg, true_lag].map(|angle| with_digits(angle, 2, "deg"));
     let [predicted, found] =
         [lag.predicted_swing_deg, lag.swing_deg].map(|swing| with_digits(swing, 3, "deg"));
     document.paragraph(&format!(
         "If $ψ$ is a whole number of turns, the sine is zero, and the lag grows without limit. With the report's long time \
-         step, $2 |sin(ψ/2)|$ is {sine}. The lag is then {of_scheme}, and the true one is {of_exact}. Method 2 begins \
+         step, $2 |sin(ψ/2)|$ is {sine}. The lag is then {lag_of_scheme}, and the true one is {true_lag_text}. Method 2 begins \
          without a lag. Its axle therefore swings about this lag, by twice as much: {predicted} by this formula, and {found} \
          in the run."
     ));

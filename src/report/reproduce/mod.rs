@@ -88,12 +88,12 @@ fn document(numbers: &Numbers, claims: &[Claim]) -> Document {
     document
 }
 
-/// Adds the figure that [`FIGURES`] has under this `name`.
-fn figure(document: &mut Document, name: &str, caption: &str) {
+/// Adds the pictures that [`FIGURES`] has under these names, one or two side by side. The first name is the label.
+fn figure<const N: usize>(document: &mut Document, names: [&str; N], caption: &str) {
     document.blocks.push(Block::Figure(Figure {
-        label: name.to_owned(),
-        pictures: vec![made::picture(name)],
-        width_mm: made::WIDTH_MM,
+        label: names[0].to_owned(),
+        pictures: names.map(made::picture).into(),
+        width_mm: made::WIDTHS_MM[N - 1],
         caption: Text::marked(caption),
     }));
 }

@@ -28,6 +28,8 @@ pub(super) struct Numbers {
     /// The push, from the longest time step to the shortest.
     pub finer: [Finer; 7],
     pub lag: Lag,
+    /// The torque of weight and push together, as a multiple of the weight's.
+    pub push_torque: f64,
     /// Distance from the foot to the axle's upper end in every row of the push, m.
     pub length_m: Range,
 }
@@ -115,8 +117,7 @@ pub(super) struct Finer {
 
 /// What the linear theory of the scheme says of Method 2, and what its run shows, degrees.
 pub(super) struct Lag {
-    pub of_scheme_deg: f64,
-    pub of_exact_deg: f64,
+    pub lag_deg: f64,
     pub predicted_swing_deg: f64,
     pub swing_deg: f64,
 }
@@ -160,6 +161,7 @@ impl Numbers {
             }),
             finer: TIME_STEPS_S.map(|time_step_s| Finer::read(tables, time_step_s)),
             lag: Lag::read(tables),
+            push_torque: push_torque(&Document::open("wobble-push")?.scenario()?),
             length_m: length_m(tables),
         })
     }
@@ -204,6 +206,11 @@ impl Range {
 
     pub fn size(self) -> f64 {
         self.high - self.low
+    }
+
+    /// The size of a range in m, mm.
+    pub fn size_mm(self) -> f64 {
+        1000.0 * self.size()
     }
 
     /// The size as a part of the low end, %.
@@ -353,14 +360,22 @@ impl Finer {
 
 impl Lag {
     fn read(tables: &Tables) -> Self {
-        let labels = ["0.1", "report"];
+        let labels = ["0.1"];
         Self {
-            of_scheme_deg: tables.number("lag", &labels, "predicted_lag_deg"),
-            of_exact_deg: tables.number("lag", &labels, "true_steady_lag_deg"),
-            predicted_swing_deg: tables.number("lag", &labels, "predicted_tilt_swing_deg"),
-            swing_deg: tables.number("lag", &labels, "measured_tilt_swing_deg"),
+            lag_deg: tables.number("comb", &labels, "predicted_lag_deg"),
+            predicted_swing_deg: tables.number("comb", &labels, "predicted_tilt_swing_deg"),
+            swing_deg: tables.number("comb", &labels, "measured_tilt_swing_deg"),
         }
     }
+}
+
+/// Returns the torque of weight and push together, as a multiple of the weight's. Both act at points of the axle.
+fn push_torque(scenario: &Scenario) -> f64 {
+    let pushes = scenario.pushes.iter().map(|push| {
+        let arm_m = scenario.body.mechanics.points()[push.point].at.norm();
+        push.force.norm() * arm_m
+    });
+    1.0 + pushes.sum::<f64>() / Top::new(scenario).weight_torque()
 }
 
 /// Returns 2 |sin(psi/2)| of an angle psi in turns.

@@ -50,7 +50,7 @@ fn method_1(document: &mut Document, numbers: &Numbers) {
          axle. The time step is 0.001 s."
     ));
     let round = with_digits(run.report.nutation_s * 1000.0, 3, "ms");
-    let swing = with_digits(run.report.z_m.size() * 1000.0, 3, "mm");
+    let swing = with_digits(run.report.z_m.size_mm(), 3, "mm");
     document.paragraph(&format!(
         "The axle circles $L$ on a cone. It is upright at the start and after every round, {round} later. In between it \
          leans to the other side of $L$, and its upper end is {swing} lower. The report sees \"a little oscillation in the \
@@ -59,14 +59,8 @@ fn method_1(document: &mut Document, numbers: &Numbers) {
     ));
     figure(
         document,
-        "method-1-traces",
-        "Method 1, the first 0.1 s: the coordinates of the axle's upper end.",
-    );
-    figure(
-        document,
-        "method-1-3d",
-        "Method 1, the first 0.1 s: the path of the axle's upper end in space. The axle goes around ten times on the same \
-         circle.",
+        ["method-1-traces", "method-1-3d"],
+        "Method 1, the first 0.1 s: the coordinates of the axle's upper end, and its path in space. The end goes around ten times on the same circle.",
     );
     let later = numbers.later_x_m.report.markup(3);
     document.paragraph(&format!(
@@ -76,7 +70,7 @@ fn method_1(document: &mut Document, numbers: &Numbers) {
     ));
     figure(
         document,
-        "method-1-longer",
+        ["method-1-longer"],
         "Method 1 for 480 s, about one turn of the precession. Left: the rounds are too fast to be told apart, so the area \
          between the least and the greatest x is filled. Right: the first of them.",
     );
@@ -92,7 +86,7 @@ fn more_tilted(document: &mut Document, numbers: &Numbers) {
     let [tilt, tilt_before] =
         [run, before].map(|run| with_digits(run.report.highest_tilt_deg, 3, "deg"));
     let [swing, swing_before] =
-        [run, before].map(|run| with_digits(run.report.z_m.size() * 1000.0, 3, "mm"));
+        [run, before].map(|run| with_digits(run.report.z_m.size_mm(), 3, "mm"));
     document.paragraph(&format!(
         "The circle is larger, as the report says: the axle leans by up to {tilt} instead of {tilt_before}, and z swings by \
          {swing} instead of {swing_before}. Again this is the nutation, and no error."
@@ -106,13 +100,8 @@ fn more_tilted(document: &mut Document, numbers: &Numbers) {
     ));
     figure(
         document,
-        "method-1-steeper-traces",
-        "Method 1, more tilted, the first 0.1 s: the coordinates of the axle's upper end.",
-    );
-    figure(
-        document,
-        "method-1-steeper-3d",
-        "Method 1, more tilted, the first 0.1 s: the path of the axle's upper end in space.",
+        ["method-1-steeper-traces", "method-1-steeper-3d"],
+        "Method 1, more tilted, the first 0.1 s: the coordinates of the axle's upper end, and its path in space.",
     );
 }
 
@@ -134,20 +123,20 @@ fn short_steps(document: &mut Document, numbers: &Numbers) {
          goes around by {around}. A whole turn takes {turn}, or {steps} steps. Nothing is wrong with this time step. The \
          animation ended too soon."
     ));
-    let swing = with_decimals(run.report.z_m.size() * 1000.0, 2, "mm");
+    let swing = with_decimals(run.report.z_m.size_mm(), 2, "mm");
     document.paragraph(&format!(
         "\"We can observe no change in the z direction.\" z swings by {swing}, and so does the exact motion. It is the \
          nutation. The scale of z in the figures is stretched so that it can be seen."
     ));
     figure(
         document,
-        "method-2-slow-traces",
+        ["method-2-slow-traces"],
         "Method 2 with the time step 0.001 s: the coordinates of the axle's upper end. Left: 10 s. Right: the beginning. \
          Where z swings too fast to be seen on the left, two lines are its least and its greatest value.",
     );
     figure(
         document,
-        "method-2-slow-3d",
+        ["method-2-slow-3d"],
         "Method 2 with the time step 0.001 s, the first 0.2 s: the path of the axle's upper end in space. The axle falls, is \
          turned aside, rises and stops, and falls again.",
     );
@@ -177,12 +166,12 @@ fn long_steps(document: &mut Document, numbers: &Numbers) {
     ));
     figure(
         document,
-        "method-2-traces",
+        ["method-2-traces"],
         "Method 2 with the time step 0.1 s: the coordinates of the axle's upper end. The scale of z is stretched.",
     );
     figure(
         document,
-        "method-2-3d",
+        ["method-2-3d"],
         "Method 2 with the time step 0.1 s: the path of the axle's upper end in space. The scale of z is stretched.",
     );
 }
@@ -202,14 +191,23 @@ fn push(document: &mut Document, numbers: &Numbers) {
     ));
     figure(
         document,
-        "wobble-push-traces",
+        ["wobble-push-traces"],
         "The push, time step 0.1 s: the coordinates of the axle's upper end.",
     );
     figure(
         document,
-        "wobble-push-3d",
+        ["wobble-push-3d"],
         "The push, time step 0.1 s: the path of the axle's upper end in space. The scale of z is stretched.",
     );
+    let torque = with_digits(numbers.push_torque, 2, "");
+    let [turns, later_turns] =
+        [run.exact, run.report].map(|it| with_decimals(it.turns_per_step, 2, ""));
+    document.paragraph(&format!(
+        "Why so large? Weight and push together have {torque} times the torque of the weight. So the kicks, the lag and the \
+         swing about it are {torque} times as large as before. Such a large swing also changes the spin in the computation, \
+         which in truth stays the same: at the end the wheel turns {later_turns} times per step, and not {turns} times. On \
+         the way it passes a whole number of turns."
+    ));
     let length = numbers.length_m.markup(6);
     document.paragraph(&format!(
         "\"The radius of the circle in the trace is increasing as the height of the axis is dropping showing there is an \
@@ -236,21 +234,22 @@ fn push_finer(document: &mut Document, numbers: &Numbers) {
     document.blocks.push(Block::Table(Table {
         label: Some("push-finer".to_owned()),
         caption: Text::marked(
-            "The push with shorter and shorter time steps. The turns of the wheel are those at the end of the run.",
+            "The push with shorter and shorter time steps: the turns of the wheel per step at the end of the run, by how \
+             much z swings, and how far the report's method is from the exact motion at most.",
         ),
         columns: vec![
             Column::number("time step (s)"),
-            Column::number("turns of the wheel per step"),
-            Column::text("z, report (m)"),
-            Column::text("z, exact (m)"),
-            Column::number("distance (m)"),
+            Column::number("turns per step"),
+            Column::number("swing, report (mm)"),
+            Column::number("swing, exact (mm)"),
+            Column::number("apart (mm)"),
         ],
         rows: numbers.finer.iter().map(finer_row).collect(),
     }));
     let z = numbers.push.report.z_m.markup(2);
     figure(
         document,
-        "wobble-push-finer",
+        ["wobble-push-finer"],
         &format!(
             "The same push with the time step 0.002 s. At 0.1 s, z ran from {z} m. Now it stays on the dashed line."
         ),
@@ -261,9 +260,9 @@ fn finer_row(finer: &Finer) -> Vec<Text> {
     vec![
         Text::number(&significant(finer.time_step_s, 2)),
         Text::number(&fixed(finer.turns_per_step, 3)),
-        Text::marked(&finer.z_m.report.markup(4)),
-        Text::marked(&finer.z_m.exact.markup(4)),
-        Text::number(&significant(finer.most_distance_m, 2)),
+        Text::number(&significant(finer.z_m.report.size_mm(), 3)),
+        Text::number(&significant(finer.z_m.exact.size_mm(), 3)),
+        Text::number(&significant(1000.0 * finer.most_distance_m, 2)),
     ]
 }
 
