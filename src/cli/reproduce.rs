@@ -122,3 +122,27 @@ fn figure_source(made: &Made, tables: &[(String, String)]) -> anyhow::Result<Fig
         None => figure::read_source(&args),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_command_is_one_of_gyrolab() {
+        for made in TABLES {
+            let command = command(made).unwrap();
+            assert!(
+                matches!(command, CliCommand::Run(_) | CliCommand::Sweep(_)),
+                "{}",
+                made.name
+            );
+        }
+        for made in FIGURES {
+            assert!(
+                matches!(command(made).unwrap(), CliCommand::Figure(_)),
+                "{}",
+                made.name
+            );
+        }
+    }
+}

@@ -16,8 +16,9 @@ pub(super) fn summary(document: &mut Document, numbers: &Numbers) {
     );
     document.paragraph(
         "This document repeats the report's five computations with the report's own method and time steps. With each it \
-         draws the *exact motion*: the solution of the same laws of motion, for which no time step is needed. Where the two \
-         agree, the report saw the gyroscope. Where they differ, it saw its time step.",
+         draws the *exact motion*. For this gyroscope the laws of motion can be solved in formulas, with elliptic functions, so \
+         that no time step is needed. Where the two agree, the report saw the gyroscope. Where they differ, it saw its time \
+         step.",
     );
     document.list(findings(numbers));
     document.table(
@@ -123,7 +124,7 @@ fn nutation(document: &mut Document, numbers: &Numbers) {
         "**Nutation.** If the axle does not point exactly along $L$, it circles $L$ on a narrow cone, while $L$ itself \
          hardly moves. One round takes $2 π I/L$, where $I$ is the moment of inertia about an axis across the axle. This \
          body has the same moment of inertia about every axis through the foot, {inertia}. So one round takes exactly as \
-         long as one turn of the wheel, in Method 2 {spin}. The upper end of the axle rises and falls once per round."
+         long as one turn of the wheel. In Method 2 that is {spin}. The upper end of the axle rises and falls once per round."
     ));
     let swing = with_decimals(numbers.method_2.exact.z_m.size_mm(), 2, "mm");
     document.paragraph(&format!(

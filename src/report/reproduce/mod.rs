@@ -1,9 +1,8 @@
 //! The report, reproduced: one document that follows the student's report, runs its method again, and compares every claim
 //! with the exact motion.
 //!
-//! The document is computed from CSVs, and shows figures. A single command writes each of these ([`TABLES`],
-//! [`FIGURES`]). Whoever makes the document carries the commands out and gives the CSVs back as [`Tables`]:
-//! [`texts`] then writes the words around the numbers.
+//! Each number of the document is read from a CSV, and one command writes each CSV and each figure ([`TABLES`],
+//! [`FIGURES`]). The caller runs these commands and passes the CSVs as [`Tables`] to [`texts`], which writes the document.
 //!
 //! - `made`: the commands.
 //! - `tables`: what the commands wrote.
@@ -96,4 +95,29 @@ fn figure<const N: usize>(document: &mut Document, names: [&str; N], caption: &s
         width_mm: made::WIDTHS_MM[N - 1],
         caption: Text::marked(caption),
     }));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_page_shows_every_figure_and_prints_every_command() {
+        let files = texts(&Tables::default()).unwrap();
+        let (_, page) = files
+            .iter()
+            .find(|(name, _)| name == REPRODUCTION_PAGE)
+            .unwrap();
+        let page = str::from_utf8(page).unwrap();
+        for made in TABLES.iter().chain(FIGURES) {
+            assert!(page.contains(&made.command()), "{}", made.command());
+        }
+        for made in FIGURES {
+            assert!(
+                page.contains(&format!("]({})", made.path())),
+                "{}",
+                made.path()
+            );
+        }
+    }
 }

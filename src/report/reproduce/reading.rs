@@ -22,7 +22,8 @@ pub(super) fn open_questions(document: &mut Document, numbers: &Numbers) {
                 "The body then has the same moment of inertia along and across the axle ({along}, {across}). Only then does \
                  the report's method neither damp nor feed the nutation, and shows what the report describes: an axle that \
                  comes back upright again and again, a circle that is almost nice, and a wobble that is periodic and lasts. \
-                 We tried other heights, masses on the axle, and other readings of the formulas. None shows all of it."
+                 We tried other heights, masses on the axle, and other readings of the formulas: only bodies with equal \
+                 moments show all of it."
             ),
         ),
         (
@@ -92,15 +93,19 @@ pub(super) fn open_questions(document: &mut Document, numbers: &Numbers) {
 pub(super) fn files(document: &mut Document) {
     document.section("This folder, and how to make it again");
     document.paragraph(
-        "gyrolab wrote every file of this folder. Nothing in it was written by hand except the words; every number was \
-         computed when the command ran.",
+        "gyrolab wrote every file of this folder. The words are part of the program. The numbers and figures were computed \
+         when it ran:",
     );
     document.code("sh", "gyrolab reproduce -o FOLDER\ngyrolab verify FOLDER");
     document.paragraph(
-        "The second command computes everything again, and says whether each file is the same. In the folder `data` are \
+        "The second command computes everything again, and says of each file whether it is the same. In the folder `data` are \
          the five runs step by step and the tables of numbers, as CSV. In `figures` are the figures as SVG and PDF. \
-         `claims.json` has the claims for a program. A single figure is drawn by its own command, in this folder:",
+         `claims.json` has the claims for a program. Each figure is drawn by a command of its own:",
     );
     let commands: Vec<String> = FIGURES.iter().map(Made::command).collect();
     document.code("sh", &commands.join("\n"));
+    document.paragraph(
+        "`gyrolab wobble-push` opens the push in a lab in the terminal, where the time step can be changed while it runs. \
+         `gyrolab lesson is-the-wobble-real` is a lesson about it.",
+    );
 }
