@@ -48,7 +48,7 @@ fn a_full_disk_is_reported_until_the_session_is_saved() {
     lab.clear_output();
     lab.press("q");
     lab.wait_for("there is no session to resume");
-    assert!(!lab.words().contains("comes back to"), "{}", lab.words());
+    assert!(!lab.words().contains("reopens step"), "{}", lab.words());
 }
 
 /// Nothing more can be saved, but the earlier session is intact.
