@@ -204,7 +204,9 @@ impl CheckOutcome<'_> {
             return vec![words.to_owned()];
         }
         if let Some(other) = self.other {
-            return vec![format!("These rows are {other}'s: use --against {other}.")];
+            return vec![format!(
+                "These rows are {other}'s: compare them with {other}."
+            )];
         }
         if self.is_unexplained() {
             return vec![self.unexplained()];
