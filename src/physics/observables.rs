@@ -171,7 +171,7 @@ mod tests {
         assert!((known - carried).abs() < 1e-6, "{known} {carried}");
     }
 
-    /// The contract's words, taken literally.
+    /// Computes the azimuth literally as documented.
     fn by_arc_tangents(axles: &[Vector3<f64>]) -> f64 {
         let azimuth = |axle: &Vector3<f64>| libm::atan2(axle.y, axle.x).to_degrees();
         let changes = axles

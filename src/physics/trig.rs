@@ -103,7 +103,7 @@ mod tests {
     use super::*;
     use std::f64::consts::FRAC_PI_2;
 
-    /// Distance in units in the last place, for numbers of one sign.
+    /// Returns the distance in units in the last place, for numbers of the same sign.
     fn ulps(a: f64, b: f64) -> u64 {
         a.to_bits().abs_diff(b.to_bits())
     }
@@ -120,7 +120,7 @@ mod tests {
         assert_near(x, libm::sincos(x));
     }
 
-    /// A double of any exponent in the range, from a counter (splitmix64).
+    /// Returns a number with a random exponent in the range, from a counter (splitmix64).
     fn scattered(i: u64, lowest: i32, highest: i32) -> f64 {
         let mut z = i.wrapping_mul(0x9e37_79b9_7f4a_7c15);
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -172,7 +172,7 @@ mod tests {
         }
     }
 
-    /// Sixty digits (mpmath): doubles whose remainder is unusually small.
+    /// Computed with sixty digits (mpmath): numbers with an unusually small remainder.
     #[test]
     fn agrees_with_known_digits_near_multiples_of_a_quarter_turn() {
         for (x, sine, cosine) in [

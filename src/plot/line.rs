@@ -313,7 +313,7 @@ mod tests {
             let kept = simplified(&points, within);
             prop_assert_eq!(kept.first(), points.first());
             prop_assert_eq!(kept.last(), points.last());
-            // The points that are kept are found again in their order, each of the others near the line between two.
+            // Kept points appear in order, and every other point is near the line between two of them.
             let mut next = 1;
             for point in &points {
                 let near = |index: usize| kept.get(index).is_some_and(|to| beyond(*point, kept[index - 1], *to) <= within * within + 1e-12);

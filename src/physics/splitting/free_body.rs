@@ -291,7 +291,7 @@ mod tests {
     use super::*;
     use nalgebra::{Quaternion, UnitQuaternion, Vector4};
 
-    /// Numbers in (-1, 1), the same every time (splitmix64).
+    /// Returns a reproducible random number in (-1, 1) (splitmix64).
     struct Random(u64);
 
     impl Random {
@@ -308,7 +308,7 @@ mod tests {
         fn rotation(&mut self) -> Matrix3<f64> {
             RotationByVector::new(self.vector() * 3.0).apply_to_columns(&Matrix3::identity())
         }
-        /// From 0.1 to 10, evenly in the logarithm.
+        /// Returns a number from 0.1 to 10, uniform in the logarithm.
         fn size(&mut self) -> f64 {
             libm::pow(10.0, self.number())
         }
@@ -401,19 +401,19 @@ mod tests {
             let inertia = (inertia + inertia.transpose()) * 0.5;
             let (start, momentum) = (random.rotation(), random.vector());
             let t = 5.0 * random.number() * moments.min() / momentum.norm();
-            // The matrix is rounded in parts of its largest moment; the smallest turns the body fastest.
+            // The matrix is rounded relative to its largest moment, but the smallest one turns the body fastest.
             let condition = moments.max() / moments.min();
             FreeMotion(inertia, start, momentum, t).is_as_integrated(2e-14 + 5e-16 * condition);
         }
     }
 
-    /// Down to a difference of rounding, where the two rotations take over.
+    /// Tests differences down to rounding, where the solution of two rotations takes over.
     #[test]
     fn nearly_symmetric_bodies_are_a_continuous_limit() {
         let mut random = Random(4);
         for exponent in 1..=16 {
             let delta = libm::pow(10.0, -f64::from(exponent));
-            // Below the limit the moments are taken as equal, which is a change of 1e-14 of the rates.
+            // Below the limit, the moments count as equal, which changes the rates by 1e-14.
             let is_taken_as_equal = f64::from(u8::from(delta <= SYMMETRY_ROUNDING));
             for inertia in [
                 diagonal(2.0, 2.0 + delta, 1.0),
@@ -434,7 +434,7 @@ mod tests {
         }
     }
 
-    /// On the separatrix L comes to rest along the middle axis; beside it the body tumbles.
+    /// On the separatrix, L comes to rest along the middle axis; near it, the body tumbles.
     #[test]
     fn motions_near_the_separatrix_agree_with_an_integration() {
         let start = Random(5).rotation();
@@ -442,7 +442,7 @@ mod tests {
             for t in [0.1, -1.0, 4.0, 8.0_f64] {
                 // m1^2 (1/I1 - 1/I2) = m3^2 (1/I2 - 1/I3)
                 let m = Vector3::new(1.0 + off, 0.7, 3.0_f64.sqrt());
-                // Neighbours part by up to e^(lambda t).
+                // Nearby motions separate by up to e^(lambda t).
                 let growth = libm::exp(m.norm() * (0.5 * (0.5 - 1.0 / 3.0_f64)).sqrt() * t.abs());
                 FreeMotion(diagonal(1.0, 2.0, 3.0), start, start * m, t)
                     .is_as_integrated(4e-15 * (growth + 20.0 * t.abs()));
@@ -458,7 +458,7 @@ mod tests {
                 for t in [0.3, -2.0, 9.0, 1e3_f64] {
                     let is_unstable = i == 1;
                     if is_unstable && t > 10.0 {
-                        continue; // the rounding of L has grown
+                        continue; // the rounding of L has been amplified
                     }
                     let mut m = Vector3::from_element(offset);
                     m[i] = -1.5;
@@ -475,7 +475,7 @@ mod tests {
         }
     }
 
-    /// The count of the periods: at once or in parts.
+    /// Compares one long step with the same time in parts, to check the count of periods.
     #[test]
     fn a_long_time_equals_many_short_ones() {
         let mut random = Random(9);
@@ -486,7 +486,7 @@ mod tests {
             let body = FreeBody::new(&inertia);
             let mut in_parts = start;
             (0..8).for_each(|_| body.turn(&mut in_parts, &momentum, 256.0));
-            // Each part begins with a rounded L in the body, and keeps its slightly different rates to the end.
+            // Each part starts with a rounded L in the body frame, and keeps its slightly different rates to its end.
             let phase = 2048.0 * momentum.norm() / inertia.diagonal().min();
             FreeMotion(inertia, start, momentum, 2048.0).is_near(&in_parts, 1e-14 * phase);
         }

@@ -301,7 +301,7 @@ mod tests {
     /// Inertia and moment.
     type Loaded = (Matrix3<f64>, Matrix3<f64>);
 
-    /// A body of equal points under gravity.
+    /// Returns a body of equal points under gravity.
     fn loaded(points: &[[f64; 3]], mass_kg: f64) -> Loaded {
         let weight = Vector3::new(0.0, 0.0, -mass_kg * 9.8);
         points
@@ -322,7 +322,7 @@ mod tests {
         loaded(&rim.chain(axle).collect::<Vec<_>>(), 0.5)
     }
 
-    /// The body's axes named y, z, x.
+    /// Permutation that renames the body's axes to y, z, x.
     const RENAMED: Matrix3<f64> = Matrix3::new(0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0);
 
     fn tops() -> [(&'static str, Loaded); 4] {
@@ -345,7 +345,7 @@ mod tests {
         ]
     }
 
-    /// Tilted by 45 degrees about +x; `momentum` in the body frame.
+    /// Returns a state tilted by 45 degrees about +x, with `momentum` in the body frame.
     fn tilted(momentum: [f64; 3]) -> State {
         let c = 0.5_f64.sqrt();
         let orientation = Matrix3::new(1.0, 0.0, 0.0, 0.0, c, -c, 0.0, c, c);
@@ -377,7 +377,7 @@ mod tests {
             + (a.momentum - b.momentum).norm() / b.momentum.norm()
     }
 
-    /// The order from the self-distances at steps of one ratio 1 : 2 : 4, in a range where neither rounding nor higher orders show.
+    /// Computes the order from distances between runs at step ratios 1 : 2 : 4, where rounding and higher orders are negligible.
     #[test]
     fn each_method_has_its_stated_order() {
         for (name, top) in tops() {
@@ -393,7 +393,7 @@ mod tests {
         }
     }
 
-    /// Over 5 s, in which neighbouring motions part by less than 200 times: later the load across the axis is chaotic.
+    /// Runs for 5 s, in which nearby motions separate by less than a factor of 200. Later, the sideways load is chaotic.
     #[test]
     fn stepping_backwards_undoes_stepping_forwards() {
         for (name, top) in tops() {
@@ -408,7 +408,7 @@ mod tests {
         }
     }
 
-    /// The same top with the axes of its body named differently: x, y, z become y, z, x and z, x, y.
+    /// Uses the same top with renamed body axes: x, y, z become y, z, x and z, x, y.
     #[test]
     fn any_axis_can_be_the_axis_of_symmetry() {
         let (start, (inertia, moment)) = (general_start(), heavy_top());

@@ -283,7 +283,7 @@ impl Squares {
 mod tests {
     use super::*;
 
-    /// A line of 400 points, each so far from the next, every second one so far from a level one at that height, pt.
+    /// Returns a line of 400 points, `apart` from each other, every second one `high` off the level `from`, pt.
     fn zigzag(apart: f64, high: f64, from: f64) -> Vec<Vec<Point>> {
         vec![
             (0..400)
@@ -298,7 +298,7 @@ mod tests {
         assert!(!level.coincide(&Squares::new(&zigzag(0.25, 0.0, 0.2))));
         assert!(level.coincide(&Squares::new(&zigzag(0.5, 0.0, 0.2))));
         assert!(!level.coincide(&Squares::new(&zigzag(0.5, 0.0, 3.0))));
-        // It lies on the level line everywhere, but that does not lie on all of it.
+        // The level line stays near the zigzag, but not the zigzag near the level line.
         assert!(!level.coincide(&Squares::new(&zigzag(0.5, 40.0, 0.0))));
     }
 

@@ -1,10 +1,10 @@
-//! Both writers on texts that anybody may write.
+//! Both writers with arbitrary texts.
 
 use super::*;
 use proptest::prelude::*;
 use pulldown_cmark::{Event, Options, Parser};
 
-/// The text that a reader of the Markdown sees.
+/// Returns the text that a reader of the Markdown sees.
 fn seen(markdown: &str) -> String {
     let events = Parser::new_ext(markdown, Options::ENABLE_TABLES);
     events
@@ -16,7 +16,7 @@ fn seen(markdown: &str) -> String {
         .collect()
 }
 
-/// Whether braces and environments of the TeX file are balanced.
+/// True if braces and environments of the TeX file are balanced.
 fn is_balanced(tex: &str) -> bool {
     let mut depth = 0_i64;
     let mut before = ' ';
