@@ -44,6 +44,10 @@ tilts = gyrolab.sweep("method-2", vary={"start.tilt_deg": np.array([30, 45])}, m
 assert list(tilts["start.tilt_deg"]) == [30, 45]
 grid = gyrolab.sweep("cusps", vary={"motion.scheme": ["rk4", "strang"], "start.tilt_deg": "10..30:3"}, measure=["z_m"], steps=2)
 assert len(grid) == 6 and list(grid["motion.scheme"].unique()) == ["rk4", "strang"]
+with warnings.catch_warnings(record=True) as warned:
+    failed = gyrolab.sweep("cusps", vary={"start.momentum_Js.2": [20, 1e300]}, measure=["z_m"], steps=2)
+assert failed["z_m"].isna().tolist() == [False, True] and "1 of 2" in str(warned[0].message)
+assert warned[0].category is gyrolab.GyrolabWarning and warned[0].filename == __file__
 grid = dict(vary={"start.tilt_deg": np.linspace(10, 40, 100)}, measure=["z_m"], steps=400_000, file="long.csv")
 threading.Timer(2, os.kill, (os.getpid(), signal.SIGINT)).start()
 try:

@@ -4,7 +4,7 @@ use super::args::{LengthArgs, MapArgs, SetArgs, changed};
 use super::argument_values::{positive, time};
 use super::progress::{self, Interrupted};
 use super::writeup::measured;
-use super::{ended_by, refuse, tell, tell_notes};
+use super::{ended_by, refuse, tell, tell_notes, warn};
 use crate::engine::analysis::cost;
 use crate::engine::data::doubts;
 use crate::engine::export::columns::DISTANCE;
@@ -260,7 +260,7 @@ pub(super) fn figure(args: &FigureArgs) -> anyhow::Result<ExitCode> {
     let bytes = progress::with_clock("writing the figure", || source.write(&figure.scene, format))?;
     interruption.keep(output, &bytes)?;
     for warning in figure.told() {
-        tell(format_args!("gyrolab: {warning}"));
+        warn(format_args!("gyrolab: {warning}"));
     }
     let mm = |pt: f64| (pt / PT_PER_MM).round();
     tell(format_args!(

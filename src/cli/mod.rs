@@ -368,7 +368,7 @@ fn warn(text: impl Display) {
 /// Prints notes about measured data, such as ignored columns.
 fn tell_notes(notes: &[String]) {
     for note in notes {
-        tell(format_args!("gyrolab: {note}"));
+        warn(format_args!("gyrolab: {note}"));
     }
 }
 

@@ -192,13 +192,11 @@ enum Watcher {
 
 /// Returns who watches the progress on stderr.
 fn watcher() -> Option<Watcher> {
-    if is_quiet() {
-        None
-    } else if env::var_os(PROGRESS_VARIABLE).is_some_and(|value| value == "lines") {
-        Some(Watcher::Program)
-    } else {
-        io::stderr().is_terminal().then_some(Watcher::Person)
+    if env::var_os(PROGRESS_VARIABLE).is_some_and(|value| value == "lines") {
+        return Some(Watcher::Program);
     }
+    let is_watched = !is_quiet() && io::stderr().is_terminal();
+    is_watched.then_some(Watcher::Person)
 }
 
 /// The last line of a terminal, which is written anew. indicatif's bar is not used: it computes its rate with the C

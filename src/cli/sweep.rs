@@ -3,7 +3,7 @@
 use super::args::{LengthArgs, SetArgs, change, change_length};
 use super::info::listed;
 use super::progress::{self, Interrupted, Interruption, Meter};
-use super::{print, refuse, tell, tell_of_rows};
+use super::{print, refuse, tell, tell_of_rows, warn};
 use crate::engine::scenario::presets::{self, PRESETS};
 use crate::engine::scenario::problem::nearest;
 use crate::engine::scenario::{Document, Problem, Problems};
@@ -247,16 +247,16 @@ fn tell_of(tally: &RowTally, sweep: &Sweep, interruption: &Interruption) {
         return;
     }
     let (count, all) = (empty.count, sweep.rows());
-    tell(format_args!(
+    warn(format_args!(
         "gyrolab: rows without readouts: {count} of {all}"
     ));
     let lines = empty.in_words(sweep, || !interruption.has_come());
     for line in &lines {
-        tell(format_args!("  {}", printable_lines(line)));
+        warn(format_args!("  {}", printable_lines(line)));
     }
     let more = count - lines.len() as u64;
     if more > 0 {
-        tell(format_args!("  and {more} more"));
+        warn(format_args!("  and {more} more"));
     }
 }
 

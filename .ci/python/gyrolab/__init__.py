@@ -13,7 +13,7 @@ Every function starts the program ``gyrolab`` that comes with this package.
 - Other arguments are options of the command line: ``every=10`` is ``--every 10``, ``exact=True`` is ``--exact``. A list
   repeats the option, and a dictionary gives ``KEY=VALUE``. ``print(gyrolab.command("run", "--help"))`` lists those of
   ``run``.
-- A command that fails raises ``RuntimeError`` with its message.
+- A command that fails raises ``RuntimeError`` with its message. A warning of the program is a ``GyrolabWarning``.
 - Long commands show their progress in notebooks and terminals. ``gyrolab.progress = False`` turns this off.
 """
 
@@ -39,8 +39,8 @@ if TYPE_CHECKING:
     import pandas
     from typing_extensions import TypeGuard
 
-__all__ = ["Figure", "UnreliableRunWarning", "Verification", "command", "compare", "figure", "fit", "progress", "run",
-           "summary", "sweep", "table", "verify"]
+__all__ = ["Figure", "GyrolabWarning", "UnreliableRunWarning", "Verification", "command", "compare", "figure", "fit",
+           "progress", "run", "summary", "sweep", "table", "verify"]
 
 Scenario = Union[str, "os.PathLike[str]", "pandas.DataFrame"]
 File = Union[str, "os.PathLike[str]"]
@@ -49,7 +49,11 @@ progress: Optional[bool] = None
 """Whether long commands show their progress on stderr; None: in notebooks and terminals."""
 
 
-class UnreliableRunWarning(UserWarning):
+class GyrolabWarning(UserWarning):
+    """A warning of the program about a command that it has carried out."""
+
+
+class UnreliableRunWarning(GyrolabWarning):
     """A run that should not be trusted. The message says why, and what to change."""
 
 
@@ -227,7 +231,10 @@ class _Words:
         self._temporary.cleanup()
 
     def call(self, *words: object, **options: object) -> str:
-        return _checked(_call(self.of(*words, **options))).stdout
+        done = _checked(_call(self.of(*words, "--quiet", **options)))
+        if done.stderr.strip():
+            warnings.warn(done.stderr.strip(), GyrolabWarning, stacklevel=3)
+        return done.stdout
 
     def of(self, *words: object, **options: object) -> list[str]:
         line = [self._word(word) for word in words]
