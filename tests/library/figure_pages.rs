@@ -1,8 +1,8 @@
 //! The page of a figure: its labels, its size and letters, marks of time, and the motion within long time steps.
 
 use super::figures::{
-    drawn, extent_of_lines, is_tidy, least, lines, most, panels, recorded, refusal, run, says,
-    spec, with_exact, words,
+    check_overlaps, drawn, extent_of_lines, least, lines, most, panels, recorded, refusal, run,
+    says, spec, with_exact, words,
 };
 use crate::support::scenarios::parse;
 use crate::support::words::has;
@@ -73,7 +73,7 @@ fn pages_have_the_height_and_the_letters_that_were_asked_for() {
             ),
         ] {
             let scene = drawn(&runs, &asked).scene;
-            is_tidy(&scene).unwrap_or_else(|why| panic!("{kind} {font_pt}: {why}"));
+            check_overlaps(&scene).unwrap_or_else(|why| panic!("{kind} {font_pt}: {why}"));
             assert!((scene.width_pt / MM - width_mm).abs() < 1e-6, "{kind}");
             if let Some(height_mm) = height_mm {
                 assert!((scene.height_pt / MM - height_mm).abs() < 1e-6, "{kind}");

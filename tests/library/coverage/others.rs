@@ -300,7 +300,7 @@ fn tumbling(seed: u64) -> Option<[MeasuredNumber; 2]> {
              [motion]\nscheme = 'exact'\ntime_step_s = {step}\nsteps = {steps}\n",
             aside[0], aside[1]
         );
-        super::measure_halves(&Arc::new(parse(&text)))[1]
+        super::measured(&Arc::new(parse(&text)))[1]
     };
     let period_s = nutation(TAU / spin / 60.0, 2400)?.value;
     let (per_nutation, nutations) = (log_between(dice, 2.2, 60.0), log_between(dice, 16.0, 60.0));
