@@ -13,7 +13,7 @@
 //!   the 16 registers. Two passes are also faster for 1000 and 100 000 points (3 %); in blocks of 128 pairs, 3 ns slower.
 //! - Excluding massless points from the sums if they come last: part of these 7 ns.
 //! - Storing the inertia in the pairs in which the next step loads it: 2.5 ns less. The compiler stored six numbers in any
-//!   order, or a matrix, in pieces that a load straddled.
+//!   order, or a matrix, in pieces, and one load then spanned several of them.
 //! - Turning the orientation like a pair of points, after the sums: no gain alone, but without it the registers spill.
 //! - Outside the step: copying the values that edits change only if there are edits, and adding up the numbers of the new
 //!   state one by one to check that they are finite: 2 ns less. Loads of two numbers had to wait for single stores.

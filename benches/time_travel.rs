@@ -1,5 +1,5 @@
-//! Prints a table of the time to play a run ahead like `--at`, compared with the bare steps of the same run, the time to
-//! seek an earlier step, and the memory of the run.
+//! Prints a table: the time to play a run ahead like `--at`, compared with its bare steps; the time to seek an earlier step;
+//! and the memory of the run.
 //!
 //! `cargo bench --bench time_travel`; `-- 1000000` limits it to a run of that many steps.
 

@@ -1,4 +1,4 @@
-//! Every key of the table in every pane, on screens of four sizes: each pane keeps its rule, nothing is drawn between
+//! Every key of the table in every pane, on screens of four sizes. Each pane keeps its rule, nothing is drawn between
 //! panes, and no message is cut within a word.
 
 use crate::support::stage::Stage;

@@ -245,8 +245,8 @@ fn numbers_in_the_texts_of_tops_match_their_runs() {
     );
 }
 
-/// Returns the times, s, at which the tilt of the preset `name` first returns to a turning point of its initial kind and
-/// first reaches the other kind, from a parabola through the three rows around each.
+/// Returns two turning points of the tilt of the preset `name`, s: the first of the initial kind after the start, and the
+/// first of the other kind. Each comes from a parabola through the three rows around it.
 fn turning_points_s(name: &str, set: &[&str]) -> Vec<f64> {
     let scenario = preset_named(name, set);
     let dt = scenario.motion.time_step_s;

@@ -1,4 +1,4 @@
-//! A run is its scenario and its journal: after any actions in any order, the saved run file replays the run bit for bit,
+//! A run is its scenario and its journal. After any actions in any order, the saved run file replays the run bit for bit,
 //! and seeking back and forth gives the same numbers.
 
 use crate::support::desk::{Desk, commands};

@@ -20,7 +20,7 @@ const WITHIN: f64 = 1e-10;
 
 /// The contents of a scenario file as plain numbers.
 #[derive(Clone)]
-struct Told {
+struct PlainScenario {
     /// Name, position in the upright pose (m), mass (kg).
     points: Vec<(String, Vector3<f64>, f64)>,
     tilt_deg: f64,
@@ -66,7 +66,7 @@ enum Change {
     Force(usize, Vector3<f64>),
 }
 
-impl Told {
+impl PlainScenario {
     fn toml(&self, scheme: &str) -> String {
         let mut text = "title = 'x'\n".to_owned();
         for (name, at, mass) in &self.points {
@@ -194,7 +194,7 @@ fn array(v: &Vector3<f64>) -> String {
 
 /// Point masses under their weight and other forces. y: three body axes and L, world frame.
 struct Turning<'a> {
-    told: &'a Told,
+    told: &'a PlainScenario,
     inverse: Matrix3<f64>,
     first_moment: Vector3<f64>,
     gravity: f64,
@@ -202,7 +202,7 @@ struct Turning<'a> {
 }
 
 impl<'a> Turning<'a> {
-    fn new(told: &'a Told) -> Self {
+    fn new(told: &'a PlainScenario) -> Self {
         let inertia: Matrix3<f64> = told
             .points
             .iter()
@@ -260,7 +260,7 @@ impl ODE<f64, [f64; 12]> for Turning<'_> {
 
 /// Returns the states at `TIMES`, and the largest factor by which nearby states separate between two of them: a lower bound
 /// on the error of any computation.
-fn integrated(told: &Told) -> (Vec<Known>, f64) {
+fn integrated(told: &PlainScenario) -> (Vec<Known>, f64) {
     let (q, l) = told.start();
     let mut start = [0.0; 12];
     start[..9].copy_from_slice(q.as_slice());
@@ -303,7 +303,7 @@ fn neighbour(y: &[f64; 12], push: f64) -> [f64; 12] {
 }
 
 /// Returns the states from `TIMES[first]` on, integrated from the time before it.
-fn follow(told: &Told, first: usize, mut y: [f64; 12]) -> Vec<[f64; 12]> {
+fn follow(told: &PlainScenario, first: usize, mut y: [f64; 12]) -> Vec<[f64; 12]> {
     let mut turning = Turning::new(told);
     let mut now = if first == 0 { 0.0 } else { TIMES[first - 1] };
     TIMES[first..]
@@ -317,7 +317,12 @@ fn follow(told: &Told, first: usize, mut y: [f64; 12]) -> Vec<[f64; 12]> {
 }
 
 /// Returns the distance of the farthest point (m) or that of L relative to `size`, whichever is larger.
-fn apart(told: &Told, size: f64, seen: &State, known: &(Matrix3<f64>, Vector3<f64>)) -> f64 {
+fn apart(
+    told: &PlainScenario,
+    size: f64,
+    seen: &State,
+    known: &(Matrix3<f64>, Vector3<f64>),
+) -> f64 {
     let arm = told
         .points
         .iter()
@@ -335,7 +340,7 @@ fn largest_momentum(known: &[(Matrix3<f64>, Vector3<f64>)]) -> f64 {
     known.iter().map(|(_, l)| l.norm()).fold(1.0, f64::max)
 }
 
-fn error_of_truth(told: &Told, known: &[(Matrix3<f64>, Vector3<f64>)]) -> f64 {
+fn error_of_truth(told: &PlainScenario, known: &[(Matrix3<f64>, Vector3<f64>)]) -> f64 {
     let mut truth = Truth::new(told.scenario("report"));
     let size = largest_momentum(known);
     TIMES
@@ -397,7 +402,7 @@ fn random_push(dice: &mut Dice, points: usize, weight: f64, steps: u64) -> Pushe
     }
 }
 
-fn random_edits(dice: &mut Dice, told: &Told) -> Vec<Edited> {
+fn random_edits(dice: &mut Dice, told: &PlainScenario) -> Vec<Edited> {
     let mut steps: Vec<u64> = (0..dice.whole(0, 3))
         .map(|_| dice.whole(0, told.steps()))
         .collect();
@@ -419,12 +424,12 @@ fn random_edits(dice: &mut Dice, told: &Told) -> Vec<Edited> {
         .collect()
 }
 
-fn random(dice: &mut Dice) -> Told {
+fn random(dice: &mut Dice) -> PlainScenario {
     let symmetric = dice.unit() < 0.5;
     let points = random_points(dice, symmetric);
     let weight = 9.8 * points.iter().map(|(_, _, m)| m).sum::<f64>();
     let time_step_s = dice.pick(&[0.1, 0.05, 0.01, 1.0 / 60.0]);
-    let mut told = Told {
+    let mut told = PlainScenario {
         tilt_deg: dice.pick(&[0.0, 30.0, 45.0, 90.0, 170.0]) + dice.between(-1.0, 1.0),
         momentum: Vector3::zeros(),
         time_step_s,
@@ -446,8 +451,9 @@ fn random(dice: &mut Dice) -> Told {
     told
 }
 
-/// Returns the tolerance: 1e-10, or the integration's own error of 1e-13 times `growth` if that is larger than 1000. (The
-/// integration dominates: closed form and Taylor series, which are independent, agree to a hundredth of that.)
+/// Returns the tolerance: 1e-10, or the integration's own error of 1e-13 times `growth` if that is larger than 1000.
+///
+/// The integration dominates: closed form and Taylor series, which are independent, agree to a hundredth of that.
 fn allowed(growth: f64) -> f64 {
     WITHIN.max(1e-13 * growth)
 }
@@ -479,8 +485,8 @@ fn random_scenarios_agree_with_an_independent_integration() {
 }
 
 /// The textbook's wheel (I1 = 6.6, I3 = 3.2, mgl = 49) or another one, with a tilt and L in the body frame.
-fn named(height: f64, tilt_deg: f64, momentum: [f64; 3]) -> Told {
-    let told = Told {
+fn named(height: f64, tilt_deg: f64, momentum: [f64; 3]) -> PlainScenario {
+    let told = PlainScenario {
         points: wheel(10, 0.8, height, 0.5),
         tilt_deg,
         momentum: Vector3::zeros(),
@@ -490,10 +496,15 @@ fn named(height: f64, tilt_deg: f64, momentum: [f64; 3]) -> Told {
         gravity: 9.8,
     };
     let momentum = told.start().0 * Vector3::from(momentum);
-    Told { momentum, ..told }
+    PlainScenario { momentum, ..told }
 }
 
-fn pushed(mut told: Told, force: [f64; 3], window: Window, accumulates: bool) -> Told {
+fn pushed(
+    mut told: PlainScenario,
+    force: [f64; 3],
+    window: Window,
+    accumulates: bool,
+) -> PlainScenario {
     told.pushes.push(Pushed {
         point: 0,
         force: Vector3::from(force),
@@ -503,7 +514,7 @@ fn pushed(mut told: Told, force: [f64; 3], window: Window, accumulates: bool) ->
     told
 }
 
-fn degenerate() -> Vec<(&'static str, Told)> {
+fn degenerate() -> Vec<(&'static str, PlainScenario)> {
     const SPIN: [f64; 3] = [0.0, 0.0, 60.0];
     const REST: [f64; 3] = [0.0; 3];
     let kappa_1 = 0.8 / 2_f64.sqrt();
@@ -511,7 +522,7 @@ fn degenerate() -> Vec<(&'static str, Told)> {
     let cusps = || named(1.0, 30.0, SPIN);
     let steady = [0.0, 2.945_444_198_542_434_7, 60.0];
     let sideways = [30.0, -20.0, 0.0];
-    let aside = |told: Told, from: f64, long: f64| {
+    let aside = |told: PlainScenario, from: f64, long: f64| {
         pushed(told, sideways, Window::Seconds(from, long), false)
     };
     let mut regrown = cusps();
@@ -521,7 +532,7 @@ fn degenerate() -> Vec<(&'static str, Told)> {
             change: Change::Gravity(gravity),
         })
         .into();
-    let weightless = |told: Told| Told {
+    let weightless = |told: PlainScenario| PlainScenario {
         gravity: 0.0,
         ..told
     };
@@ -609,12 +620,12 @@ fn a_top_exactly_upright_or_hanging_stays_in_place() {
 }
 
 /// The same scenario without its edits of time step and scheme.
-fn without_bookkeeping(told: &Told) -> Told {
+fn without_bookkeeping(told: &PlainScenario) -> PlainScenario {
     let edits = told
         .edits
         .iter()
         .filter(|edit| matches!(edit.change, Change::Gravity(_) | Change::Force(..)));
-    Told {
+    PlainScenario {
         edits: edits.cloned().collect(),
         ..told.clone()
     }
@@ -670,7 +681,7 @@ fn the_exact_motion_does_not_depend_on_query_order() {
 }
 
 /// Runs the scheme `exact` at `time_step_s` and returns the maximum distance from `Truth` over its steps.
-fn exact_scheme_off(told: &Told, time_step_s: f64) -> f64 {
+fn exact_scheme_off(told: &PlainScenario, time_step_s: f64) -> f64 {
     let exact = find_scheme("exact");
     let scenario = Arc::new(resampled(&told.scenario("exact"), time_step_s, exact));
     let mut truth = Truth::new(Arc::clone(&scenario));
@@ -703,7 +714,7 @@ fn the_scheme_exact_gives_the_exact_motion_at_every_time_step() {
 
 #[test]
 fn the_scheme_exact_names_its_method() {
-    let kind = |told: &Told| {
+    let kind = |told: &PlainScenario| {
         let mut simulation = Simulation::new(told.scenario("exact"));
         assert_eq!(simulation.remark(), None);
         simulation.step_to(told.steps()).unwrap();

@@ -653,7 +653,7 @@ fn an_end_while_seeking_loses_nothing() {
 }
 
 /// The minimum contents of a session after a kill.
-struct Kept {
+struct ExpectedSession {
     /// The step at which the run file was saved.
     step: u64,
     run: String,
@@ -699,7 +699,7 @@ fn five_kills(seed: u64) {
 }
 
 /// Changes the run at random and saves it. Then adds to it for a second or two, and kills the lab.
-fn use_until_killed(lab: &mut Terminal, dice: &mut Dice, kill: usize) -> Kept {
+fn use_until_killed(lab: &mut Terminal, dice: &mut Dice, kill: usize) -> ExpectedSession {
     for _ in 0..dice.whole(1, 6) {
         make_random_change(lab, dice);
     }
@@ -729,7 +729,7 @@ fn use_until_killed(lab: &mut Terminal, dice: &mut Dice, kill: usize) -> Kept {
         .iter()
         .rfind(|seen| seen.at + Duration::from_secs(1) <= killed)
         .unwrap();
-    Kept {
+    ExpectedSession {
         step,
         run,
         reached: old.step,

@@ -441,12 +441,12 @@ fn child() {
 }
 
 /// A child process with its own session.
-struct Other {
+struct OtherProcess {
     child: Child,
     says: BufReader<ChildStdout>,
 }
 
-impl Other {
+impl OtherProcess {
     fn begin(folder: &Path) -> Self {
         let mut child = Command::new(std::env::current_exe().unwrap())
             .args(["--exact", "session::child", "--nocapture"])
@@ -474,7 +474,7 @@ impl Other {
     }
 }
 
-impl Drop for Other {
+impl Drop for OtherProcess {
     fn drop(&mut self) {
         let _ = self.child.kill();
         let _ = self.child.wait();
@@ -484,7 +484,7 @@ impl Drop for Other {
 #[test]
 fn a_killed_process_loses_at_most_a_second_and_releases_its_session() {
     let (_outer, folder) = folder();
-    let mut other = Other::begin(&folder);
+    let mut other = OtherProcess::begin(&folder);
     assert_eq!(other.hear("begins"), "begins at new");
     for n in 0..100 {
         other.note(&n.to_string());
@@ -493,9 +493,9 @@ fn a_killed_process_loses_at_most_a_second_and_releases_its_session() {
     assert_eq!(newest_content(&folder), None, "the session is in use");
     other.kill();
     assert_eq!(newest_content(&folder), Some(pair("run", "99")));
-    let mut next = Other::begin(&folder);
+    let mut next = OtherProcess::begin(&folder);
     assert_eq!(next.hear("begins"), "begins at 99");
-    let third = Other::begin(&folder).hear("begins");
+    let third = OtherProcess::begin(&folder).hear("begins");
     assert_eq!(third, "begins at new", "the session is in use");
     next.kill();
 }
@@ -503,7 +503,7 @@ fn a_killed_process_loses_at_most_a_second_and_releases_its_session() {
 #[test]
 fn the_exit_hook_saves_the_last_content() {
     let (_outer, folder) = folder();
-    let mut other = Other::begin(&folder);
+    let mut other = OtherProcess::begin(&folder);
     (0..1000).for_each(|n| other.note(&n.to_string()));
     writeln!(other.child.stdin.as_mut().unwrap(), "{END}").unwrap();
     assert!(other.child.wait().unwrap().success());
@@ -514,7 +514,7 @@ fn the_exit_hook_saves_the_last_content() {
 fn a_process_killed_at_any_time_leaves_a_valid_session() {
     let (_outer, folder) = folder();
     for n in 0..20 {
-        let mut other = Other::begin(&folder);
+        let mut other = OtherProcess::begin(&folder);
         other.hear("begins");
         other.note(&n.to_string().repeat(1 << 22)); // takes a while to write
         thread::sleep(Duration::from_millis(n % 10));

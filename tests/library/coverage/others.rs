@@ -16,16 +16,16 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// Precession (rad/s) and nutation (s).
-type Both = [Option<MeasuredNumber>; 2];
+type Measurements = [Option<MeasuredNumber>; 2];
 
 /// Measurements of a short run, and of a longer one: the whole of it, and each half.
 struct Pair {
     seed: u64,
-    short: Both,
-    long: [Both; 3],
+    short: Measurements,
+    long: [Measurements; 3],
 }
 
-fn both(instruments: &Instruments) -> Both {
+fn both(instruments: &Instruments) -> Measurements {
     [
         instruments.precession_rad_per_s(),
         instruments.nutation_period_s().ok(),
@@ -33,7 +33,7 @@ fn both(instruments: &Instruments) -> Both {
 }
 
 /// Measures the whole run, its first half and its second half. Returns `None` if the run breaks down.
-fn measure_halves(scenario: &Arc<Scenario>) -> Option<[Both; 3]> {
+fn measure_halves(scenario: &Arc<Scenario>) -> Option<[Measurements; 3]> {
     let mut simulation = Simulation::new(Arc::clone(scenario));
     let mut whole = Instruments::new(simulation.now());
     let (mut first, mut second) = (whole.clone(), whole.clone());
