@@ -1,5 +1,6 @@
 //! `gyrolab fit`: finds values of scenario keys whose runs come closest to measured data.
 
+pub(super) mod again;
 mod throws;
 
 use super::args::{LengthArgs, MapArgs, STDIN, STDIN_WORDS, SetArgs, change, change_length, open};
@@ -9,17 +10,17 @@ use super::{one_on_stdout, print, print_result, refuse, tell_notes, tell_of_rows
 use crate::engine::data::{self, DataKind, MeasuredData};
 use crate::engine::export::Destination;
 use crate::engine::scenario::{Document, Problem, Problems, csv};
-use crate::engine::text::number::{shortest, significant};
+use crate::engine::text::number::significant;
 use crate::engine::text::printable::{PrintablePath, brief, printable};
 use crate::studies::fit::flights::{self, Found};
-use crate::studies::fit::report::{self, FitCommand, FitReport};
+use crate::studies::fit::report::FitReport;
 use crate::studies::fit::{Fit, Free, Model, NoFit, fit as fitted, thrown};
-use crate::studies::verify::Unverified;
-use anyhow::{Context, anyhow, bail};
+use again::write;
+use anyhow::{Context, bail};
+use clap::Args;
 use clap::error::ErrorKind;
-use clap::{Args, FromArgMatches};
 use serde_json::json;
-use std::io::{self, Write};
+use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use throws::{Throw, Thrown};
@@ -353,44 +354,6 @@ impl Task {
     }
 }
 
-/// Recomputes the CSV of the fit with the command line `command`.
-pub(super) fn again(command: &str, interruption: &Interruption) -> Result<Vec<u8>, Unverified> {
-    let cannot = |why: String| Unverified::from(format!("cannot be recomputed: {why}"));
-    let words = shlex::split(command).unwrap_or_default();
-    let words_of_fit = words
-        .get(1..)
-        .filter(|words| words.first().is_some_and(|word| word == "fit"));
-    let line = FitArgs::augment_args(clap::Command::new("fit"));
-    let parsed = line
-        .try_get_matches_from(words_of_fit.unwrap_or_default())
-        .and_then(|matches| FitArgs::from_arg_matches(&matches));
-    let Ok(args) = parsed else {
-        let why = "the line command in its header is not the command line of a fit";
-        return Err(cannot(why.to_owned()));
-    };
-    if [&args.measured, &args.scenario].contains(&&STDIN.to_owned()) {
-        return Err(cannot(
-            "its data or scenario came from standard input and are not available".to_owned(),
-        ));
-    }
-    let model = Task::read(&args)
-        .and_then(|task| task.model(&args, None))
-        .map_err(|problems| cannot(problems.to_string()))?;
-    let found = match fitted(&model, &|| !interruption.has_come(), &|_, _| {}) {
-        Ok(found) => found,
-        Err(NoFit::Interrupted) => return Err(Unverified::Stopped),
-        Err(error) => return Err(cannot(error.to_string())),
-    };
-    let report = FitReport {
-        fit: &found,
-        model: &model,
-        instead_of: None,
-    };
-    let mut csv = Vec::new();
-    write(&mut csv, &report, &args).map_err(|error| cannot(error.to_string()))?;
-    Ok(csv)
-}
-
 fn measured(args: &FitArgs) -> Result<MeasuredData, Problems> {
     let options = args.columns.options();
     if args.measured != STDIN {
@@ -446,68 +409,6 @@ fn chosen(mut measured: MeasuredData, rows: Option<&RowRange>) -> Result<Measure
         return Err(refused("these rows contain no measured value".to_owned()));
     }
     Ok(measured)
-}
-
-fn command(args: &FitArgs) -> String {
-    let free = args.free.join(",");
-    let mut words = vec!["gyrolab", "fit", &args.measured, "--in", &args.scenario];
-    words.extend(["--free", &free]);
-    words.extend(args.changes.set.iter().flat_map(|set| ["--set", set]));
-    let map = args
-        .columns
-        .map
-        .iter()
-        .map(|(column, name)| format!("{column}={name}"))
-        .collect::<Vec<_>>()
-        .join(",");
-    let sigma = args
-        .columns
-        .sigma
-        .iter()
-        .map(ToString::to_string)
-        .collect::<Vec<_>>()
-        .join(",");
-    let time_step = args.changes.time_step.map(shortest).unwrap_or_default();
-    let [from, to] = [args.from, args.to].map(|it| it.map(shortest).unwrap_or_default());
-    let rows = args.rows.as_ref().map_or("", |rows| &rows.text);
-    let scheme = args.changes.scheme.as_deref().unwrap_or_default();
-    for (option, value) in [
-        ("--time-step", &*time_step),
-        ("--scheme", scheme),
-        ("--rows", rows),
-        ("--from", &from),
-        ("--to", &to),
-        ("--map", &map),
-        ("--sigma", &sigma),
-    ] {
-        if !value.is_empty() {
-            words.extend([option, value]);
-        }
-    }
-    // Quoting fails only for a NUL byte, which no command-line argument can contain.
-    shlex::try_join(words).unwrap_or_default()
-}
-
-fn write(output: impl Write, report: &FitReport<'_>, args: &FitArgs) -> anyhow::Result<()> {
-    let Fit { keys, quality, .. } = report.fit;
-    let values: Vec<f64> = keys.iter().map(|key| key.value).collect();
-    let scenario = report
-        .model
-        .as_long_as_measured(&values)
-        .map_err(|why| anyhow!(why))?;
-    let asked = FitCommand {
-        command: command(args),
-        measured: args.measured.clone(),
-        scenario: args.scenario.clone(),
-        scheme: report.model.scheme.to_owned(),
-        free: args.free.clone(),
-        rows: args.rows.as_ref().map(|rows| rows.text.clone()),
-        chi_squared: quality.chi_squared,
-        degrees_of_freedom: quality.degrees_of_freedom,
-        scatter: quality.scatter,
-        verdict: report.fit.sentence(report.model),
-    };
-    Ok(report::write_csv(output, report, &scenario, asked)?)
 }
 
 /// Prints the result, and the path of the CSV.

@@ -81,7 +81,7 @@ enum CliCommand {
     Compare(compare::CompareArgs),
     /// Draw runs, or a table of compare, sweep or fit, as SVG, PDF or PNG
     Figure(figure::FigureArgs),
-    /// Make a folder for a write-up: text, CSV, figures and numbers
+    /// Write up a run, or the CSV of a fit: a folder with a document, figures, numbers and CSV
     Writeup(writeup::WriteupArgs),
     /// Repeat the report's computations and test its claims, as one document
     Reproduce(reproduce::ReproduceArgs),

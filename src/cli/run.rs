@@ -10,7 +10,7 @@ use crate::engine::export::layout::{LayoutFile, above_run_file};
 use crate::engine::export::stream::Ended;
 use crate::engine::export::{CsvLayout, CsvWriter, PlayedRun, RunSummary};
 use crate::engine::run::Clock;
-use crate::engine::scenario::{Document, Problems};
+use crate::engine::scenario::{Document, Problems, Scenario};
 use crate::engine::text::io_errors::advised;
 use crate::engine::text::number::shortest;
 use crate::engine::text::printable::PrintablePath;
@@ -51,12 +51,7 @@ pub(super) struct RunArgs {
 pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let to_stdout = one_on_stdout("run", args.output.as_deref(), args.json);
     let document = open(&args.scenario.scenario)?;
-    let mut of_header = layout_in_header(&document)?;
-    if args.scenario.changes.is_some() || args.length.is_some() {
-        of_header.note = None; // it describes another run
-    }
-    let layout = args.layout.layout(of_header);
-    let scenario = Arc::new(changed(document, &args.scenario.changes, &args.length)?);
+    let (scenario, layout) = laid_out(document, &args.scenario, &args.length, &args.layout)?;
     if args.output.is_some() && layout.begins_after(&scenario) {
         let end = shortest(Clock::end_s(&scenario));
         bail!("--from leaves no row: the run ends at {end} s");
@@ -109,8 +104,7 @@ pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
 /// Computes the CSV that the command writes.
 pub(super) fn csv(args: &RunArgs, interruption: &Interruption) -> anyhow::Result<Vec<u8>> {
     let document = open(&args.scenario.scenario)?;
-    let layout = args.layout.layout(layout_in_header(&document)?);
-    let scenario = Arc::new(changed(document, &args.scenario.changes, &args.length)?);
+    let (scenario, layout) = laid_out(document, &args.scenario, &args.length, &args.layout)?;
     let mut csv = CsvWriter::with_layout(Vec::new(), &scenario, layout)?;
     let played = PlayedRun::play(&scenario, Some(&mut csv), |_| {}, interruption.meter())?;
     match played.ended {
@@ -118,6 +112,23 @@ pub(super) fn csv(args: &RunArgs, interruption: &Interruption) -> anyhow::Result
         Ended::Stopped => bail!(Interrupted),
         Ended::NotFinite(error) => bail!(error),
     }
+}
+
+/// Applies the changes of the command line to `document`. Returns its scenario, and the layout of its CSV: as in the header of
+/// a CSV, with the options over it.
+pub(super) fn laid_out(
+    document: Document,
+    scenario: &ScenarioArgs,
+    length: &LengthArgs,
+    layout: &LayoutArgs,
+) -> anyhow::Result<(Arc<Scenario>, CsvLayout)> {
+    let mut of_header = layout_in_header(&document)?;
+    if scenario.changes.is_some() || length.is_some() {
+        of_header.note = None; // it describes another run
+    }
+    let layout = layout.layout(of_header);
+    let scenario = changed(document, &scenario.changes, length)?;
+    Ok((Arc::new(scenario), layout))
 }
 
 /// Returns the layout in the header of a run's CSV, so that the new CSV has the same layout. Other documents have none:

@@ -2,6 +2,7 @@
 //! with the scheme.
 
 use super::argument_values::{one_or_more, setting};
+use super::fit::again::FitCopy;
 use super::progress::{self, Interrupted, Interruption};
 use super::{fit, print, reproduce, warn, writeup};
 use crate::engine::export::OutputFolder;
@@ -12,7 +13,8 @@ use crate::engine::text::number::counted;
 use crate::engine::text::printable::{PrintablePath, brief, printable_lines};
 use crate::report::figure::redraw;
 use crate::report::reproduce::CLAIMS_FILE;
-use crate::report::writeup::{CSV, MEASURED_DATA, READOUTS_FILE, RUN_FILE};
+use crate::report::writeup::fit::FIT_CSV;
+use crate::report::writeup::{CSV, DocumentFormats, MEASURED_DATA, READOUTS_FILE, RUN_FILE};
 use crate::studies::own_code::{self, Verdict};
 use crate::studies::verify::verify as verified;
 use crate::studies::verify::{FileComparison, Unverified, first_difference, other_version};
@@ -137,7 +139,10 @@ fn version_of_claims(file: &Path) -> String {
 
 /// Recreates the write-up in `folder` and compares every file.
 fn writeup_again(folder: &Path, interruption: &Interruption) -> anyhow::Result<bool> {
-    let [run_file, csv] = [RUN_FILE, CSV].map(|name| folder.join(name));
+    let [run_file, csv, fit_csv] = [RUN_FILE, CSV, FIT_CSV].map(|name| folder.join(name));
+    if !run_file.is_file() && fit_csv.is_file() {
+        return folder_of_fit(folder, interruption);
+    }
     if !run_file.is_file() {
         let rule = format!(
             "is not a write-up, because it contains no {RUN_FILE}: name the files in it instead"
@@ -158,7 +163,7 @@ fn writeup_again(folder: &Path, interruption: &Interruption) -> anyhow::Result<b
         Some((rows, difference)) => print_rows_result(&csv, rows, difference.as_ref(), &notes)?,
         None => print_file_result(&csv, "", Some(&MISSING), &notes)?,
     };
-    let files = again.files()?;
+    let files = again.files(DocumentFormats::in_folder(folder))?;
     for (name, made) in &files {
         let file = folder.join(name);
         let same = if data.as_ref().is_some_and(|data| Path::new(data) == file) {
@@ -170,6 +175,22 @@ fn writeup_again(folder: &Path, interruption: &Interruption) -> anyhow::Result<b
         is_good &= print_file_result(&file, same, difference.as_ref(), &[])?;
     }
     print_other_files(folder, files.iter().map(|(name, _)| name.into()))?;
+    Ok(is_good)
+}
+
+/// Repeats the fit in the write-up in `folder`, and compares every file. Returns true if all are the same.
+fn folder_of_fit(folder: &Path, interruption: &Interruption) -> anyhow::Result<bool> {
+    let fit = FitCopy::in_folder(folder)?;
+    let files = fit.files(folder, DocumentFormats::in_folder(folder), interruption)?;
+    let mut is_good = true;
+    for (name, made) in &files {
+        let file = folder.join(name);
+        let difference = file_difference(&file, made, OWN_VERSION, interruption)?;
+        is_good &= print_file_result(&file, RECREATED, difference.as_ref(), &[])?;
+    }
+    let own = files.iter().map(|(name, _)| name.as_str());
+    let own = own.chain(fit.copies()).map(OsString::from);
+    print_other_files(folder, own)?;
     Ok(is_good)
 }
 
@@ -208,7 +229,7 @@ fn file_difference(
     }
     if file
         .extension()
-        .is_some_and(|it| it == "svg" || it == "pdf")
+        .is_some_and(|it| it == "svg" || it == "pdf" || it == "png")
     {
         return Ok(match redraw(file, interruption.meter()) {
             Err(Unverified::Stopped) => bail!(Interrupted),
@@ -245,9 +266,10 @@ fn verify_file(file: &Path, interruption: &Interruption) -> anyhow::Result<bool>
         let same = "the same: redrawn from the data in the file";
         return print_file_result(file, same, difference.as_ref(), &notes);
     }
+    let folder = file.parent().unwrap_or(Path::new(""));
     let result = verified(
         file,
-        |command| fit::again(command, interruption),
+        |command| fit::again::csv(command, folder, interruption),
         interruption.meter(),
     )?;
     print_rows_result(file, result.rows, result.difference.as_ref(), &result.notes)

@@ -86,6 +86,7 @@ pub fn rounded(scene: &PageScene) -> Result<PageScene, Unwritable> {
         height_pt: hundredths(height_pt),
         title: scene.title.clone(),
         decimal_comma: scene.decimal_comma,
+        caveats: scene.caveats.clone(),
         items: numbered
             .map(|(index, item)| rounded_item(item).ok_or(Unwritable::Place(index)))
             .collect::<Result<_, _>>()?,
@@ -133,6 +134,7 @@ mod tests {
             width_pt: 100.0,
             height_pt: 50.0,
             title: String::new(),
+            caveats: Vec::new(),
             items,
             decimal_comma: false,
         }

@@ -156,6 +156,7 @@ impl PageScene {
             width_pt,
             height_pt,
             title: title.to_owned(),
+            caveats: Vec::new(),
             items: Vec::new(),
             decimal_comma: false,
         }

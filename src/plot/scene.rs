@@ -256,6 +256,8 @@ pub struct PageScene {
     pub height_pt: f64,
     /// The title in the file's metadata, which is not drawn.
     pub title: String,
+    /// What its readers must know of the runs on it, such as that one is not reliable; not drawn, but kept in the file.
+    pub caveats: Vec<String>,
     pub items: Vec<SceneItem>,
     /// Whether numbers that are written on it have a decimal comma.
     pub decimal_comma: bool,

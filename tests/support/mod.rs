@@ -8,4 +8,5 @@ pub mod ground;
 pub mod pty;
 pub mod scenarios;
 pub mod stage;
+pub mod tex;
 pub mod words;

@@ -10,7 +10,9 @@ mod value_row;
 
 pub use summary_row::{SummaryPart, SummaryRow, summary_rows};
 pub use table::{READOUTS, Readout, ReadoutSource, find, names, nearest};
-pub use value_row::{ShownValue, ValueGroup, ValueRow, four_digits, value_rows};
+pub use value_row::{
+    ShownValue, ValueGroup, ValueRow, four_digits, passes_through_vertical, value_rows,
+};
 
 use super::health::{Advice, advise};
 use super::report_theory::ReportTheory;

@@ -18,7 +18,7 @@ use std::fmt;
 /// accepted. A larger error is visible on a plot.
 pub const BELIEVED_WITHIN: f64 = 0.01;
 /// Tolerance on the minimum and maximum tilt and on the path of the tilt, as a fraction of the exact swing.
-const SWING_TOLERANCE: f64 = 0.05;
+pub const SWING_TOLERANCE: f64 = 0.05;
 /// Minimum swing of the exact tilt, degrees. Below it, the tilt does not swing; the summary does not show more digits.
 const NO_SWING_DEG: f64 = 1e-4;
 /// Tolerance on the tilt if the exact motion does not swing, rad: the same fraction of the traced point's tolerance.
@@ -101,7 +101,7 @@ fn swings((least, greatest): (f64, f64)) -> bool {
 }
 
 /// Returns the tolerance on tilts next to the exact range `exact_deg`, degrees.
-fn allowed_deg(exact_deg: (f64, f64)) -> f64 {
+pub fn tilt_tolerance_deg(exact_deg: (f64, f64)) -> f64 {
     if swings(exact_deg) {
         SWING_TOLERANCE * (exact_deg.1 - exact_deg.0)
     } else {
@@ -223,7 +223,7 @@ impl SwingBin {
     fn swing(&self, is_whole_run: bool) -> SwingComparison {
         let [run, exact] = self.ranges;
         let (run_deg, exact_deg) = (run.tilts_deg(), exact.tilts_deg());
-        let most_deg = allowed_deg(exact_deg);
+        let most_deg = tilt_tolerance_deg(exact_deg);
         let off_deg = (run_deg.0 - exact_deg.0)
             .abs()
             .max((run_deg.1 - exact_deg.1).abs());
@@ -283,7 +283,7 @@ impl SwingComparison {
 
     /// Returns the tilts of the run and of the exact motion, degrees, with enough digits to tell them apart.
     fn tilts(&self) -> [String; 4] {
-        let digits = -libm::log10(allowed_deg(self.exact_deg)).floor();
+        let digits = -libm::log10(tilt_tolerance_deg(self.exact_deg)).floor();
         let [(a, b), (c, d)] = [self.run_deg, self.exact_deg];
         [a, b, c, d].map(|tilt| fixed(tilt, digits.max(0.0) as usize))
     }

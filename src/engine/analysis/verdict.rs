@@ -3,8 +3,13 @@
 use super::Health;
 use super::health::WheelPicture;
 use super::predictability::Equilibrium;
+use crate::physics::observables;
+use crate::scenario::{Motion, Scenario};
 use crate::text::number::{exponent, rounded, short, steady};
+use std::f64::consts::TAU;
 
+/// From this number of turns per step on, a scheme that does not turn the body exactly cannot follow it.
+const UNDER_SAMPLED_TURNS: f64 = 0.5;
 /// Distances below this are rounding errors, m.
 const ROUNDING_M: f64 = 1e-12;
 
@@ -97,6 +102,47 @@ impl Verdict {
             hint: None,
         }
     }
+}
+
+/// Returns what a reader of the run's numbers must know, without a full stop: `not reliable: ...`. `None` if they hold.
+pub fn caveat(health: &Health) -> Option<String> {
+    let verdict = Verdict::new(health);
+    let VerdictWord::Badge(word) = verdict.word else {
+        return None;
+    };
+    let word = match word.as_str() {
+        "NO EXACT MOTION" | "NOT JUDGED" => "not compared with the exact motion".to_owned(),
+        badge if badge.chars().all(|c| !c.is_lowercase()) => badge.to_lowercase(),
+        badge => badge.replacen("PREDICTABLE", "predictable", 1),
+    };
+    let reasons: Vec<String> = verdict
+        .reasons
+        .into_iter()
+        .map(|reason| reason.long)
+        .collect();
+    Some(format!("{word}: {}", reasons.join("; ")))
+}
+
+/// Returns a warning about a run of `scenario` that is known before its first step: its scheme cannot follow the body. `None`
+/// if there is nothing to warn of.
+pub fn warning_at_start(scenario: &Scenario) -> Option<String> {
+    let Motion {
+        scheme,
+        time_step_s,
+        ..
+    } = scenario.motion;
+    let spin = observables::angular_velocity(&scenario.body.mechanics, &scenario.start).norm();
+    let turns = spin * time_step_s / TAU;
+    // Not `turns < 0.5`: a turn beyond the range of numbers is too far as well.
+    let follows = turns < UNDER_SAMPLED_TURNS;
+    (!scheme.turns_exactly && !follows).then(|| {
+        let turns = if turns.is_finite() { short(turns) } else { "too many".to_owned() };
+        format!(
+            "not reliable: under-sampled from the start, the body turns {turns} times per time step, and the scheme {} cannot \
+             follow it",
+            scheme.name
+        )
+    })
 }
 
 fn unstable(equilibrium: Equilibrium) -> Phrase {

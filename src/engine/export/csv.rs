@@ -3,8 +3,9 @@
 
 use super::CsvLayout;
 use super::columns::{CsvCell, CsvRow, DISTANCE, NamedPoint};
-use super::layout::commented;
+use super::layout::{WARNING_MARK, commented};
 use crate::analysis::DistanceMeter;
+use crate::analysis::verdict::warning_at_start;
 use crate::run::Sample;
 use crate::scenario::Scenario;
 use std::io::{self, BufWriter, Write};
@@ -39,10 +40,13 @@ impl<W: Write> CsvWriter<W> {
         } else {
             ""
         };
-        let separator = delimiter(&layout);
+        let separator = layout.delimiter();
+        let warning = warning_at_start(scenario).map_or(String::new(), |warning| {
+            commented(&commented(&format!("{WARNING_MARK} {warning}")))
+        });
         let (above, run_file) = (layout.comments(), commented(&scenario.to_toml()));
         let names = layout.names().join(&char::from(separator).to_string());
-        writeln!(out, "{mark}{above}{run_file}{names}")?;
+        writeln!(out, "{mark}{warning}{above}{run_file}{names}")?;
         let points = if layout.file().points {
             NamedPoint::all_of(scenario, |name| field(name, separator))
         } else {
@@ -98,10 +102,6 @@ impl<W: Write> CsvWriter<W> {
     }
 }
 
-fn delimiter(layout: &CsvLayout) -> u8 {
-    if layout.file().excel { b';' } else { b',' }
-}
-
 /// Adds one row to `line`. Numbers have the digits that the csv crate gives them with serde; where a text needs quotes, it has
 /// them already.
 fn add(line: &mut Vec<u8>, layout: &CsvLayout, row: &CsvRow<'_>) {
@@ -121,7 +121,7 @@ fn add(line: &mut Vec<u8>, layout: &CsvLayout, row: &CsvRow<'_>) {
                 }
             }
         }
-        line.push(delimiter(layout));
+        line.push(layout.delimiter());
     }
     if let Some(last) = line.last_mut() {
         *last = b'\n';

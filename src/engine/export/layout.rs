@@ -168,6 +168,11 @@ impl CsvLayout {
         &self.columns
     }
 
+    /// The character between two columns.
+    pub fn delimiter(&self) -> u8 {
+        if self.file.excel { b';' } else { b',' }
+    }
+
     pub fn names(&self) -> Vec<&'static str> {
         self.columns.iter().map(|column| column.name).collect()
     }
@@ -220,10 +225,14 @@ fn slack_s(time_step_s: f64, time_s: f64) -> f64 {
     1e-9 * time_step_s + 4.0 * f64::EPSILON * time_s
 }
 
-/// The comments above the run file, without their marks. `header` is the header of a CSV whose lines have lost their `# `.
+/// How a comment above the run file begins that is a warning, and no option of the CSV.
+pub const WARNING_MARK: &str = "warning:";
+
+/// The comments above the run file, without their marks and without warnings. `header` is the header of a CSV whose lines have lost their `# `.
 pub fn above_run_file(header: &str) -> String {
     let comments = header.lines().map_while(|line| line.strip_prefix('#'));
-    comments.flat_map(|line| [line, "\n"]).collect()
+    let options = comments.filter(|line| !line.trim_start().starts_with(WARNING_MARK));
+    options.flat_map(|line| [line, "\n"]).collect()
 }
 
 /// `text` with `# ` before every line, as the run file is written above the rows.

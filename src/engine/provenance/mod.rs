@@ -39,6 +39,9 @@ pub struct Origin {
     pub gyrolab: String,
     /// SHA-256 of the picture without this text.
     picture_sha256: String,
+    /// What its readers must know of its runs, such as that one is not reliable.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub caveats: Vec<String>,
     /// Request for the figure, with keys and values of the module that draws it.
     pub figure: toml::Table,
     #[serde(rename = "file")]
@@ -86,6 +89,7 @@ impl Origin {
         Self {
             gyrolab: env!("CARGO_PKG_VERSION").to_owned(),
             picture_sha256: String::new(),
+            caveats: Vec::new(),
             figure: toml::Table::try_from(asked).unwrap_or_default(), // a struct that can be parsed again
             files,
         }

@@ -199,7 +199,7 @@ fn quantity(quantity: &Quantity) -> String {
         "deg" => "°".to_owned(),
         unit => format!(" {}", powers(unit)),
     };
-    format!("{digits}{power}{unit}")
+    format!("{digits}{power}{unit}").trim_start().to_owned()
 }
 
 /// Returns `unit` with its powers raised: `kg m²`.

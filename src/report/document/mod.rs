@@ -131,19 +131,45 @@ impl Document {
         });
     }
 
-    /// Adds a table without a label. Every row has a cell for each column.
+    /// Adds a table without a label. Every row has a cell for each column; a column of empty cells is left out.
     pub fn table<const N: usize>(
         &mut self,
         caption: &str,
         columns: [Column; N],
         rows: impl IntoIterator<Item = [Text; N]>,
     ) {
-        self.blocks.push(Block::Table(Table {
-            label: None,
+        let rows = rows.into_iter().map(Vec::from).collect();
+        self.any_table(None, caption, columns.into(), rows);
+    }
+
+    /// Adds a table to which `[#label]` refers.
+    pub fn labeled_table<const N: usize>(
+        &mut self,
+        label: &str,
+        caption: &str,
+        columns: [Column; N],
+        rows: impl IntoIterator<Item = [Text; N]>,
+    ) {
+        let rows = rows.into_iter().map(Vec::from).collect();
+        self.any_table(Some(label), caption, columns.into(), rows);
+    }
+
+    /// Adds a table of any number of columns.
+    pub fn any_table(
+        &mut self,
+        label: Option<&str>,
+        caption: &str,
+        columns: Vec<Column>,
+        rows: Vec<Vec<Text>>,
+    ) {
+        let mut table = Table {
+            label: label.map(str::to_owned),
             caption: Text::marked(caption),
-            columns: columns.into(),
-            rows: rows.into_iter().map(Vec::from).collect(),
-        }));
+            columns,
+            rows,
+        };
+        table.remove_empty_columns();
+        self.blocks.push(Block::Table(table));
     }
 
     /// Adds the figure of the picture `label`.svg and `label`.pdf.

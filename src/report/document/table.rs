@@ -44,6 +44,19 @@ impl Column {
 }
 
 impl Table {
+    pub(super) fn remove_empty_columns(&mut self) {
+        let all = 0..self.columns.len();
+        let is_kept: Vec<bool> = all
+            .map(|column| self.rows.is_empty() || !self.cells(column).all(Text::is_empty))
+            .collect();
+        let mut columns = is_kept.iter();
+        self.columns.retain(|_| columns.next() == Some(&true));
+        for row in &mut self.rows {
+            let mut cells = is_kept.iter();
+            row.retain(|_| cells.next() == Some(&true));
+        }
+    }
+
     /// Returns the cells of a column.
     pub(super) fn cells(&self, column: usize) -> impl Iterator<Item = &Text> {
         self.rows.iter().filter_map(move |row| row.get(column))

@@ -20,6 +20,10 @@ const PREAMBLE: &str = r"\documentclass[11pt,a4paper]{article}
 \setlength{\parindent}{0pt}
 \setlength{\parskip}{6pt}
 \emergencystretch=3em
+\renewcommand{\topfraction}{0.9}
+\renewcommand{\bottomfraction}{0.8}
+\renewcommand{\textfraction}{0.1}
+\renewcommand{\floatpagefraction}{0.8}
 % A line of code: broken where it is too long, with a hanging indent.
 \newcommand{\codeline}[1]{\noindent\hangindent=2em\hangafter=1{\small\ttfamily #1}\par}
 ";
@@ -115,7 +119,13 @@ fn write_table(out: &mut String, document: &Document, table: &Table) -> fmt::Res
             "\\begin{{tabular}}{{{columns}}}\n\\toprule\n{header}\n\\midrule"
         )?;
     }
-    for cells in &table.rows {
+    let are_broken = formats
+        .iter()
+        .any(|it| matches!(it, ColumnFormat::Lines(_)));
+    for (index, cells) in table.rows.iter().enumerate() {
+        if are_broken && index > 0 {
+            writeln!(out, "\\addlinespace")?;
+        }
         writeln!(out, "{}", row(document, table, cells.iter()))?;
     }
     if is_long {
@@ -140,8 +150,7 @@ fn row<'a>(document: &Document, table: &Table, cells: impl Iterator<Item = &'a T
 
 /// The format of a column.
 enum ColumnFormat {
-    /// The `table-format` of siunitx.
-    Number(String),
+    Number(NumberFormat),
     Line,
     /// Text that is broken into lines, and the part of the page's width that it takes.
     Lines(f64),
@@ -183,7 +192,7 @@ fn column_formats(table: &Table) -> Vec<ColumnFormat> {
         .sum();
     let left = (TABLE_CHARACTERS - gaps - kept).max(0.3 * TABLE_CHARACTERS);
     let format = |column: usize| match table.columns[column].kind {
-        ColumnKind::Number => ColumnFormat::Number(number_format(table, column)),
+        ColumnKind::Number => ColumnFormat::Number(NumberFormat::of_column(table, column)),
         ColumnKind::Text if is_broken(column) => {
             ColumnFormat::Lines(left / TABLE_CHARACTERS * share(column) / shares)
         }
@@ -208,7 +217,11 @@ fn lines(table: &Table, formats: &[ColumnFormat]) -> f64 {
 fn width(table: &Table, column: usize) -> f64 {
     let header = std::iter::once(&table.columns[column].header);
     let lengths = header.chain(table.cells(column)).map(length);
-    lengths.max().unwrap_or_default() as f64
+    let digits = match table.columns[column].kind {
+        ColumnKind::Number => NumberFormat::of_column(table, column).width(),
+        ColumnKind::Text => 0,
+    };
+    lengths.max().unwrap_or_default().max(digits) as f64
 }
 
 fn length(text: &Text) -> usize {
@@ -223,25 +236,50 @@ fn length(text: &Text) -> usize {
     spans.sum()
 }
 
-/// Returns siunitx's `table-format` for the numbers of a column: `-3.6(2)` for up to three digits before the point, six after
-/// it, and an uncertainty of two digits.
-fn number_format(table: &Table, column: usize) -> String {
-    let mut sign = "";
-    let [mut whole, mut decimals, mut uncertainty] = [1, 0, 0];
-    for number in table.cells(column).filter_map(aligned) {
-        let (value, error) = number.split_once('(').unwrap_or((&number, ""));
-        if value.starts_with(['-', '+']) {
-            sign = "-";
+/// The most digits of the numbers of a column: before the point, after it, and of the uncertainty.
+struct NumberFormat {
+    has_sign: bool,
+    whole: usize,
+    decimals: usize,
+    uncertainty: usize,
+}
+
+impl NumberFormat {
+    fn of_column(table: &Table, column: usize) -> Self {
+        let mut format = Self {
+            has_sign: false,
+            whole: 1,
+            decimals: 0,
+            uncertainty: 0,
+        };
+        for number in table.cells(column).filter_map(aligned) {
+            let (value, error) = number.split_once('(').unwrap_or((&number, ""));
+            format.has_sign |= value.starts_with(['-', '+']);
+            let value = value.trim_start_matches(['-', '+']);
+            let (before, after) = value.split_once('.').unwrap_or((value, ""));
+            format.whole = format.whole.max(before.len());
+            format.decimals = format.decimals.max(after.len());
+            format.uncertainty = format.uncertainty.max(error.trim_end_matches(')').len());
         }
-        let value = value.trim_start_matches(['-', '+']);
-        let (before, after) = value.split_once('.').unwrap_or((value, ""));
-        whole = whole.max(before.len());
-        decimals = decimals.max(after.len());
-        uncertainty = uncertainty.max(error.trim_end_matches(')').len());
+        format
     }
-    match uncertainty {
-        0 => format!("{sign}{whole}.{decimals}"),
-        digits => format!("{sign}{whole}.{decimals}({digits})"),
+
+    /// Returns the width of a number, in characters, with the spaces between groups of digits.
+    fn width(&self) -> usize {
+        let digits = self.whole + self.decimals;
+        digits + digits / 4 + self.uncertainty + usize::from(self.has_sign) + 2
+    }
+}
+
+impl fmt::Display for NumberFormat {
+    /// Writes siunitx's `table-format`: `-3.6(2)`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let sign = if self.has_sign { "-" } else { "" };
+        write!(f, "{sign}{}.{}", self.whole, self.decimals)?;
+        match self.uncertainty {
+            0 => Ok(()),
+            digits => write!(f, "({digits})"),
+        }
     }
 }
 

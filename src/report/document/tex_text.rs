@@ -86,6 +86,9 @@ fn quantity(quantity: &Quantity) -> String {
         number: digits,
         unit,
     } = quantity;
+    if digits.is_empty() && !unit.is_empty() {
+        return format!("\\si{{{}}}", si_unit(unit));
+    }
     match (number(digits), unit.as_str()) {
         (Some(number), "") => format!("\\num{{{number}}}"),
         (Some(number), unit) => format!("\\SI{{{number}}}{{{}}}", si_unit(unit)),

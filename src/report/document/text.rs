@@ -23,7 +23,7 @@ pub enum Span {
 /// A number with its unit.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Quantity {
-    /// The digits as [`number`](crate::engine::text::number) writes them: `0.886033(24)`, `2.4e-9`.
+    /// The digits as [`number`](crate::engine::text::number) writes them: `0.886033(24)`, `2.4e-9`; empty for a unit alone.
     pub number: String,
     /// The unit as readouts write it: `m/s2`, `kg m2`, `deg`; empty for a pure number.
     pub unit: String,
@@ -65,6 +65,24 @@ impl Text {
             number: number.to_owned(),
             unit: String::new(),
         })])
+    }
+
+    /// Returns a unit as readouts write it: `kg m2`.
+    pub fn unit(unit: &str) -> Self {
+        Self(vec![Span::Quantity(Quantity {
+            number: String::new(),
+            unit: unit.to_owned(),
+        })])
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.iter().all(|span| match span {
+            Span::Plain(text) | Span::Emphasis(text) | Span::Strong(text) | Span::Code(text) => {
+                text.is_empty()
+            }
+            Span::Quantity(Quantity { number, unit }) => number.is_empty() && unit.is_empty(),
+            Span::Formula(_) | Span::Reference(_) | Span::Citation(_) => false,
+        })
     }
 
     /// Parses markup:

@@ -16,6 +16,7 @@ use super::space;
 use super::spec::FigureSpec;
 use crate::engine::analysis::Predictability;
 use crate::engine::analysis::health::LEAST_SWING_DEG;
+use crate::engine::analysis::verdict::caveat;
 use crate::engine::export::CsvColumn;
 use crate::engine::run::{Clock, Truth};
 use crate::engine::scenario::{Scenario, ScenarioFile};
@@ -30,6 +31,7 @@ use std::sync::Arc;
 struct SampledRuns {
     drawn: Vec<SampledRunNumbers>,
     warnings: Vec<String>,
+    caveats: Vec<String>,
     broke: Option<String>,
 }
 
@@ -98,6 +100,7 @@ fn play(
     };
     let mut broke = None;
     let mut warnings = Vec::new();
+    let mut caveats = Vec::new();
     for (run, SampledRunNumbers { course, .. }) in runs.iter().zip(&drawn) {
         if let Some(error) = course.broke {
             broke.get_or_insert_with(|| format!("{}: {error}", run.named));
@@ -107,6 +110,8 @@ fn play(
             not_believed(run, course, spec.exact).or_else(|| few_a_swing(run).filter(|_| is_curve)),
         );
         warnings.extend(limited(run, course));
+        let caveat = course.health.as_ref().and_then(caveat);
+        caveats.extend(caveat.map(|caveat| format!("{}: {caveat}", run.named)));
     }
     if spec.exact {
         if runs.iter().any(|run| is_exact(&run.scenario)) {
@@ -124,6 +129,7 @@ fn play(
     Ok(Some(SampledRuns {
         drawn,
         warnings,
+        caveats,
         broke,
     }))
 }
@@ -236,8 +242,10 @@ fn draw(
             scene
         }
     };
+    let mut page = job.spec.on_page(scene);
+    page.caveats.clone_from(&played.caveats);
     Ok(Some(DrawnFigure {
-        scene: job.spec.on_page(scene),
+        scene: page,
         warnings,
         dense,
         broke: played.broke.clone(),

@@ -78,7 +78,9 @@ impl FigureSource {
     /// # Errors
     /// Returns the errors of [`format::write`].
     pub fn write(&self, scene: &PageScene, format: PageFormat) -> Result<Vec<u8>, Unwritable> {
-        format::write(scene, format, Some(&self.origin(format)))
+        let mut origin = self.origin(format);
+        origin.caveats.clone_from(&scene.caveats);
+        format::write(scene, format, Some(&origin))
     }
 
     /// Returns the data to embed in the figure's file.

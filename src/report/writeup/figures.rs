@@ -1,13 +1,15 @@
 //! The figures of a write-up.
 
+use super::page::sentence;
 use super::{MeasuredComparison, RUN_FILE};
 use crate::engine::analysis::Readouts;
 use crate::engine::analysis::cost::is_affordable;
+use crate::engine::analysis::verdict::caveat;
 use crate::engine::run::Clock;
 use crate::engine::scenario::Scenario;
 use crate::engine::scenario::screen::{ABOVE, THREE_D, TRACES};
 use crate::engine::text::number::{rounded, significant};
-use crate::plot::{COLUMN_PT, PageScene};
+use crate::plot::{COLUMN_PT, PT_PER_MM, PageFormat, PageScene, Unwritable};
 use crate::report::figure::course::{RunSampler, SampleRequest, SampledRun};
 use crate::report::figure::kind::{FigureKind, RESIDUALS};
 use crate::report::figure::of_runs::{self, DrawnFigure, FigureRun, KnownNumbers};
@@ -19,8 +21,9 @@ use std::sync::Arc;
 pub struct WriteupFigure {
     /// The name of its files, without their endings.
     pub name: &'static str,
+    /// Markup, as in a document.
     pub caption: String,
-    /// What its reader must know of it besides, as a sentence.
+    /// What its reader must know of it besides, as a sentence in markup.
     pub remark: Option<String>,
     pub scene: PageScene,
     pub source: FigureSource,
@@ -33,10 +36,32 @@ const SWINGS_FIGURE: &str = "swings";
 /// Least number of swings of a run that has this figure.
 const MANY_SWINGS: f64 = 15.0;
 const FEW_FIGURE_SWINGS: f64 = 8.0;
-/// Least number of steps a swing of a curve without corners.
-const SMOOTH_SWING_STEPS: f64 = 40.0;
 /// Figures of measured data end where the data do, and this factor later.
 const BEYOND_DATA: f64 = 1.05;
+
+impl WriteupFigure {
+    /// The width of the page, mm.
+    pub fn width_mm(&self) -> f64 {
+        rounded(self.scene.width_pt / PT_PER_MM, 6)
+    }
+
+    /// Its files, each with its name and its bytes.
+    ///
+    /// # Errors
+    /// When the page is too large for a form.
+    pub fn files(&self) -> Result<Vec<(String, Vec<u8>)>, Unwritable> {
+        let formats = [
+            ("svg", PageFormat::Svg),
+            ("pdf", PageFormat::Pdf),
+            ("png", PageFormat::Png),
+        ];
+        let files = formats.into_iter().map(|(ending, format)| {
+            let bytes = self.source.write(&self.scene, format)?;
+            Ok((format!("{}.{ending}", self.name), bytes))
+        });
+        files.collect()
+    }
+}
 
 struct PlannedFigure {
     name: &'static str,
@@ -76,7 +101,8 @@ pub fn figures(
 ) -> Result<Option<Vec<WriteupFigure>>, String> {
     let is_exact = of_runs::is_exact(scenario);
     let exact = is_affordable(scenario) && !is_exact;
-    let also = also(scenario, readouts, is_exact, exact);
+    let caveat = caveat(&readouts.health);
+    let also = also(scenario, is_exact, exact, caveat.as_deref());
     let whole = FigureSource {
         spec: FigureSpec {
             // A run of the exact motion is drawn once, with the circles that bound it.
@@ -98,11 +124,11 @@ pub fn figures(
         return Ok(None);
     };
     let figures = planned.into_iter().zip(drawn);
-    Ok(Some(
-        figures
-            .map(|(plan, figure)| plan.drawn(figure, exact))
-            .collect(),
-    ))
+    let figures = figures.map(|(plan, mut figure)| {
+        figure.scene.caveats = caveat.iter().cloned().collect();
+        plan.drawn(figure, exact)
+    });
+    Ok(Some(figures.collect()))
 }
 
 impl PlannedFigure {
@@ -135,21 +161,20 @@ impl PlannedFigure {
     }
 }
 
-/// What captions say of the exact motion and of the lines that join the steps.
-fn also(scenario: &Scenario, readouts: &Readouts, is_exact: bool, exact: bool) -> String {
-    let beneath = match (exact, is_exact) {
-        (true, _) => ", the exact motion in another colour",
-        (_, true) => "; the run is the exact motion itself",
-        _ => "",
-    };
-    let steps = readouts
-        .swing_s()
-        .map(|swing_s| swing_s / scenario.motion.time_step_s);
-    let joined = steps
-        .filter(|steps| *steps < SMOOTH_SWING_STEPS)
-        .filter(|_| !is_exact && !arcs::show_whole_run(scenario))
-        .map(|steps| format!("; straight lines join the run's steps, about {steps:.0} a swing"));
-    format!("{beneath}{}", joined.unwrap_or_default())
+/// Returns what the captions say of the exact motion, of the lines between the steps, and of numbers that are not reliable.
+fn also(scenario: &Scenario, is_exact: bool, exact: bool, caveat: Option<&str>) -> String {
+    let mut also = String::from(match (exact, is_exact) {
+        (true, _) => ". The exact motion is dashed.",
+        (_, true) => ". The run is the exact motion itself.",
+        (false, false) => ".",
+    });
+    if !is_exact && !arcs::show_whole_run(scenario) {
+        also += " Straight lines join the run's steps.";
+    }
+    if let Some(caveat) = caveat {
+        also += &format!(" **{}.**", sentence(caveat));
+    }
+    also
 }
 
 /// The figure of what was measured.
@@ -167,8 +192,8 @@ fn of_data(beside: &MeasuredComparison, whole: &FigureSource, also: &str) -> Vec
     whole.spec.to_s = Some(beside.end_s.min(BEYOND_DATA * last_s));
     whole.draw_with(Some(Arc::clone(&measured)));
     let name = beside.name();
-    let over_time = format!("What was measured, `{name}`, and the run{also}");
-    let less = format!("What was measured, `{name}`, less what the run says");
+    let over_time = format!("The measured data `{name}` and the run{also}");
+    let less = format!("Residuals: the measured data `{name}` less the run.");
     let kind = FigureKind::measured(series);
     vec![
         PlannedFigure::new(MEASURED_FIGURE, &kind, over_time, &whole),

@@ -1,15 +1,20 @@
 //! Measured data in a write-up: their file, and how far the run is from them.
 
-use super::{AGAIN, CSV, READOUTS_FILE, RUN_FILE, WRITEUP_PAGE};
+use super::fit::FIT_CSV;
+use super::page::MEASURED_TABLE;
+use super::{AGAIN, CSV};
 use crate::engine::data::compared::{Compared, Sum};
 use crate::engine::data::{MeasuredData, RunQuantity, at_times};
 use crate::engine::scenario::Scenario;
-use crate::engine::text::number::{NOT_AVAILABLE, counted, shortest, significant};
+use crate::engine::text::number::{counted, shortest, significant};
+use crate::report::document::{Column, Document, Text, escape, quantity};
 use crate::studies::fit::solution::too_large;
 use serde_json::{Value, json};
-use std::fmt::{self, Write};
 use std::path::Path;
 use std::sync::Arc;
+
+/// In a cell for which there is nothing: no value of this column has, or lacks, an uncertainty.
+const NOTHING: &str = "–";
 
 #[derive(Clone, Debug)]
 pub struct MeasuredComparison {
@@ -79,38 +84,40 @@ impl MeasuredComparison {
             .zip(&self.compared.sums)
     }
 
-    /// Writes the section of the page.
-    pub(super) fn write(&self, page: &mut String) -> fmt::Result {
-        let (sum, name) = (&self.compared.sum, self.name());
-        let measured = match sum.points - sum.compared {
+    /// Adds the table of the measured quantities, and how well the run agrees with them.
+    pub(super) fn add_to(&self, document: &mut Document) {
+        let sum = &self.compared.sum;
+        let later = match sum.points - sum.compared {
             0 => String::new(),
             later => format!(
-                " The run ends at {} s, before {later} of them: these are not compared.",
-                shortest(self.end_s)
+                " The run ends at {}, before {later} of them: these are not compared.",
+                quantity(&shortest(self.end_s), "s")
             ),
         };
-        writeln!(page, "`{name}` holds {}.{measured}\n", points(sum.points))?;
-        writeln!(
-            page,
-            "| what | compared | chi^2 | with uncertainty | largest, in uncertainties | without uncertainty off by (rms) |"
-        )?;
-        writeln!(page, "| --- | --- | --- | --- | --- | --- |")?;
-        for (column, own) in self.rows() {
-            write_row(page, column, own)?;
-        }
+        let (name, points) = (self.name(), points(sum.points));
+        document.paragraph(&format!("`{name}` has {points}.{later}"));
+        let columns = [
+            Column::text("quantity"),
+            Column::text("compared"),
+            Column::text("with uncertainty"),
+            Column::number("$χ^2$"),
+            Column::text("largest residual, in uncertainties"),
+            Column::text("rms residual of the others"),
+        ];
+        let caption = "Measured data compared with this run; a residual is measured less run.";
+        let rows = self.rows().map(|(column, own)| row(column, own));
+        document.labeled_table(MEASURED_TABLE, caption, columns, rows);
         if sum.weighed > 0 {
-            writeln!(
-                page,
-                "\nchi^2 of all is {} at {}: the sum of the squares of measured less run, in units of the stated uncertainties. Where \
-             the run is right and no value of it was fitted, it is about as large as their number.",
+            document.paragraph(&format!(
+                "All of them have $χ^2$ = {} for {} with uncertainties: the sum of the squared residuals in units of the stated uncertainties. If \
+                 the run is right and none of its values was fitted, $χ^2$ is about as large as their number.",
                 significant(sum.chi_squared, 4),
-                points(sum.weighed)
-            )?;
+                self::points(sum.weighed),
+            ));
             if let Some(too_large) = too_large(sum.chi_squared, sum.weighed as u64) {
-                writeln!(page, "\nBut {too_large}.")?;
+                document.paragraph(&format!("But {}.", escape(&too_large)));
             }
         }
-        Ok(())
     }
 
     /// The same for programs.
@@ -130,22 +137,28 @@ impl MeasuredComparison {
     }
 }
 
-fn write_row(page: &mut String, name: &str, own: &Sum) -> fmt::Result {
-    let chi_squared = (own.weighed > 0).then(|| significant(own.chi_squared, 4));
-    let largest = own.largest.map(|largest| {
-        let time_s = significant(largest.time_s, 9);
-        format!("{} at {time_s} s", significant(largest.sigmas, 3))
+fn row(name: &str, own: &Sum) -> [Text; 6] {
+    let chi_squared = if own.weighed > 0 {
+        Text::number(&significant(own.chi_squared, 4))
+    } else {
+        Text::plain(NOTHING)
+    };
+    let largest = own.largest.map_or(NOTHING.to_owned(), |largest| {
+        let time = quantity(&significant(largest.time_s, 9), "s");
+        format!("{} at {time}", significant(largest.sigmas, 3))
     });
-    let scatter = own.scatter.first();
-    let rms =
-        scatter.map(|(quantity, rms)| format!("{} {}", significant(*rms, 3), quantity.unit()));
-    let [chi_squared, largest, rms] =
-        [chi_squared, largest, rms].map(|text| text.unwrap_or(NOT_AVAILABLE.to_owned()));
-    writeln!(
-        page,
-        "| `{name}` | {} of {} | {chi_squared} | {} | {largest} | {rms} |",
-        own.compared, own.points, own.weighed
-    )
+    let rms = own.scatter.first();
+    let rms = rms.map_or(NOTHING.to_owned(), |(measured, rms)| {
+        quantity(&significant(*rms, 3), measured.unit())
+    });
+    [
+        Text::code(name),
+        Text::plain(&format!("{} of {}", own.compared, own.points)),
+        Text::plain(&own.weighed.to_string()),
+        chi_squared,
+        Text::marked(&largest),
+        Text::marked(&rms),
+    ]
 }
 
 /// The numbers of `sum`; null where there is none.
@@ -164,7 +177,7 @@ fn points(count: usize) -> String {
 
 /// The name of the copy of the data `origin`: the name of the file, where a shell and Markdown take it as it is and no other
 /// file of the folder has it.
-fn name_of_copy(origin: &str) -> String {
+pub fn name_of_copy(origin: &str) -> String {
     const OTHERWISE: &str = "measured.csv";
     let stem = Path::new(origin).file_stem().and_then(|stem| stem.to_str());
     let stem = stem.filter(|stem| {
@@ -173,7 +186,7 @@ fn name_of_copy(origin: &str) -> String {
             && !stem.starts_with(['-', '.'])
     });
     let name = stem.map(|stem| format!("{stem}.csv"));
-    name.filter(|name| ![CSV, RUN_FILE, WRITEUP_PAGE, READOUTS_FILE, AGAIN].contains(&&**name))
+    name.filter(|name| ![CSV, AGAIN, FIT_CSV].contains(&&**name))
         .unwrap_or_else(|| OTHERWISE.to_owned())
 }
 

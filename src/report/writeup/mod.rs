@@ -1,27 +1,35 @@
-//! A run as a write-up: a folder with the run file, the CSV, figures, its numbers beside theory, and a page that
-//! says what was run, whether to believe it, and how to make it again.
+//! A run as a write-up: a folder with the run file, the CSV, figures, its numbers beside the exact motion and theory, and a
+//! document that says what was run, whether to believe it, and how to make it again.
 //!
 //! The same run gives the same bytes each time: what the machine's clock says is left out.
 
+pub mod exact;
 pub mod figures;
+pub mod fit;
 pub mod measured;
 mod page;
 mod quantities;
+mod verdict;
 
 use crate::engine::analysis::Readouts;
-use crate::engine::analysis::readouts::{READOUTS, ReadoutSource};
+use crate::engine::analysis::readouts::{READOUTS, Readout, ReadoutSource};
 use crate::engine::run::{Clock, NotFinite};
 use crate::engine::scenario::Scenario;
-use crate::plot::{PageFormat, Unwritable};
+use crate::plot::Unwritable;
+use crate::report::document::{BIBLIOGRAPHY_FILE, Document};
+pub use exact::ExactNumbers;
 pub use figures::WriteupFigure;
 pub use measured::MeasuredComparison;
+use quantities::RunNumbers;
 use serde_json::{Map, Value};
+use std::path::Path;
 use std::sync::Arc;
 
 pub const CSV: &str = "run.csv";
 /// The scenario with its edits, from which the rows are computed.
 pub const RUN_FILE: &str = "run.toml";
 pub const WRITEUP_PAGE: &str = "README.md";
+pub const TEX_FILE: &str = "report.tex";
 pub const READOUTS_FILE: &str = "readouts.json";
 /// The CSV that the page's commands write beside the others.
 const AGAIN: &str = "again.csv";
@@ -32,10 +40,21 @@ pub const MEASURED_DATA: &str = "measured_data";
 /// The name, among them, of the time from which theory speaks of the motion, s.
 const PREDICTED_SINCE: &str = "predicted_since_s";
 
+/// The name of the numbers of the exact motion among the readouts.
+const EXACT_MOTION: &str = "exact_motion";
+
+/// The languages in which the document is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DocumentFormats {
+    pub markdown: bool,
+    pub tex: bool,
+}
+
 #[derive(Clone, Debug)]
 pub struct Writeup {
     pub scenario: Arc<Scenario>,
     pub readouts: Readouts,
+    pub exact: ExactNumbers,
     /// Why it ended before its last step, where it did.
     pub broken: Option<NotFinite>,
     /// Measured data beside the run, where there are some.
@@ -48,26 +67,19 @@ impl Writeup {
     ///
     /// # Errors
     /// When a figure is too large for its form.
-    pub fn files(&self) -> Result<Vec<(String, Vec<u8>)>, Unwritable> {
-        let texts = [
-            (RUN_FILE, self.scenario.to_toml()),
-            (READOUTS_FILE, self.readouts_json()),
-            (WRITEUP_PAGE, self.page()),
+    pub fn files(&self, formats: DocumentFormats) -> Result<Vec<(String, Vec<u8>)>, Unwritable> {
+        let mut files = vec![
+            (RUN_FILE.to_owned(), self.scenario.to_toml().into_bytes()),
+            (READOUTS_FILE.to_owned(), self.readouts_json().into_bytes()),
         ];
-        let measured = self
-            .beside
-            .iter()
-            .map(|beside| (beside.name(), beside.measured.text.to_string()));
-        let mut files: Vec<_> = texts
-            .into_iter()
-            .chain(measured)
-            .map(|(name, text)| (name.to_owned(), text.into_bytes()))
-            .collect();
+        files.extend(formats.files(&self.document()));
+        let measured = self.beside.iter();
+        files.extend(measured.map(|beside| {
+            let text = beside.measured.text.to_string();
+            (beside.name().to_owned(), text.into_bytes())
+        }));
         for drawing in &self.drawings {
-            for (ending, format) in [("svg", PageFormat::Svg), ("pdf", PageFormat::Pdf)] {
-                let bytes = drawing.source.write(&drawing.scene, format)?;
-                files.push((format!("{}.{ending}", drawing.name), bytes));
-            }
+            files.extend(drawing.files()?);
         }
         Ok(files)
     }
@@ -76,6 +88,18 @@ impl Writeup {
     pub fn verdict(&self) -> String {
         let readouts = &self.readouts;
         readouts.health.sentence(readouts.advice.as_ref())
+    }
+
+    pub fn document(&self) -> Document {
+        page::document(self)
+    }
+
+    fn numbers(&self) -> RunNumbers<'_> {
+        RunNumbers {
+            run: &self.readouts,
+            exact: &self.exact,
+            since_s: self.forces_changed_s(),
+        }
     }
 
     /// When the forces last changed, s, where that is not the start.
@@ -89,25 +113,67 @@ impl Writeup {
         Some(Clock::at(&self.scenario, step).time_s(step))
     }
 
-    pub fn page(&self) -> String {
-        page::page(self).unwrap_or_default() // a String takes what is written to it
-    }
-
     /// The readouts without the times by the clock, one object.
-    pub fn readouts_json(&self) -> String {
+    fn readouts_json(&self) -> String {
         let lasting = READOUTS
             .iter()
             .filter(|readout| readout.source != ReadoutSource::Clock);
-        let named = lasting.map(|readout| {
-            let value = serde_json::to_value(readout.read_from(&self.readouts));
-            (readout.name.to_owned(), value.unwrap_or(Value::Null))
-        });
-        let mut object: Map<_, _> = named.collect();
+        let mut object = named_values(lasting, &self.readouts);
         let since_s = self.forces_changed_s().unwrap_or(0.0);
         object.insert(PREDICTED_SINCE.to_owned(), since_s.into());
+        object.insert(EXACT_MOTION.to_owned(), self.exact_json());
         if let Some(beside) = &self.beside {
             object.insert(MEASURED_DATA.to_owned(), beside.json());
         }
         format!("{:#}\n", Value::Object(object))
+    }
+
+    /// The numbers of the exact motion that the document compares with those of the run; null if there is none.
+    fn exact_json(&self) -> Value {
+        let Some(exact) = self.exact.readouts() else {
+            return Value::Null;
+        };
+        let compared = quantities::compared();
+        let with_uncertainty = compared.flat_map(|it| [Some(it), it.uncertainty()]);
+        let mut object = named_values(with_uncertainty.flatten(), exact);
+        object.insert("time_step_s".to_owned(), exact.time_step_s.into());
+        Value::Object(object)
+    }
+}
+
+/// Returns the values of these readouts under their names.
+fn named_values(
+    of: impl Iterator<Item = &'static Readout>,
+    readouts: &Readouts,
+) -> Map<String, Value> {
+    let named = of.map(|readout| {
+        let value = serde_json::to_value(readout.read_from(readouts));
+        (readout.name.to_owned(), value.unwrap_or(Value::Null))
+    });
+    named.collect()
+}
+
+impl DocumentFormats {
+    /// Returns the formats of the write-up in `folder`; both if it has none.
+    pub fn in_folder(folder: &Path) -> Self {
+        let [markdown, tex] = [WRITEUP_PAGE, TEX_FILE].map(|name| folder.join(name).is_file());
+        Self {
+            markdown: markdown || !tex,
+            tex: tex || !markdown,
+        }
+    }
+
+    /// Returns the files of `document`, each with its name and its bytes.
+    pub fn files(self, document: &Document) -> Vec<(String, Vec<u8>)> {
+        let mut files = Vec::new();
+        if self.markdown {
+            files.push((WRITEUP_PAGE, document.markdown()));
+        }
+        if self.tex {
+            files.push((TEX_FILE, document.tex()));
+            files.push((BIBLIOGRAPHY_FILE, document.bibliography()));
+        }
+        let bytes = |(name, text): (&str, String)| (name.to_owned(), text.into_bytes());
+        files.into_iter().map(bytes).collect()
     }
 }

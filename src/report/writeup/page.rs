@@ -1,6 +1,6 @@
-//! The first page of a write-up, `README.md`: what was run, what came out, whether to believe it, how to make it again.
+//! The document of a write-up: what was run, what came out, whether to believe it, how to make it again.
 
-use super::quantities::rows;
+use super::quantities::{QuantityRow, RunNumbers};
 use super::{
     AGAIN, CSV, MeasuredComparison, PREDICTED_SINCE, READOUTS_FILE, RUN_FILE, Writeup,
     WriteupFigure,
@@ -8,123 +8,129 @@ use super::{
 use crate::engine::analysis::Theory;
 use crate::engine::export::summary::steps_in_words;
 use crate::engine::scenario::Scenario;
-use crate::engine::text::number::{NOT_AVAILABLE, fixed, shortest, significant};
+use crate::engine::text::number::{fixed, shortest, significant};
 use crate::physics::{SchemeInfo, SymmetricTop};
-use std::fmt::{self, Write};
+use crate::report::document::{Column, Document, Entry, Reference, Text, escape, quantity};
 
-const HOW_TO_READ_QUANTITIES: &str = "The numbers of this run are simulated: read off its steps, and no data. Theory is that \
-    of the exact motion under the forces at the end of the run. Digits in parentheses are one standard error of reading \
-    the number off the steps, in units of the last digits: 0.886033(24) is 0.886033 ± 0.000024. \"In errors\" is the \
-    difference in standard errors. Up to about 3 of them, reading alone explains it (exactly ±1.00: the reading's own known \
-    error, stated and not taken away). What is more is the doing of the scheme and its time step, which the standard error \
-    does not hold: it may be many errors and still be tiny.";
-/// What the verdict is of.
-const OF_THE_TIME_STEP: &str = "This is of the scheme and its time step alone: the run is held against the exact motion of \
-    the same body under the same forces.";
-const NOT_OF_DATA: &str = " Whether the run agrees with the measured data is told below.";
-const IS_THEORY: &str = "The scheme exact computes the exact motion, which theory speaks of too: no time step can show here, \
-    and where the two differ it is by rounding.";
-const OF_ASYMMETRY: &str = "The difference between this run and theory is also an effect of the asymmetry, so it is not \
-    stated in standard errors.";
-/// A longer run file is not printed on the page.
-const MOST_PRINTED_LINES: usize = 120;
+/// How to read the table of numbers.
+const HOW_TO_READ: &str = "Digits in parentheses are one standard uncertainty, in units of the last digits [@gum]: \
+    0.886033(24) is 0.886033 ± 0.000024. It is the uncertainty of reading the number off the steps, and does not contain the \
+    error of the scheme. The other numbers of a row end at the same digit; without an uncertainty, they have six digits.";
+const HOW_TO_JUDGE: &str = "The verdict compares this run with the exact motion. A number agrees if the difference is at most \
+    three uncertainties, or within the limits by which gyrolab accepts a run: 1 % of the traced point's distance from the \
+    pivot for places, 5 % of the exact swing for tilts, 5 % for the nutation period, 1 % for other numbers.";
+const OF_THE_TIME_STEP: &str = "This verdict is about the scheme and its time step: it compares the run with the exact motion \
+    of the same body under the same forces.";
+const NOT_OF_DATA: &str = " [#measured-data] compares the run with the measured data.";
+const OF_ASYMMETRY: &str = "Theory takes the mean of the two moments of inertia across the axle, so that the asymmetry makes a \
+    part of the difference.";
+/// The table that compares the run with measured data.
+pub(super) const MEASURED_TABLE: &str = "measured-data";
+/// A longer run file is not printed.
+const MOST_PRINTED_LINES: usize = 60;
 /// A part of L that is smaller than this part of |L| is zero.
 const MOMENTUM_ROUNDING: f64 = 1e-14;
 
-pub fn page(writeup: &Writeup) -> Result<String, fmt::Error> {
-    let mut page = String::new();
-    let readouts = &writeup.readouts;
-    writeln!(page, "# {}\n", escaped(&readouts.title))?;
+pub(super) const GUM: Reference = Reference {
+    key: "gum",
+    entry: Entry::Other,
+    author: "{Joint Committee for Guides in Metrology}",
+    title: "Evaluation of measurement data – Guide to the expression of uncertainty in measurement",
+    published: "JCGM 100:2008, BIPM",
+    volume: "",
+    pages: "",
+    year: "2008",
+};
+
+pub fn document(writeup: &Writeup) -> Document {
+    let mut document = Document::new(Text::plain(&writeup.readouts.title));
+    document.references = vec![gyrolab(), GUM];
+    add_words(&mut document, writeup);
+    document.section("What was run");
+    add_setup(&mut document, writeup);
+    document.section("Is the time step short enough?");
+    add_verdict(&mut document, writeup);
+    document.section("Numbers of the run");
+    add_quantities(&mut document, writeup);
+    if let Some(beside) = &writeup.beside {
+        document.section("Measured data");
+        beside.add_to(&mut document);
+    }
+    document.section("Figures");
+    add_figures(&mut document, &writeup.drawings);
+    document.section("How to make it again");
+    add_commands(&mut document, writeup.beside.as_ref());
+    document.section("The run file");
+    add_run_file(&mut document, &writeup.scenario.to_toml());
+    document
+}
+
+/// Adds what the scenario says of itself.
+fn add_words(document: &mut Document, writeup: &Writeup) {
     let file = &writeup.scenario.file;
     let look_at = file.viewed_text("look_at").map(sentence);
     for text in file.about.iter().chain(&look_at) {
-        writeln!(page, "{}\n", escaped(text))?;
+        document.paragraph(&escape(text));
     }
     if let Some(source) = &file.source {
-        writeln!(page, "Source: {}\n", escaped(source))?;
+        document.paragraph(&format!("Source: {}", escape(source)));
     }
-    writeln!(page, "## What was run\n")?;
-    write_setup(&mut page, writeup)?;
-    writeln!(page, "\n## Is the time step short enough?\n")?;
-    if let Some(broken) = &writeup.broken {
-        writeln!(page, "{}.\n", escaped(&sentence(&broken.to_string())))?;
-    }
-    let of_data = writeup.beside.as_ref().map_or("", |_| NOT_OF_DATA);
-    let verdict = escaped(&writeup.verdict());
-    writeln!(page, "{verdict}\n\n{OF_THE_TIME_STEP}{of_data}\n")?;
-    writeln!(page, "## This run beside theory\n")?;
-    let theory = readouts.theory.as_ref();
-    if let Some(asymmetry) = theory.and_then(Theory::of_mean_moment) {
-        writeln!(page, "Asymmetry of the body: {asymmetry}. {OF_ASYMMETRY}\n")?;
-    } else if writeup.scenario.motion.scheme.order.is_none() {
-        writeln!(page, "{IS_THEORY}\n")?;
-    }
-    write_quantities(&mut page, writeup)?;
-    if let Some(beside) = &writeup.beside {
-        writeln!(page, "\n## Measured data beside the run\n")?;
-        beside.write(&mut page)?;
-    }
-    writeln!(page, "\n## Figures\n")?;
-    write_drawings(&mut page, &writeup.drawings)?;
-    writeln!(page, "## How to make it again\n")?;
-    write_again(&mut page, writeup.beside.as_ref())?;
-    write_run_file(&mut page, &writeup.scenario.to_toml())?;
-    Ok(page)
 }
 
-/// The table of what was run: body, start, scheme and length. Forces and edits stand in the run file.
-fn write_setup(page: &mut String, writeup: &Writeup) -> fmt::Result {
+/// Adds the table of what was run: body, start, scheme and length. The run file has forces and edits.
+fn add_setup(document: &mut Document, writeup: &Writeup) {
     let scenario = &writeup.scenario;
     let body = &scenario.body.mechanics;
-    let mass = significant(body.mass(), 6);
-    let centre = significant(body.first_moment().norm() / body.mass(), 6);
-    let traced = scenario.traced_name();
-    let from_pivot = significant(body.points()[scenario.trace].at.norm(), 6);
-    let gravity = shortest(scenario.motion.gravity);
+    let mass = quantity(&significant(body.mass(), 6), "kg");
+    let center = body.first_moment().norm() / body.mass();
+    let center = quantity(&significant(center, 6), "m");
+    let traced = escape(scenario.traced_name());
+    let from_pivot = body.points()[scenario.trace].at.norm();
+    let from_pivot = quantity(&significant(from_pivot, 6), "m");
     let SchemeInfo { name, about, .. } = scenario.motion.scheme;
+    let steps = steps_in_words(scenario, writeup.readouts.sample.step);
     let rows = [
-        ("", String::new()),
-        ("---", "---".to_owned()),
         (
             "body",
-            format!("{mass} kg; centre of mass {centre} m from the pivot"),
+            format!("{mass}; center of mass {center} from the pivot"),
         ),
         ("moments of inertia about the pivot", moments(scenario)),
         (
             "traced point",
-            format!("{traced}, {from_pivot} m from the pivot"),
+            format!("{traced}, {from_pivot} from the pivot"),
         ),
         ("start", start(scenario)),
-        ("gravity", format!("{gravity} m/s^2")),
-        ("scheme", format!("{name}: {about}")),
         (
-            "time steps",
-            steps_in_words(scenario, writeup.readouts.sample.step),
+            "gravity",
+            quantity(&shortest(scenario.motion.gravity), "m/s2"),
         ),
+        ("scheme", format!("`{name}`: {}", escape(about))),
+        ("time steps", escape(&steps)),
     ];
-    for (label, text) in rows {
-        writeln!(page, "| {label} | {} |", escaped(&text))?;
-    }
-    writeln!(
-        page,
-        "\nIts parts, pushes, friction and edits stand in the run file, `{RUN_FILE}`."
-    )
+    document.table(
+        "The run.",
+        [Column::text("quantity"), Column::text("value")],
+        rows.map(|(label, text)| [Text::plain(label), Text::marked(&text)]),
+    );
+    document.paragraph(&format!(
+        "The run file, `{RUN_FILE}`, has its parts, pushes, friction and edits."
+    ));
 }
 
 fn moments(scenario: &Scenario) -> String {
     let Some((top, asymmetry)) = SymmetricTop::nearly(&scenario.body.mechanics) else {
-        return "lopsided: not symmetric about the axle".to_owned();
+        return "not symmetric about the axle".to_owned();
     };
     let mean = if asymmetry > 0.0 { " (mean)" } else { "" };
     let of = if scenario.rotor().is_some() {
         "of the rotor"
     } else {
-        "about it"
+        "along it"
     };
+    let [across, along] =
+        [top.across, top.along].map(|moment| quantity(&significant(moment, 6), "kg m2"));
     format!(
-        "I1 = {} kg m^2 across the axle{mean}, I3 = {} kg m^2 {of}, kappa = I3/I1 = {}",
-        significant(top.across, 6),
-        significant(top.along, 6),
+        "$I_1$ = {across} across the axle{mean}, $I_3$ = {along} {of}; $κ = I_3/I_1$ = {}",
         significant(top.kappa(), 6)
     )
 }
@@ -139,137 +145,183 @@ fn start(scenario: &Scenario) -> String {
         part => significant(part, 9),
     });
     format!(
-        "axle tilted by {} degrees, L = ({x}, {y}, {z}) J s in the world frame",
-        fixed(tilt_deg, 4)
+        "axle tilted by {}; $L$ = ({x}, {y}, {z}) J s in the world frame",
+        quantity(&fixed(tilt_deg, 4), "deg")
     )
 }
 
-fn write_quantities(page: &mut String, writeup: &Writeup) -> fmt::Result {
-    let since_s = writeup.forces_changed_s();
-    let rows = rows(&writeup.readouts, since_s);
-    if rows.is_empty() {
-        return writeln!(
-            page,
-            "The run is too short for that: nothing could be read off it."
-        );
+fn add_verdict(document: &mut Document, writeup: &Writeup) {
+    if let Some(broken) = &writeup.broken {
+        let broken = sentence(&broken.to_string());
+        document.paragraph(&format!("{}.", escape(&broken)));
     }
-    writeln!(
-        page,
-        "| what | this run | theory | difference | in errors | unit |"
-    )?;
-    writeln!(page, "| --- | --- | --- | --- | --- | --- |")?;
-    for row in &rows {
-        writeln!(page, "| {} |", row.cells.join(" | "))?;
+    let of_data = writeup.beside.as_ref().map_or("", |_| NOT_OF_DATA);
+    document.paragraph(&escape(&writeup.verdict()));
+    document.paragraph(&format!("{OF_THE_TIME_STEP}{of_data}"));
+}
+
+fn add_quantities(document: &mut Document, writeup: &Writeup) {
+    let numbers = writeup.numbers();
+    let theory = writeup.readouts.theory.as_ref();
+    if let Some(asymmetry) = theory.and_then(Theory::of_mean_moment) {
+        let asymmetry = escape(&asymmetry);
+        document.paragraph(&format!(
+            "Asymmetry of the body: {asymmetry}. {OF_ASYMMETRY}"
+        ));
     }
-    writeln!(page)?;
-    for row in &rows {
-        writeln!(page, "- {} (`{}`)", escaped(&row.meaning), row.readout)?;
-    }
-    let theirs = since_s.map_or(String::new(), |since_s| {
-        let since_s = significant(since_s, 9);
-        format!(" The least and the greatest values are those of the whole run; theory, here and there, is of the motion since t = {since_s} s (`{PREDICTED_SINCE}`), when the forces last changed.")
+    let rows = numbers.rows();
+    let cells = rows.iter().map(|row| {
+        let [run, exact, predicted] = row.cells.clone();
+        let (label, verdict) = (Text::plain(&row.label), Text::marked(&row.verdict));
+        [label, run, exact, predicted, row.unit.clone(), verdict]
     });
-    writeln!(
-        page,
-        "\n{HOW_TO_READ_QUANTITIES} {NOT_AVAILABLE}: there is no such number, or none that can be stated. Every readout is in \
-         `{READOUTS_FILE}`, also those of this run under names that begin with `measured_`.{theirs}"
-    )
+    document.table(
+        "Numbers of this run, of the exact motion, and of theory.",
+        [
+            Column::text("quantity"),
+            Column::number("this run"),
+            Column::number("exact motion"),
+            Column::number("theory"),
+            Column::text("unit"),
+            Column::text("verdict"),
+        ],
+        cells,
+    );
+    document.paragraph(&sources(writeup, &numbers));
+    document.paragraph(&format!(
+        "{HOW_TO_READ} All digits are in `{READOUTS_FILE}`, under the names below."
+    ));
+    document.paragraph(HOW_TO_JUDGE);
+    document.list(rows.iter().map(meaning));
 }
 
-fn write_drawings(page: &mut String, drawings: &[WriteupFigure]) -> fmt::Result {
-    if drawings.is_empty() {
-        return writeln!(page, "None.\n");
-    }
-    for drawing in drawings {
-        writeln!(
-            page,
-            "![{0}]({1}.svg)\n\n{0}: `{1}.pdf` and `{1}.svg`.\n",
-            drawing.caption, drawing.name
-        )?;
-        if let Some(remark) = &drawing.remark {
-            writeln!(page, "{remark}\n")?;
+/// Says where the columns of the table come from.
+fn sources(writeup: &Writeup, numbers: &RunNumbers<'_>) -> String {
+    let exact = match numbers.exact.readouts() {
+        Some(exact) => format!(
+            "The exact motion is that of the same body under the same forces, read off every {}, `exact_motion` in \
+             `{READOUTS_FILE}`.",
+            quantity(&significant(exact.time_step_s, 6), "s")
+        ),
+        None => format!(
+            "There is no exact motion to compare with: {}.",
+            escape(numbers.exact.reason())
+        ),
+    };
+    let since = numbers.since_s.map_or(String::new(), |since_s| {
+        let since = quantity(&significant(since_s, 9), "s");
+        format!(
+            " It speaks of the motion since {since} (`{PREDICTED_SINCE}`), when the forces last changed; minimum and maximum \
+             are those of the whole run."
+        )
+    });
+    let theory = if writeup.readouts.theory.is_some() {
+        "Theory is that of the heavy symmetric top; – means that it has no formula for the number."
+    } else {
+        "Theory has no formula for this motion (–)."
+    };
+    format!("The numbers of this run are simulated, not measured. {exact} {theory}{since}")
+}
+
+fn meaning(row: &QuantityRow) -> String {
+    format!("{} (`{}`)", escape(&row.meaning), row.readout.name)
+}
+
+fn add_figures(document: &mut Document, drawings: &[WriteupFigure]) {
+    let labels: Vec<_> = drawings
+        .iter()
+        .map(|drawing| format!("[#{}]", drawing.name))
+        .collect();
+    match labels.split_last() {
+        None => document.paragraph("There are no figures."),
+        Some((only, [])) => document.paragraph(&format!("{only} shows the run.")),
+        Some((last, others)) => {
+            document.paragraph(&format!("{} and {last} show the run.", others.join(", ")));
         }
     }
-    Ok(())
+    for drawing in drawings {
+        document.figure(drawing.name, drawing.width_mm(), &drawing.caption);
+        if let Some(remark) = &drawing.remark {
+            document.paragraph(remark);
+        }
+    }
 }
 
-fn write_again(page: &mut String, beside: Option<&MeasuredComparison>) -> fmt::Result {
+fn add_commands(document: &mut Document, beside: Option<&MeasuredComparison>) {
     let measured = beside
         .map(|beside| format!(" --measured {}", beside.name()))
         .unwrap_or_default();
-    let same = format!("the same bytes as {CSV}");
     let commands = [
         (
             "verify .".to_owned(),
-            "makes rows, figures and numbers anew and says whether they are the same",
+            "recompute everything and compare".to_owned(),
         ),
-        (format!("run {RUN_FILE} -o {AGAIN}"), same.as_str()),
         (
-            format!("writeup {RUN_FILE}{measured} -o again"),
-            "this folder",
+            format!("run {CSV} -o {AGAIN}"),
+            format!("the same bytes as {CSV}"),
+        ),
+        (
+            format!("writeup {CSV}{measured} -o again"),
+            "this folder".to_owned(),
         ),
         (
             format!("{RUN_FILE}{measured}"),
-            "the run, live in the terminal",
+            "the run, live in the terminal".to_owned(),
         ),
     ];
-    let width = commands
-        .iter()
-        .map(|(command, _)| command.len())
-        .max()
-        .unwrap_or_default();
     let version = env!("CARGO_PKG_VERSION");
-    writeln!(page, "In this folder, with gyrolab {version}:\n\n```sh")?;
-    for (command, what) in commands {
-        writeln!(page, "gyrolab {command:width$}   # {what}")?;
-    }
-    let (year, authors) = copyright();
-    writeln!(
-        page,
-        "```\n\nTo cite it: {authors}, *gyrolab*, version {version} ({year}): {}. \
-         `gyrolab man csv` has lines that read the CSV in Python, R, MATLAB and Octave.\n",
-        env!("CARGO_PKG_DESCRIPTION")
-    )
+    document.paragraph(&format!(
+        "In this folder, with gyrolab {version} [@gyrolab]:"
+    ));
+    add_code(document, &commands);
+    document
+        .paragraph("`gyrolab man csv` shows how to read the CSV in Python, R, MATLAB and Octave.");
 }
 
-/// The year and the authors, from the licence.
-fn copyright() -> (&'static str, &'static str) {
+/// Adds commands of gyrolab, each with what it does.
+pub(super) fn add_code(document: &mut Document, commands: &[(String, String)]) {
+    let widths = commands.iter().map(|(command, _)| command.len());
+    let width = widths.max().unwrap_or_default();
+    let lines = commands
+        .iter()
+        .map(|(command, what)| format!("gyrolab {command:width$}   # {what}\n"));
+    document.code("sh", &lines.collect::<String>());
+}
+
+/// Returns the reference to this program; year and authors are those of its license.
+pub(super) fn gyrolab() -> Reference {
     const COPYRIGHT_MARK: &str = "Copyright (c) ";
-    let licence = include_str!("../../../LICENSE");
-    let line = licence
+    let license = include_str!("../../../LICENSE");
+    let line = license
         .lines()
         .find_map(|line| line.strip_prefix(COPYRIGHT_MARK));
-    line.and_then(|line| line.split_once(' '))
-        .unwrap_or_default()
+    let (year, author) = line
+        .and_then(|line| line.split_once(' '))
+        .unwrap_or_default();
+    Reference {
+        key: "gyrolab",
+        entry: Entry::Other,
+        author,
+        title: env!("CARGO_PKG_DESCRIPTION"),
+        published: concat!("gyrolab, version ", env!("CARGO_PKG_VERSION")),
+        year,
+        ..Reference::default()
+    }
 }
 
-fn write_run_file(page: &mut String, run_file: &str) -> fmt::Result {
-    writeln!(page, "## The run file\n")?;
-    let (lines, run_file) = (run_file.lines().count(), run_file.trim_end());
+fn add_run_file(document: &mut Document, run_file: &str) {
+    let lines = run_file.lines().count();
     if lines > MOST_PRINTED_LINES {
-        return writeln!(page, "`{RUN_FILE}`, {lines} lines.");
+        document.paragraph(&format!("`{RUN_FILE}` has {lines} lines."));
+        return;
     }
-    writeln!(page, "`{RUN_FILE}`:\n\n```toml\n{run_file}\n```")
+    document.paragraph(&format!("`{RUN_FILE}`:"));
+    document.code("toml", run_file);
 }
 
 /// `text` with a capital letter at its beginning.
-fn sentence(text: &str) -> String {
+pub(super) fn sentence(text: &str) -> String {
     let mut letters = text.chars();
     let first = letters.next().map(char::to_uppercase);
     first.into_iter().flatten().chain(letters).collect()
-}
-
-/// `text` so that Markdown shows it as it stands, in a table too.
-fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '\n' => out.push(' '),
-            '\\' | '`' | '*' | '_' | '[' | ']' | '<' | '>' | '#' | '|' | '~' | '&' | '$' => {
-                out.extend(['\\', c]);
-            }
-            c => out.push(c),
-        }
-    }
-    out
 }

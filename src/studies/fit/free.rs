@@ -174,7 +174,7 @@ fn end(text: &str, absent: f64) -> Option<f64> {
 }
 
 /// Returns a bound as text; empty if it is infinite.
-pub(super) fn shown(bound: f64) -> String {
+pub fn shown(bound: f64) -> String {
     if bound.is_finite() {
         shortest(bound)
     } else {

@@ -69,7 +69,7 @@ impl Fitted {
 
 impl FitReport<'_> {
     /// Returns remarks on the fit, one sentence each.
-    fn remarks(&self) -> Vec<String> {
+    pub fn remarks(&self) -> Vec<String> {
         let other = self.instead_of.map(|own| {
             format!(
                 "The fitted runs use the scheme {}; the scenario's scheme is {own} (use --scheme {own} to fit with it).",
@@ -81,7 +81,7 @@ impl FitReport<'_> {
     }
 
     /// Returns a short remark on a key, or an empty text.
-    fn remark(&self, index: usize) -> String {
+    pub fn remark(&self, index: usize) -> String {
         let key = &self.fit.keys[index];
         let held = self.fit.edges.iter().filter(|edge| edge.holds[index]);
         let of_part: Vec<String> = held.filter_map(|edge| Some(edge.of_part()?.1)).collect();
@@ -129,26 +129,31 @@ impl FitReport<'_> {
         Ok(())
     }
 
+    /// Returns the places of all residuals, the largest first.
+    pub fn by_size(&self) -> Vec<usize> {
+        let residuals = &self.fit.residuals;
+        let mut all: Vec<usize> = (0..residuals.len()).collect();
+        all.sort_by(|a, b| size(&residuals[*b]).total_cmp(&size(&residuals[*a])));
+        all
+    }
+
     fn furthest(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         const MOST_REPORTED_ROWS: usize = 5;
-        let mut all: Vec<(usize, &Residual)> = self.fit.residuals.iter().enumerate().collect();
-        all.sort_by(|a, b| size(b.1).total_cmp(&size(a.1)));
-        let rows = all
-            .iter()
-            .take(MOST_REPORTED_ROWS)
-            .map(|(index, residual)| {
-                let readout = self.model.columns[self.model.data[*index].column].readout;
-                let sigmas = residual.in_sigmas();
-                [
-                    (residual.row + 1).to_string(),
-                    readout.name.to_owned(),
-                    significant(residual.measured, 6),
-                    residual.sigma.map(short).unwrap_or_default(),
-                    significant(residual.model, 6),
-                    significant(residual.value(), 3),
-                    sigmas.map_or(String::new(), |sigmas| format!("{sigmas:+.1}")),
-                ]
-            });
+        let all = self.by_size();
+        let rows = all.iter().take(MOST_REPORTED_ROWS).map(|index| {
+            let residual = &self.fit.residuals[*index];
+            let readout = self.model.columns[self.model.data[*index].column].readout;
+            let sigmas = residual.in_sigmas();
+            [
+                (residual.row + 1).to_string(),
+                readout.name.to_owned(),
+                significant(residual.measured, 6),
+                residual.sigma.map(short).unwrap_or_default(),
+                significant(residual.model, 6),
+                significant(residual.value(), 3),
+                sigmas.map_or(String::new(), |sigmas| format!("{sigmas:+.1}")),
+            ]
+        });
         let head = [
             "row",
             "quantity",

@@ -196,7 +196,7 @@ pub(super) fn scatter_variance(sum: f64, freedom: u64) -> Option<f64> {
 ///
 /// The formula is the expansion of the quantile in 1/`freedom` (M. Abramowitz, I. Stegun, Handbook of Mathematical
 /// Functions, 26.7.5). It is accurate to 0.2 % from three degrees of freedom on.
-pub(super) fn student(freedom: u64) -> f64 {
+pub fn student(freedom: u64) -> f64 {
     let x = 1.0 / freedom as f64;
     1.0 + x * (1.25 + x * (1.53125 + x * (1.429_687_5 + x * 0.922_037)))
 }

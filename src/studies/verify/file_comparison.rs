@@ -13,6 +13,8 @@ const MOST_LINE_EXCESS: u64 = 4096;
 const MOST_SHOWN: usize = 60;
 /// Start of the header line with the version, which is not compared.
 const CSV_VERSION_LINE: &[u8] = b"# gyrolab = ";
+/// A header's line with a warning. Another version has other words for it, or none.
+const CSV_WARNING_LINE: &[u8] = b"# # warning:";
 
 /// The first difference between a file and the recomputed text.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -116,9 +118,21 @@ impl FileComparison {
         Ok(line)
     }
 
+    /// Whether the next line of the file is a warning.
+    fn begins_with_warning(&mut self) -> io::Result<bool> {
+        let next = self.file.fill_buf()?;
+        let next = next.strip_prefix("\u{feff}".as_bytes()).unwrap_or(next);
+        Ok(next.starts_with(CSV_WARNING_LINE))
+    }
+
     /// Compares the computed line with the next line of the file.
     fn compare(&mut self) -> io::Result<()> {
         let computed = std::mem::take(&mut self.computed);
+        let is_warning =
+            self.names.is_none() && self.without_mark(&computed).starts_with(CSV_WARNING_LINE);
+        if is_warning && !self.begins_with_warning()? {
+            return Ok(());
+        }
         let mut there = self.next(computed.len() as u64 + MOST_LINE_EXCESS)?;
         let is_whole = there.pop_if(|byte| *byte == b'\n').is_some();
         if is_whole && there.pop_if(|byte| *byte == b'\r').is_some() {
@@ -126,10 +140,10 @@ impl FileComparison {
         }
         let [computed, there] = [&computed, &there].map(|text| self.without_mark(text));
         let is_header = self.names.is_none() && computed.starts_with(b"#");
-        let are_versions = is_header
-            && [computed, there]
+        let may_differ = is_header
+            && [CSV_VERSION_LINE, CSV_WARNING_LINE]
                 .iter()
-                .all(|it| it.starts_with(CSV_VERSION_LINE));
+                .any(|line| computed.starts_with(line) && there.starts_with(line));
         let line = self.line;
         let text = if !is_whole && there.is_empty() {
             let computed = shown(computed);
@@ -140,7 +154,7 @@ impl FileComparison {
             Some(format!(
                 "line {line}, the last one, is cut off before its end"
             ))
-        } else if there == computed || are_versions {
+        } else if there == computed || may_differ {
             None
         } else {
             self.fields_differ(there, computed)

@@ -116,7 +116,7 @@ impl CsvRecipe {
         match self {
             Self::Run { layout, .. } => {
                 comparison.keys = 1;
-                comparison.delimiter = if layout.file().excel { b';' } else { b',' };
+                comparison.delimiter = layout.delimiter();
             }
             Self::Sweep(sweep) => comparison.keys = sweep.keys().count(),
             Self::Comparison { .. } => {

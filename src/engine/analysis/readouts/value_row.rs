@@ -275,7 +275,7 @@ impl ValueRow {
     }
 }
 
-pub(super) fn passes_through_vertical(readouts: &Readouts) -> bool {
+pub fn passes_through_vertical(readouts: &Readouts) -> bool {
     readouts.theory.as_ref().is_some_and(|theory| {
         theory.axis == TheoryAxis::Z && theory.path == AxlePath::ThroughVertical
     })
