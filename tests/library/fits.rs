@@ -110,7 +110,7 @@ fn noisy(seed: u64) -> String {
         .fold(head, |text, row| text + &row)
 }
 
-/// The same without noise: tilt (degrees) and x (m).
+/// Tilt (degrees) and x (m) of the top without noise.
 fn truth() -> &'static Vec<Vec<f64>> {
     static TRUTH: std::sync::OnceLock<Vec<Vec<f64>>> = std::sync::OnceLock::new();
     TRUTH.get_or_init(|| {

@@ -20,8 +20,8 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Writes `columns` of the run of `scenario` at every tenth of 200 steps. Value number n is raised by `off(n)` of its
-/// uncertainties.
+/// Returns a CSV with `columns` of the run of `scenario` at every tenth of 200 steps. Value number n is raised by `off(n)` of
+/// its uncertainties.
 fn data(scenario: &Scenario, columns: &[(&str, f64)], off: impl Fn(usize) -> f64) -> String {
     let mut text = "t_s".to_owned();
     for (name, _) in columns {
