@@ -144,7 +144,7 @@ fn v_toggles_the_step_pane() {
         stage.press("v");
         assert_eq!(panes(&stage), before);
         stage.press("v\u{1b}");
-        assert_eq!(panes(&stage), before, "Esc takes it away too");
+        assert_eq!(panes(&stage), before, "Esc closes it too");
         // This also works from a full-screen pane.
         stage.press("fv");
         assert_eq!(stage.focus(), "step");
