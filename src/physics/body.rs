@@ -1,13 +1,13 @@
-//! What turns: a rigid set of point masses with one point pinned at the origin.
+//! Bodies: rigid sets of point masses with one point fixed at the origin.
 
 use super::PlacedSolid;
 use nalgebra::{Matrix3, Vector3};
 
-/// Smallest principal moment over the largest at or below which the inertia counts as singular: Ω = I⁻¹L would
-/// then be rounding, not motion.
+/// If the ratio of the smallest to the largest principal moment is at most this, the inertia counts as singular: Ω = I⁻¹L
+/// would be only rounding.
 const SINGULAR_BELOW: f64 = 1e-12;
 
-/// One mass point in the upright pose.
+/// One point mass, in the upright pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointMass {
     /// Position in the body frame, m; the pivot is the origin.
@@ -22,7 +22,7 @@ impl PointMass {
     }
 }
 
-/// A rigid body of point masses, with the sums over its points that do not change as it turns.
+/// A rigid body of point masses that turns about the origin of its frame, the pivot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
     points: Vec<PointMass>,
@@ -33,7 +33,7 @@ pub struct Body {
     frame_moment: f64,
 }
 
-/// Why a set of points cannot turn as a rigid body.
+/// Why points do not make a body.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum BodyError {
     /// A point has a negative mass.
@@ -44,7 +44,7 @@ pub enum BodyError {
         /// Its mass, kg.
         mass: f64,
     },
-    /// All the mass lies on one line through the pivot (or there is none).
+    /// All mass is on one line through the pivot, or there is none.
     #[error(
         "singular inertia: about the pivot the smallest principal moment is {smallest:e} kg m^2, the largest {largest:e}; put mass off the axle"
     )]
@@ -54,7 +54,8 @@ pub enum BodyError {
         /// Largest principal moment, kg m².
         largest: f64,
     },
-    /// Masses or distances so large or small that the inverse inertia leaves the range of floating-point numbers.
+    /// Masses or distances are so large or small that the inertia or its inverse leaves the range of floating-point
+    /// numbers.
     #[error(
         "the inertia about the pivot leaves the range of numbers: use masses and distances nearer to 1"
     )]
@@ -62,7 +63,7 @@ pub enum BodyError {
 }
 
 impl Body {
-    /// The body made of `points` (body frame, upright pose).
+    /// Makes a body of `points` (body frame, upright pose).
     ///
     /// # Errors
     /// If a mass is negative, or if the inertia about the pivot is singular (its smallest principal moment at most 1e-12 of
@@ -90,22 +91,24 @@ impl Body {
         })
     }
 
-    /// The body made of `solids`. Each becomes [seven points](super::part::POINTS_PER_PART), its center first: the center of
-    /// `solids[i]` is point 7 i. To follow or push another point, add it to the solids' points with mass 0, and use
+    /// Makes a body of `solids`. Each becomes [seven points](super::part::POINTS_PER_PART), its center first: the center of
+    /// `solids[i]` is point 7 i. To push or follow another point, add it to the points of the solids with mass 0, and use
     /// [`new`](Self::new).
     ///
     /// # Errors
-    /// As of [`new`](Self::new).
+    /// As [`new`](Self::new).
     pub fn from_solids(solids: &[PlacedSolid]) -> Result<Self, BodyError> {
         Self::new(solids.iter().flat_map(PlacedSolid::points).collect())
     }
 
-    /// The body of which one part alone spins about the axle, with the moment `rotor` (kg m²) about it, while the rest of it
-    /// tilts with the axle but does not spin. The body must be symmetric about its axle. The axle then moves as that of a
-    /// rigid body with the moment `rotor` about the axle, whose angular velocity is the rotor's. The symmetry is not checked.
+    /// Lets only a rotor spin, with the moment `rotor` (kg m²) about the axle. The rest of the body tilts with the axle but
+    /// does not spin.
+    ///
+    /// The body must be symmetric about its axle, which is not checked. The axle then moves as in a rigid body with the
+    /// moment `rotor` about it, and the angular velocity is the rotor's.
     ///
     /// # Errors
-    /// When the inertia about the pivot is then singular.
+    /// If the inertia about the pivot is then singular.
     pub fn with_rotor(mut self, rotor: f64) -> Result<Self, BodyError> {
         self.frame_moment += self.inertia[(2, 2)] - rotor;
         self.inertia[(2, 2)] = rotor;
@@ -113,39 +116,39 @@ impl Body {
         Ok(self)
     }
 
-    /// The points, in the order in which the scenario lists them.
+    /// Returns the points, in the order in which they were given.
     pub fn points(&self) -> &[PointMass] {
         &self.points
     }
 
-    /// Total mass M, kg.
+    /// Returns the total mass M, kg.
     pub fn mass(&self) -> f64 {
         self.mass
     }
 
-    /// Σ m x, kg m, body frame: mass times the center of mass.
+    /// Returns Σ m x, kg m, body frame: the mass times the center of mass.
     pub fn first_moment(&self) -> Vector3<f64> {
         self.first_moment
     }
 
-    /// Inertia about the pivot, kg m², body frame (equation (2) of the report, with E); of what does not spin no moment about
-    /// the axle counts ([`with_rotor`](Self::with_rotor)).
+    /// Returns the inertia about the pivot, kg m², body frame (equation (2) of the report, with E). [With a
+    /// rotor](Self::with_rotor), the moment about the axle is the rotor's.
     pub fn inertia(&self) -> Matrix3<f64> {
         self.inertia
     }
 
-    /// Inverse of the inertia about the pivot, 1/(kg m²), body frame.
+    /// Returns the inverse of the inertia about the pivot, 1/(kg m²), body frame.
     pub fn inverse_inertia(&self) -> Matrix3<f64> {
         self.inverse_inertia
     }
 
-    /// The moment about the axle of what does not spin, kg m²: 0 where the whole body does.
+    /// Returns the moment about the axle of the parts that do not spin, kg m²; 0 without a rotor.
     pub fn frame_moment(&self) -> f64 {
         self.frame_moment
     }
 }
 
-/// m(|x|²E − xxᵀ), kg m²: the inertia of one point about the pivot (report, equation (2)).
+/// Returns m(|x|²E − xxᵀ), kg m²: the inertia of one point about the pivot (report, equation (2)).
 fn point_inertia(point: &PointMass) -> Matrix3<f64> {
     let x = point.at;
     point.mass * (Matrix3::identity() * x.norm_squared() - x * x.transpose())

@@ -1,11 +1,12 @@
 //! Friction about the pivot: on the spin about the axle, and on the swing of the axle.
 //!
-//! With e3 the axle, ω3 = ω·e3 and ωp = ω − ω3 e3 its torque is −(k0 sgn ω3 + k1 ω3 + k2 |ω3| ω3) e3 − k4 ωp. Where ω3 = 0
-//! dry friction holds, up to k0, against what would turn the body about its axle.
+//! With e3 the axle, ω3 = ω·e3 and ωp = ω − ω3 e3, the torque is −(k0 sgn ω3 + k1 ω3 + k2 |ω3| ω3) e3 − k4 ωp. If ω3 = 0,
+//! dry friction balances any torque about the axle up to k0.
 //!
-//! A time step cannot take this torque at its beginning: it would carry a spin that dry friction stops beyond zero, and
-//! feed one whose k1 dt/I3 is above 2. While the body does not turn, though, ω under a constant torque and friction is
-//! known in closed form: about the axle it is a Riccati equation, across it decays exponentially. Schemes take that.
+//! A scheme cannot use the torque at the beginning of a time step. A spin that dry friction stops would continue past zero,
+//! and a spin with k1 dt/I3 above 2 would grow. At a fixed orientation, however, ω under a constant torque and friction has
+//! a closed form: about the axle it solves a Riccati equation, and across the axle it decays exponentially. Schemes use
+//! this.
 
 use super::workings::{Phase, PhaseName, PhaseTarget};
 use super::{Body, Friction};
@@ -48,7 +49,7 @@ pub(crate) struct FrictionAction {
 }
 
 impl Damping {
-    /// `friction` on `body`; `None` where there is no friction.
+    /// Returns the friction on `body`; `None` if there is none.
     pub fn new(body: &Body, friction: &Friction) -> Option<Self> {
         let inverse = body.inverse_inertia();
         let along = 1.0 / inverse[(2, 2)];
@@ -62,20 +63,20 @@ impl Damping {
         })
     }
 
-    /// The least moment against a torque of friction, kg m².
+    /// Returns the smallest moment of inertia against a torque of friction, kg m².
     pub fn least_moment(&self) -> f64 {
         let [(_, first), (_, second)] = self.across;
         first.min(second).min(self.along)
     }
 
-    /// The rate at which friction slows spin and swing together where the body turns by `omega` rad/s, 1/s.
+    /// Returns the rate at which friction slows spin and swing together, 1/s, if the body turns with `omega` rad/s.
     pub fn rate(&self, omega: f64) -> f64 {
         let (friction, least) = (&self.friction, self.least_moment());
         let spin = friction.spin_viscous + friction.spin_quadratic * omega.abs();
         (spin + friction.swing_viscous) / least
     }
 
-    /// The torque of friction where the body turns by `omega`, body frame, rad/s; N m.
+    /// Returns the torque of friction, N m, on a body with the angular velocity `omega`, rad/s; both in the body frame.
     pub fn torque(&self, omega: &Vector3<f64>) -> Vector3<f64> {
         let (friction, spin) = (&self.friction, omega.z);
         let sign = if spin == 0.0 { 0.0 } else { spin.signum() };

@@ -1,9 +1,9 @@
-//! What acts on the body: gravity on every point, pushes on single ones, and friction.
+//! Forces on a body: gravity, pushes on single points, and friction.
 
 use super::Body;
 use nalgebra::{Matrix3, Vector3};
 
-/// A force on one point of the body, constant in the world frame while the loads hold.
+/// A force on one point of the body, constant in the world frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointForce {
     /// Index of the point in the body.
@@ -12,18 +12,18 @@ pub struct PointForce {
     pub force: Vector3<f64>,
 }
 
-/// All forces and the friction during a stretch of time in which none of them changes.
+/// The forces and the friction on a body. They are constant until the loads are changed.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Loads {
     /// Acceleration of gravity along −z, m/s².
     pub gravity: f64,
-    /// Forces beside gravity.
+    /// Forces other than gravity.
     pub pushes: Vec<PointForce>,
     /// Friction about the pivot.
     pub friction: Friction,
 }
 
-/// The coefficients of friction. All are zero, or more.
+/// The coefficients of friction; none is negative. Their torque is in [`friction`](super::friction).
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Friction {
     /// k0: dry friction on the spin, N m.
@@ -37,7 +37,7 @@ pub struct Friction {
 }
 
 impl Friction {
-    /// Whether there is no friction.
+    /// True if there is no friction.
     pub fn is_none(&self) -> bool {
         !self.is_on_spin() && self.swing_viscous == 0.0
     }
@@ -52,18 +52,18 @@ impl Friction {
         ]
     }
 
-    /// Whether the spin is rubbed.
+    /// True if there is friction on the spin.
     pub(crate) fn is_on_spin(&self) -> bool {
         self.spin_dry > 0.0 || self.spin_viscous > 0.0 || self.spin_quadratic > 0.0
     }
 }
 
 impl Loads {
-    /// Σ x Fᵀ over all points, N m: x in the body frame, F in the world frame. With it the torque on the whole body
-    /// follows from the orientation alone, see [`torque`].
+    /// Returns Σ x Fᵀ over all points, N m, with x in the body frame and F in the world frame. [`torque`] computes the
+    /// torque on the body from it and the orientation.
     ///
     /// # Panics
-    /// When a push is on a point that `body` does not have.
+    /// If a push acts on a point that `body` does not have.
     pub fn moment(&self, body: &Body) -> Matrix3<f64> {
         let weight = Vector3::new(0.0, 0.0, -self.gravity);
         let gravity = body.first_moment() * weight.transpose();
@@ -73,15 +73,16 @@ impl Loads {
     }
 }
 
-/// Torque about the pivot, world frame, N m, of forces whose `moment` is Σ x Fᵀ: τᵢ = εᵢⱼₖ (Q Σ x Fᵀ)ⱼₖ.
+/// Returns the torque about the pivot, world frame, N m, of forces with this [`moment`](Loads::moment): τᵢ = εᵢⱼₖ (Q Σ x
+/// Fᵀ)ⱼₖ.
 ///
-/// Under vertical forces the first two columns are zeros, so that τ_z is zero to the bit and L_z is conserved.
+/// Under vertical forces the first two columns of the moment are zero. Then τ_z is exactly zero, and L_z is conserved.
 #[inline]
 pub fn torque(orientation: &Matrix3<f64>, moment: &Matrix3<f64>) -> Vector3<f64> {
     axial(&(orientation * moment))
 }
 
-/// εᵢⱼₖ mⱼₖ, twice the axial vector of the antisymmetric part of `m`: the sum of x × F where `m` is the sum of x Fᵀ.
+/// Returns εᵢⱼₖ mⱼₖ, twice the axial vector of the antisymmetric part of `m`: the sum of x × F if `m` is the sum of x Fᵀ.
 #[inline]
 pub(crate) fn axial(m: &Matrix3<f64>) -> Vector3<f64> {
     Vector3::new(

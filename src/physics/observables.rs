@@ -1,32 +1,32 @@
-//! What is read off a state: positions, angles, energy.
+//! Quantities of a state: positions, angles, energy, forces.
 
 use super::friction::Damping;
 use super::loads::{self, Loads};
 use super::{Body, State};
 use nalgebra::Vector3;
 
-/// Horizontal length of the axle's unit vector at or below which it counts as vertical and has no azimuth.
+/// If the horizontal part of the axle's unit vector is at most this long, the axle counts as vertical and has no azimuth.
 pub const VERTICAL_WITHIN: f64 = 1e-12;
 
-/// Position of point `index` of the body, world frame, m.
+/// Returns the position of the point `index` of the body, world frame, m.
 ///
 /// # Panics
-/// When the body has no such point.
+/// If the body has no such point.
 pub fn position(body: &Body, state: &State, index: usize) -> Vector3<f64> {
     state.orientation * body.points()[index].at
 }
 
-/// ω = I⁻¹L at this state, world frame, rad/s.
+/// Returns the angular velocity ω = I⁻¹L, world frame, rad/s.
 pub fn angular_velocity(body: &Body, state: &State) -> Vector3<f64> {
     state.orientation * (body.inverse_inertia() * state.orientation.tr_mul(&state.momentum))
 }
 
-/// ½ L·ω, J.
+/// Returns the kinetic energy ½ L·ω, J.
 pub fn kinetic_energy(body: &Body, state: &State) -> f64 {
     0.5 * state.momentum.dot(&angular_velocity(body, state))
 }
 
-/// Σ m z, kg m, from the pivot: times g it is the potential energy of gravity.
+/// Returns Σ m z, kg m, with z from the pivot. Times g it is the potential energy.
 pub fn weight_height(body: &Body, state: &State) -> f64 {
     state
         .orientation
@@ -35,22 +35,22 @@ pub fn weight_height(body: &Body, state: &State) -> f64 {
         .dot(&body.first_moment())
 }
 
-/// Returns the total energy, J: kinetic energy and potential energy in `gravity` (m/s²), which is 0 at the height of the
-/// pivot. Pushes have no part in it: they do work.
+/// Returns the total energy, J: the kinetic energy, and the potential energy in `gravity` (m/s²) from the height of the
+/// pivot. It does not contain the work of pushes.
 pub fn total_energy(body: &Body, state: &State, gravity: f64) -> f64 {
     kinetic_energy(body, state) + gravity * weight_height(body, state)
 }
 
-/// Σ m dz/dt, kg m/s: what of the body's momentum is vertical.
+/// Returns Σ m dz/dt, kg m/s: the vertical momentum of the body.
 pub fn vertical_momentum(body: &Body, state: &State) -> f64 {
     let moment = state.orientation * body.first_moment();
     angular_velocity(body, state).cross(&moment).z
 }
 
-/// Returns the vertical force with which the pivot holds the body under `loads`, world frame, N: what moves the center of
-/// mass beside the weight and the pushes.
+/// Returns the vertical force of the pivot on the body under `loads`, world frame, N. With the weight and the pushes, it
+/// accelerates the center of mass.
 ///
-/// The torque of dry friction that holds a spin of exactly 0 is left out; it matters to a lopsided body alone.
+/// Ignores the torque with which dry friction holds a spin of exactly 0. It matters only if the body is lopsided.
 pub fn pivot_force_z(body: &Body, state: &State, loads: &Loads) -> f64 {
     let turn = state.orientation;
     let (moment, omega) = (turn * body.first_moment(), angular_velocity(body, state));
@@ -64,19 +64,20 @@ pub fn pivot_force_z(body: &Body, state: &State, loads: &Loads) -> f64 {
     inertial.z + body.mass() * loads.gravity - pushes
 }
 
-/// Angle of the axle from +z, degrees, 0 to 180.
+/// Returns the angle of the axle from +z, 0 to 180 degrees.
 pub fn tilt_deg(state: &State) -> f64 {
     tilt_of(&state.axle())
 }
 
-/// Angle of `axle` (world frame, of any length) from +z, degrees, 0 to 180, to a few units of rounding however small it is.
+/// Returns the angle of `axle` (world frame, of any length) from +z, 0 to 180 degrees. Small angles are accurate too, to a
+/// few units of rounding.
 pub fn tilt_of(axle: &Vector3<f64>) -> f64 {
     libm::atan2(libm::hypot(axle.x, axle.y), axle.z).to_degrees()
 }
 
-/// The axle's azimuth, counted on through full turns.
+/// The azimuth of the axle, with all full turns.
 ///
-/// Kept as the last direction off the vertical and a whole number of turns, so that it neither drifts nor needs an
+/// It stores the last direction off the vertical and the number of full turns. It therefore does not drift, and needs no
 /// arc tangent until it is read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Azimuth {
@@ -86,7 +87,7 @@ pub struct Azimuth {
 }
 
 impl Azimuth {
-    /// The azimuth of `axle` (unit vector, world frame): atan2(y, x), or 0 where it is vertical.
+    /// Begins with the azimuth of `axle` (unit vector, world frame): atan2(y, x), or 0 if it is vertical.
     pub fn start(axle: &Vector3<f64>) -> Self {
         let mut azimuth = Self {
             x: 1.0,
@@ -99,7 +100,7 @@ impl Azimuth {
         azimuth
     }
 
-    /// Follows the axle to its next direction, by the change wrapped to (−180, 180] degrees; a vertical one changes
+    /// Follows the axle to its next direction. Adds the change, wrapped to (−180, 180] degrees; a vertical axle changes
     /// nothing.
     pub fn turn_to(&mut self, axle: &Vector3<f64>) {
         if is_vertical(axle) {
@@ -119,7 +120,7 @@ impl Azimuth {
         (self.x, self.y) = (x, y);
     }
 
-    /// Degrees, full turns included.
+    /// Returns the azimuth in degrees, with full turns.
     pub fn degrees(&self) -> f64 {
         libm::atan2(self.y, self.x).to_degrees() + 360.0 * self.turns as f64
     }

@@ -5,22 +5,22 @@
 //!
 //! a² = 3 (B + C − A)/(2 m), b² = 3 (A + C − B)/(2 m), c3² = 3 (A + B − C)/(2 m).
 //!
-//! So every scheme goes on visiting points. Source: E. J. Routh, *The Elementary Part of a Treatise on the Dynamics of a
-//! System of Rigid Bodies*, chapter 1, "equimomental bodies". The moments are those of the tables in Goldstein and in
-//! Landau and Lifshitz, *Mechanics*, section 32.
+//! Every scheme therefore needs only points. Source: E. J. Routh, *The Elementary Part of a Treatise on the Dynamics of a
+//! System of Rigid Bodies*, chapter 1, "equimomental bodies". The moments are in the tables of Goldstein and of Landau and
+//! Lifshitz, *Mechanics*, section 32.
 
 use super::PointMass;
 use nalgebra::{Matrix3, Vector3};
 use std::fmt;
 
-/// A sum of two moments may be below the third by this part of the largest: it is the rounding of flat bodies, for which the
-/// two are equal.
+/// A sum of two moments may be smaller than the third by this fraction of the largest. For a flat body both are equal,
+/// except for rounding.
 const MOMENT_SUM_ROUNDING: f64 = 1e-12;
 
-/// The points that stand for a part: its center, without mass, and the six.
+/// The number of points of a part: its center, without mass, and the six.
 pub const POINTS_PER_PART: usize = 7;
 
-/// A solid, in its own frame: its axis is z, its center of mass the origin. Lengths in m.
+/// A solid in its own frame. Its axis is z and its center of mass is the origin. Lengths are in m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shape {
     /// A thin ring across the axis.
@@ -28,7 +28,7 @@ pub enum Shape {
         /// Its radius.
         radius: f64,
     },
-    /// A cylinder about the axis; a disk where its length is 0.
+    /// A cylinder about the axis; a disk if its length is 0.
     Cylinder {
         /// Its radius.
         radius: f64,
@@ -59,7 +59,7 @@ pub enum Shape {
         /// Its radius.
         radius: f64,
     },
-    /// A solid cone, its apex against the axis, three quarters of its length from the center of mass.
+    /// A solid cone. Its apex is at −z, three quarters of its length from the center of mass.
     Cone {
         /// Radius of its base.
         radius: f64,
@@ -71,12 +71,12 @@ pub enum Shape {
         /// Its sides along x, y and the axis.
         size: Vector3<f64>,
     },
-    /// No solid in particular: moments divided by the mass, m², across (x), across (y), about the axis.
+    /// Any solid with these principal moments divided by the mass, m²: about x, about y, about the axis.
     Moments(Vector3<f64>),
 }
 
 impl Shape {
-    /// The principal moments about the center divided by the mass, m²: about x, about y, about the axis.
+    /// Returns the principal moments about the center divided by the mass, m²: about x, about y, about the axis.
     pub fn moments_per_mass(&self) -> Vector3<f64> {
         let symmetric = |along: f64, across: f64| Vector3::new(across, across, along);
         match *self {
@@ -111,7 +111,7 @@ impl Shape {
         }
     }
 
-    /// Refuses dimensions that no solid of this shape has.
+    /// Checks that a solid of this shape can have the dimensions.
     fn check(&self) -> Result<(), PartError> {
         match *self {
             Self::Ring { radius } | Self::Ball { radius } | Self::Shell { radius } => {
@@ -163,7 +163,7 @@ fn none_negative(name: &'static str, values: &Vector3<f64>) -> Result<(), PartEr
     require(holds, name, "must not contain a negative number")
 }
 
-/// Refuses a mass and an axis that no part has.
+/// Checks that a part can have this mass and this axis.
 fn check_mass_and_axis(mass: f64, axis: &Vector3<f64>) -> Result<(), PartError> {
     above_zero("mass", mass)?;
     if !axis.iter().all(|component| component.is_finite()) {
@@ -177,10 +177,10 @@ fn check_mass_and_axis(mass: f64, axis: &Vector3<f64>) -> Result<(), PartError> 
     )
 }
 
-/// Why there is no part of some moments.
+/// Why there is no such part.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum PartError {
-    /// Mass, axis or a dimension is not that of any solid.
+    /// The mass, the axis or a dimension has a value that no solid has.
     #[error("{name} {rule}")]
     Dimension {
         /// The name of the field or argument.
@@ -188,24 +188,25 @@ pub enum PartError {
         /// What it must be.
         rule: &'static str,
     },
-    /// One moment is above the sum of the two others.
+    /// One moment is larger than the sum of the two others.
     #[error("{0}: no body of real masses has these moments")]
     Unreal(&'static str),
-    /// A moment about the pivot, or A + B − C and its like, is less than the mass at its center alone has.
+    /// A moment about the pivot, or a sum such as A + B − C, is smaller than if all mass were at the center.
     #[error(
         "about the pivot {sum} must be at least {least} kg m^2, d the distance of its center of mass {from}"
     )]
     TooFar {
         /// The moment, or the sum of moments.
         sum: &'static str,
-        /// What it must reach, with its formula: "M d^2 = 1.25e-3".
+        /// The smallest possible value, with its formula: "M d^2 = 1.25e-3".
         least: Bound,
-        /// From or along which axis d counts.
+        /// The axis from which, or along which, d is measured.
         from: &'static str,
-        /// The factor on the distance of the center at which these moments become possible, M d staying as it is.
+        /// These moments become possible if the distance of the center is multiplied by this factor and M d is kept.
         nearer: f64,
     },
-    /// Mass or dimensions are so large or small that the moments leave the range of floating-point numbers.
+    /// Mass or dimensions are so large or small that the moments leave the range of floating-point numbers, or are not
+    /// finite.
     #[error("its moments leave the range of numbers: use masses and dimensions nearer to 1")]
     OutOfRange,
 }
@@ -228,10 +229,10 @@ impl fmt::Display for Bound {
     }
 }
 
-/// Distances of the six points from the center for the moments A, B, C divided by the mass, m.
+/// Returns the distances of the six points from the center for the moments A, B, C divided by the mass, m.
 ///
 /// # Errors
-/// Where one of A, B, C is above the sum of the two others, or not finite.
+/// If one of A, B, C is larger than the sum of the two others, or not finite.
 fn distances(moments: &Vector3<f64>) -> Result<[f64; 3], PartError> {
     let [a, b, c] = (*moments).into();
     if !(a + b + c).is_finite() {
@@ -249,10 +250,10 @@ fn distances(moments: &Vector3<f64>) -> Result<[f64; 3], PartError> {
     ])
 }
 
-/// A part in its place in the upright body.
+/// A solid part at its place in the upright body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlacedSolid {
-    /// What it is.
+    /// Its shape.
     pub shape: Shape,
     /// Its mass, kg.
     pub mass: f64,
@@ -266,12 +267,12 @@ pub struct PlacedSolid {
 }
 
 impl PlacedSolid {
-    /// The part with this shape and `mass` (kg). Its center is at `center` (body frame, m); its axis has the direction `axis`
-    /// (body frame, of any length but 0).
+    /// Makes a part with this shape and `mass` (kg). Its center of mass is at `center` (body frame, m), and its axis has
+    /// the direction `axis` (body frame, of any length but 0).
     ///
     /// # Errors
-    /// If the mass is not above 0, if the axis has no direction, if the shape has a dimension that no such solid has, or if
-    /// no body of real masses has its moments (to 1e-12 of the largest).
+    /// If the mass is not above 0, the axis has no direction, a dimension is impossible, or no body with positive masses
+    /// has these moments (to 1e-12 of the largest).
     pub fn new(
         shape: Shape,
         mass: f64,
@@ -289,11 +290,11 @@ impl PlacedSolid {
         })
     }
 
-    /// The part with these `moments` (kg m²) about the axes through the pivot that are parallel to its own x, y and axis; mass,
-    /// center and axis as in [`new`](Self::new). Its principal axes at the center are its own x, y and axis.
+    /// Makes a part with these `moments` (kg m²) about the axes through the pivot that are parallel to its own x, y and
+    /// axis. These are its principal axes at the center. Mass, center and axis are as in [`new`](Self::new).
     ///
     /// # Errors
-    /// As of [`new`](Self::new), and if no body of real masses has these moments, this mass and this center.
+    /// As [`new`](Self::new), and if no body with positive masses has these moments, this mass and this center.
     pub fn about_pivot(
         moments: &Vector3<f64>,
         mass: f64,
@@ -326,13 +327,13 @@ impl PlacedSolid {
         Self::new(shape, mass, center, axis)
     }
 
-    /// The principal moments about the center: about its own x, y and axis, kg m².
+    /// Returns the principal moments about the center: about its own x, y and axis, kg m².
     pub fn moments(&self) -> Vector3<f64> {
         self.mass * self.shape.moments_per_mass()
     }
 
-    /// The points that stand for it, body frame: the center, without mass, and then on each of its own directions x, y and
-    /// axis the one before and the one behind the center.
+    /// Returns its points, body frame: the center, without mass, and then for each of its own directions x, y and axis the
+    /// point in front of the center and the point behind it.
     pub fn points(&self) -> [PointMass; POINTS_PER_PART] {
         let mass = self.mass / 6.0;
         let [x, y, z] = [0, 1, 2].map(|i| self.directions.column(i) * self.distances[i]);
@@ -343,8 +344,8 @@ impl PlacedSolid {
     }
 }
 
-/// Returns which of the moments about the pivot, divided by the mass, is too small for a center whose own coordinates have these
-/// `squares`; where each alone is large enough, which sum.
+/// Returns the moment about the pivot, divided by the mass, that is too small if the coordinates of the center have these
+/// `squares`; if each moment is large enough, the sum that is too small.
 fn too_far(per_mass: &Vector3<f64>, squares: &Vector3<f64>, mass: f64, nearer: f64) -> PartError {
     const FROM: [&str; 3] = [
         "from the axis of A",
@@ -378,7 +379,7 @@ fn too_far(per_mass: &Vector3<f64>, squares: &Vector3<f64>, mass: f64, nearer: f
     }
 }
 
-/// The shortest turn that carries +z to the direction of `axis`; half a turn about x where that is −z.
+/// Returns the shortest rotation from +z to the direction of `axis`; for −z, half a turn about x.
 fn turn_to(axis: &Vector3<f64>) -> Matrix3<f64> {
     let axis = (axis / axis.amax()).normalize(); // its square may leave the range of numbers
     let across = libm::hypot(axis.x, axis.y);

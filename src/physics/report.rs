@@ -6,7 +6,7 @@
 //! 4. X ← R X, point by point
 //! 5. L ← L + dt Σ X × F, at the *new* positions
 //!
-//! Friction, which the report has not, acts in 5: with the Ω of the step, about the axle as the turn has left it.
+//! Friction, which the report does not have, acts in 5, with the Ω of the step and the axle after the rotation.
 //!
 //! The points themselves are carried from step to step, as the report carries them, two at a time: they are turned, and
 //! then summed to the torque (5) and the inertia that the next step begins with (1). Two lanes on every processor, added
@@ -44,7 +44,7 @@ pub struct ReportScheme {
 }
 
 impl ReportScheme {
-    /// The scheme for `body`.
+    /// Makes the scheme for `body`.
     pub fn new(body: &Body) -> Self {
         Self {
             body: body.clone(),
@@ -58,10 +58,10 @@ impl ReportScheme {
         }
     }
 
-    /// Where the scheme has carried point `index`, world frame, m.
+    /// Returns the position of point `index`, world frame, m, as the scheme carries it.
     ///
     /// # Panics
-    /// When the body has no such point, or before [`start`](Scheme::start).
+    /// If the body has no such point, or before [`start`](Scheme::start).
     pub fn position(&self, index: usize) -> Vector3<f64> {
         let pair = &self.points[index / LANES];
         let lane = index % LANES;

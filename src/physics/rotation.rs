@@ -1,9 +1,9 @@
-//! Rotation matrices, in the report's formula, with the sine and cosine compiled in.
+//! Rotation matrices by the report's formula, with compiled-in sine and cosine.
 
 use super::trig;
 use nalgebra::{Matrix3, Vector3};
 
-/// \[v\]× times `matrix`: v × each of its columns.
+/// Returns \[v\]× times `matrix`: v × each of its columns.
 #[inline]
 pub fn crossed(v: &Vector3<f64>, matrix: &Matrix3<f64>) -> Matrix3<f64> {
     Matrix3::from_columns(&[0, 1, 2].map(|j| v.cross(&matrix.column(j))))
@@ -67,14 +67,17 @@ impl AxisAngle {
     }
 }
 
-/// The rotation about `vector` by the angle |`vector`| · `time`, rad, to a few units of rounding of that angle. The zero
-/// vector turns nothing.
+/// Returns the rotation about `vector` by the angle |`vector`| · `time`, rad, to a few units of rounding. The zero vector
+/// gives the identity.
+///
+/// `about(&Vector3::x(), tilt)` tilts the upright axle towards −y; `about(&omega, dt)` is the rotation with the angular
+/// velocity `omega` (rad/s) during `dt` (s).
 pub fn about(vector: &Vector3<f64>, time: f64) -> Matrix3<f64> {
     AxisAngle::new(vector, time).map_or_else(Matrix3::identity, |turn| turn.matrix())
 }
 
-/// A rotation near `matrix`, which is off by the error of one time step: the axle's column made a unit vector, the
-/// others set square to it. However far off `matrix` is, what comes back is a rotation.
+/// Returns a rotation near `matrix`: the column of the axle is normalized, and the others are made perpendicular to it. The
+/// result is a rotation for any `matrix`.
 pub fn straightened(matrix: &Matrix3<f64>) -> Matrix3<f64> {
     let axle = matrix.column(2).normalize();
     let x = matrix.column(0);

@@ -1,4 +1,4 @@
-//! The table of the numerical schemes. What each must do is [`Scheme`]'s. A new one is a row here and a file in `scheme`.
+//! The table of the numerical schemes. A new scheme implements [`Scheme`] in a file in `scheme`, and has a row here.
 
 mod runge_kutta;
 
@@ -11,26 +11,26 @@ use runge_kutta::{RK4, RungeKutta};
 /// One row of the table of schemes.
 #[derive(Debug)]
 pub struct SchemeInfo {
-    /// Its name, by which [`find`](Self::find) finds it.
+    /// Name, as for [`find`](Self::find).
     pub name: &'static str,
-    /// Order of convergence in dt; `None` where the time step makes no error.
+    /// Order of convergence in dt; `None` if the time step makes no error.
     pub order: Option<u32>,
-    /// One line on what it does.
+    /// Description in one line.
     pub about: &'static str,
-    /// Where it comes from.
+    /// Literature.
     pub source: &'static str,
-    /// Whether it follows time between steps, so that a force which begins in mid-step is met where it begins. One
-    /// that does not feels such a force's mean over the step.
+    /// True if the scheme can begin and end a force within a step. Any other scheme uses the mean of the force over the
+    /// step.
     pub continuous: bool,
-    /// Whether it turns the body by its free motion exactly, however far that leads in one step. The others must turn it by
-    /// little in a step for their rows to show the motion.
+    /// True if the scheme computes the free rotation of the body exactly, however far the body turns in one step. With any
+    /// other scheme, the body must turn little per step.
     pub turns_exactly: bool,
-    /// The friction that it can be true to.
+    /// The friction that the scheme supports.
     pub admits: Admits,
     make: fn(&Body) -> Box<dyn Scheme>,
 }
 
-/// The friction that a scheme can be true to.
+/// The friction that a scheme supports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Admits {
     /// Any.
@@ -42,7 +42,8 @@ pub enum Admits {
 }
 
 impl Admits {
-    /// Why a scheme of this kind cannot be true to `friction`; `None` where it can.
+    /// Returns why a scheme of this kind does not support `friction`; `None` if it does. The text continues a sentence
+    /// about the scheme.
     pub fn why_not(self, friction: &Friction) -> Option<&'static str> {
         match self {
             Self::None if !friction.is_none() => {
@@ -110,14 +111,14 @@ pub const SCHEMES: &[SchemeInfo] = &[
     },
 ];
 
-/// The schemes that can be true to `friction`, in the table's order.
+/// Returns the schemes that support `friction`, in the order of the table.
 pub fn true_to(friction: Friction) -> impl Iterator<Item = &'static SchemeInfo> + Clone {
     SCHEMES
         .iter()
         .filter(move |scheme| scheme.admits.why_not(&friction).is_none())
 }
 
-/// The names of all schemes, in the table's order.
+/// Returns the names of all schemes, in the order of the table.
 pub const fn names() -> [&'static str; SCHEMES.len()] {
     let mut names = [""; SCHEMES.len()];
     let mut row = 0;
@@ -129,7 +130,7 @@ pub const fn names() -> [&'static str; SCHEMES.len()] {
 }
 
 impl SchemeInfo {
-    /// The scheme of that name.
+    /// Returns the scheme with this name.
     pub fn find(name: &str) -> Option<&'static Self> {
         SCHEMES.iter().find(|scheme| scheme.name == name)
     }

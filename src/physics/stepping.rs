@@ -1,49 +1,50 @@
-//! How a time step is taken: what every scheme must do.
+//! The trait of all schemes.
 
 use super::{Loads, State, workings::Phase};
 use std::fmt::Debug;
 
-/// A way to take the body one time step further. [`SchemeInfo::make`](super::SchemeInfo::make) makes one.
+/// A numerical scheme that steps a body. [`SteppedMotion`](super::SteppedMotion) uses one;
+/// [`SchemeInfo::make`](super::SchemeInfo::make) makes one.
 ///
-/// Its [order](super::SchemeInfo::order) says how fast its error falls with dt. The orientation stays a rotation to rounding,
-/// and under vertical forces without friction L_z keeps every bit (`exact`: all but rounding).
+/// The error falls with dt as the [order](super::SchemeInfo::order) says. The orientation remains a rotation to rounding.
+/// Under vertical forces without friction, L_z remains the same to the last bit (with `exact`: to rounding).
 ///
-/// Orientation, L and t are all that passes from one scheme to another; whatever else a scheme keeps (the report's
-/// carries the points themselves) it makes anew in [`start`](Scheme::start).
+/// Only orientation, L and t pass from one scheme to another. What else a scheme keeps, it sets in
+/// [`start`](Scheme::start); the report's scheme keeps the positions of the points.
 pub trait Scheme: Send + Debug {
-    /// Takes the run over at `state`: at its beginning, or from another scheme. Comes before the first step.
+    /// Begins at `state`. Must be called before the first step.
     fn start(&mut self, state: &State);
 
-    /// From now on these are the forces and the friction. Of friction a scheme must be given none that it
-    /// [cannot be true to](super::scheme::SchemeInfo::admits).
+    /// Sets the forces and the friction from now on. The scheme must [support](super::scheme::SchemeInfo::admits) this
+    /// friction.
     ///
     /// # Panics
-    /// Here or in a step, when a push is on a point that the body does not have.
+    /// Here or in a step, if a push acts on a point that the body does not have.
     fn load(&mut self, loads: &Loads);
 
-    /// Takes `state` `dt` seconds further, its time left as it is: time is the run's, which counts steps.
+    /// Steps `state` by `dt` seconds. Does not change its time: the caller counts steps.
     fn step(&mut self, dt: f64, state: &mut State);
 
-    /// The same step, to the last bit, with what is computed on the way added to `phases`.
+    /// Takes the same step, to the last bit, and adds the intermediate results to `phases`.
     fn explain(&mut self, dt: f64, state: &mut State, phases: &mut Vec<Phase>);
 
-    /// The work of friction in the step taken last, J: 0, or less. Of friction that acts as an impulse it is the impulse
-    /// times the mean of ω before and after it; of friction that is integrated, the integral.
+    /// Returns the work of friction in the last step, J; 0 or negative. For friction that acts as an impulse, it is the
+    /// impulse times the mean of ω before and after it. For friction that is integrated, it is the integral.
     fn friction_work(&self) -> f64 {
         0.0
     }
 
-    /// Whether the step taken last is no number because it would have taken too long.
+    /// True if the last step is NaN because it would have taken too long.
     fn has_given_up(&self) -> bool {
         false
     }
 
-    /// What there is to say of how the run was computed, beyond the scheme's name.
+    /// Returns a remark on how the run was computed.
     fn remark(&self) -> Option<String> {
         None
     }
 
-    /// A copy that goes its own way from here.
+    /// Returns an independent copy.
     fn boxed(&self) -> Box<dyn Scheme>;
 }
 

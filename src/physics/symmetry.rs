@@ -1,5 +1,4 @@
-//! Bodies that are symmetric about their axle, or nearly so, and forces that act on it: what the closed form and the theory
-//! of the heavy top need.
+//! Symmetric and nearly symmetric bodies, and forces on their axle, for the closed form and the theory of the heavy top.
 
 use super::{Body, Loads, State};
 use nalgebra::Vector3;
@@ -23,19 +22,19 @@ const NEARLY_ON_AXLE: f64 = 1e-3;
 /// Nearer to equal moments, the small difference decides how the axle moves.
 const OF_KAPPA: f64 = 0.2;
 
-/// The moments of a body that is symmetric about its axle (the body's z axis), its center of mass on the axle.
+/// The moments of a body that is symmetric about its axle, the z axis of the body. Its center of mass is on the axle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SymmetricTop {
     /// I1, across the axle, about the pivot, kg m².
     pub across: f64,
     /// I3, along the axle, kg m².
     pub along: f64,
-    /// M times the height of the center of mass along the axle, kg m; negative below the pivot.
+    /// M l, the mass times the height of the center of mass along the axle, kg m; negative below the pivot.
     pub first_moment: f64,
 }
 
 impl SymmetricTop {
-    /// The moments of `body`, or `None` where they, or its center of mass, are off by more than 1e-9 of the whole.
+    /// Returns the moments of `body`; `None` if it is not symmetric to 1e-9 of the whole.
     pub fn from_body(body: &Body) -> Option<Self> {
         let inertia = body.inertia();
         let largest = inertia.diagonal().amax();
@@ -55,8 +54,8 @@ impl SymmetricTop {
         })
     }
 
-    /// Returns the top whose moment across is the mean of the two of `body`, and the asymmetry of `body`: 0 where it is
-    /// symmetric, else at most 0.01. `None` for a body that is more lopsided.
+    /// Returns a top with the mean of the two moments across the axle, and the asymmetry of `body`: 0 if it is symmetric,
+    /// otherwise at most 0.01. Returns `None` if the body is more lopsided.
     ///
     /// The asymmetry is the largest of three: the difference of the principal moments across, divided by their mean; the
     /// angle between the axle and the principal axis nearest to it, rad; and the distance of the center of mass from the axle,
@@ -87,20 +86,20 @@ impl SymmetricTop {
         is_near.then(|| (top, of_moments.max(of_axis).max(of_center)))
     }
 
-    /// Whether the point `at` (body frame, m) of `body` is on its axle: forces there leave the closed form as it is.
+    /// True if the point `at` (body frame, m) of `body` is on its axle. With forces on such points there is a closed form.
     pub fn has_on_axle(&self, body: &Body, at: &Vector3<f64>) -> bool {
         let size = (self.across.max(self.along) / body.mass()).sqrt();
         at.x.abs().max(at.y.abs()) <= SYMMETRY_TOLERANCE * size.max(at.z.abs())
     }
 
-    /// κ = I3/I1: below 1 a long axle, above 1 a flat body.
+    /// Returns κ = I3/I1: below 1 for a long body, above 1 for a flat one.
     pub fn kappa(&self) -> f64 {
         self.along / self.across
     }
 
-    /// The angle between axle and L, rad, with which the top would precess slowly and steadily at the tilt and with the spin
-    /// that it has in `state`: of L the part I1 w sin θ lies across the axle. `load` is that of [`Loads::on_axle`], N m, world
-    /// frame. `None` where it spins too slowly for a steady precession.
+    /// Returns the angle between axle and L, rad, in slow steady precession with the tilt and the spin of `state`. The
+    /// component of L across the axle is then I1 w sin θ. `load` is from [`Loads::on_axle`], N m, world frame. Returns
+    /// `None` if the top spins too slowly for steady precession.
     pub fn steady_lag(&self, state: &State, load: &Vector3<f64>) -> Option<f64> {
         let (axle, spin) = (state.axle(), state.momentum.dot(&state.axle()));
         let Some(down) = load.try_normalize(0.0) else {
@@ -128,11 +127,11 @@ pub fn steady_precession(across_cos: f64, spin: f64, load: f64) -> (Option<f64>,
 }
 
 impl Loads {
-    /// Σ s F, N m, world frame, over all forces, s the height along the axle at which each acts: the torque is the axle
-    /// times this. `None` where a force acts off the axle. `top` must be [that of](SymmetricTop::from_body) `body`.
+    /// Returns Σ s F over all forces, N m, world frame; s is the height along the axle at which F acts. The torque is axle
+    /// × Σ s F. Returns `None` if a force acts off the axle. `top` must be [made from](SymmetricTop::from_body) `body`.
     ///
     /// # Panics
-    /// When a push is on a point that `body` does not have.
+    /// If a push acts on a point that `body` does not have.
     pub fn on_axle(&self, body: &Body, top: &SymmetricTop) -> Option<Vector3<f64>> {
         let weight = Vector3::new(0.0, 0.0, -self.gravity * top.first_moment);
         self.pushes.iter().try_fold(weight, |sum, push| {

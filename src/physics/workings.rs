@@ -1,8 +1,8 @@
-//! What a scheme computes on the way of one time step, phase by phase, for whoever wants to see it.
+//! The intermediate results of one time step, phase by phase.
 //!
-//! A scheme tells its phases to a listener. Its step is written once, for any listener: the plain step is the one that
-//! nobody listens to, and costs nothing more, the explained step is the one that fills a list of [phases](Phase). So the
-//! numbers shown are the very numbers that made the step.
+//! A scheme passes its phases to a listener. Its step is one function for every listener. The plain step has a listener
+//! that does nothing and costs nothing; the explained step fills a list of [phases](Phase). The numbers shown are therefore
+//! those that made the step.
 
 use super::Loads;
 use nalgebra::{Matrix3, Vector3};
@@ -11,7 +11,7 @@ use std::fmt;
 /// Makes the enum of the phases of a time step, the list of all, and their texts from one table.
 macro_rules! phase_names {
     ($($name:ident = $text:literal,)*) => {
-        /// The name of a phase; those of the report's scheme first, in its order.
+        /// The name of a phase. The phases of the report's scheme come first, in its order.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum PhaseName {
             $(#[doc = $text] $name,)*
@@ -28,7 +28,7 @@ macro_rules! phase_names {
                 }
             }
 
-            /// Whether it finds a slope of a Runge-Kutta scheme.
+            /// True if the phase computes a slope of a Runge-Kutta scheme.
             pub fn is_slope(self) -> bool {
                 self.text().starts_with("slope")
             }
@@ -73,8 +73,8 @@ const SUM_LANES: usize = 2;
 /// The workings of one time step.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Workings {
-    /// Its parts in the order of time. There is one where no force changes during the step; a scheme that follows time
-    /// between steps takes a step in which a push begins or ends in several.
+    /// The parts of the step in the order of time. There is one part, unless a push begins or ends within the step and the
+    /// scheme is [continuous](super::SchemeInfo::continuous).
     pub parts: Vec<LoadInterval>,
 }
 
@@ -92,24 +92,24 @@ pub struct LoadInterval {
 /// One phase of a time step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Phase {
-    /// What it is called.
+    /// Its name.
     pub name: PhaseName,
-    /// What is computed, as a line of Unicode text.
+    /// The formula as a line of Unicode text.
     pub formula: &'static str,
-    /// What of the state it changes.
+    /// The part of the state that it changes.
     pub changes: PhaseTarget,
-    /// The numbers, those that are used first and the result last.
+    /// The numbers: first those that are used, last the result.
     pub quantities: Vec<WorkedQuantity>,
 }
 
-/// What of the state a phase changes.
+/// The part of the state that a phase changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PhaseTarget {
-    /// Nothing: it computes what a later phase uses.
+    /// Nothing: it computes a number for a later phase.
     Nothing,
-    /// How the body stands.
+    /// The orientation.
     Orientation,
-    /// Its angular momentum.
+    /// The angular momentum.
     Momentum,
     /// Both.
     Both,
@@ -118,15 +118,15 @@ pub enum PhaseTarget {
 /// A number, vector, matrix or table with its symbol.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WorkedQuantity {
-    /// As it stands in the formula; vectors and matrices are in the world frame.
+    /// The symbol in the formula. Vectors and matrices are in the world frame.
     pub symbol: &'static str,
-    /// Its unit; empty for a pure number, and for a table, whose columns have their own.
+    /// Unit; empty for a pure number, and for a table, because its columns have units.
     pub unit: &'static str,
     /// Its value.
     pub value: WorkedValue,
 }
 
-/// What a quantity is.
+/// The value of a quantity.
 #[derive(Clone, Debug, PartialEq)]
 pub enum WorkedValue {
     /// A number.
@@ -135,11 +135,11 @@ pub enum WorkedValue {
     Vector(Vector3<f64>),
     /// A matrix.
     Matrix(Matrix3<f64>),
-    /// Numbers of single points.
+    /// Numbers of each point.
     Table(PointTable),
 }
 
-/// Numbers of points of the body, a row a point.
+/// Numbers of the points of the body, one row per point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointTable {
     /// Symbol and unit of each column.

@@ -91,9 +91,9 @@ impl CayleyKleinSums {
 
 /// Closed-form motion of a heavy symmetric top about a fixed point, under a constant load on its axle.
 ///
-/// Errors: a few units of rounding in the state, plus t times a few units of rounding of the frequencies. A top that comes
-/// from afar within an angle d of the upright rest lingers there for a time that its start decides: rounding of the start
-/// then counts 1/d^2 times. (A start near that rest is held to rounding.)
+/// Errors: a few units of rounding in the state, plus t times a few units of rounding of the frequencies. If a top comes
+/// within an angle d of upright rest, the time that it stays there depends strongly on its start, and rounding of the start
+/// counts 1/d^2 times. (A start near upright rest is accurate to rounding.)
 ///
 /// Source: F. Klein and A. Sommerfeld, Ueber die Theorie des Kreisels, chapter VI.
 #[derive(Clone, Debug)]
@@ -113,13 +113,13 @@ pub struct LagrangeTop {
 }
 
 impl LagrangeTop {
-    /// The top that is in this state at t = 0.
+    /// Makes the top that has this state at t = 0.
     ///
     /// `across`, `along`: moments of inertia about the pivot, across the axle and along it, kg m^2, above zero. `load`: p in
     /// N m, world frame; the torque is axle x p. Zero is a free top. `orientation`: a rotation matrix from body to world
     /// components; its third column is the axle. `momentum`: L about the pivot, J s, world frame.
     ///
-    /// Nothing is checked: values that are not finite give a motion that is not a number.
+    /// Nothing is checked. If a value is not finite, the motion is NaN.
     pub fn new(
         across: f64,
         along: f64,
@@ -157,7 +157,8 @@ impl LagrangeTop {
         top
     }
 
-    /// Orientation (body to world components) and L (J s, world frame) at `t` s after the start; `t` may be negative.
+    /// Returns the orientation (from body to world components) and L (J s, world frame) at `t` s after the start; `t` may
+    /// be negative.
     pub fn at(&self, t: f64) -> (Matrix3<f64>, Vector3<f64>) {
         self.at_heard(t, &mut Nobody)
     }
@@ -181,7 +182,7 @@ impl LagrangeTop {
         (orientation, momentum)
     }
 
-    /// The orientation of [`at`](Self::at) without L, which takes half of the time.
+    /// Returns the orientation of [`at`](Self::at) without L, in half the time.
     pub fn orientation_at(&self, t: f64) -> Matrix3<f64> {
         let (alpha, beta) = self.sums_at(t).parameters();
         let norm2 = alpha.norm_sqr() + beta.norm_sqr();
@@ -200,19 +201,21 @@ impl LagrangeTop {
         (turn, rotation_matrix(&turn, 1.0 / norm2))
     }
 
-    /// Time from one lowest tilt to the next, s. None where nothing returns: a free top, the separatrix, a body at rest.
+    /// Returns the time from one minimum of the tilt to the next, s. Returns `None` if the tilt does not repeat: for a free
+    /// top, on the separatrix, and at rest.
     pub fn nutation_period(&self) -> Option<f64> {
         Some(self.lattice.period).filter(|period| self.loaded && period.is_finite())
     }
 
-    /// Mean rate of the axle's turning about the load's vertical, rad/s (about L for a free top).
+    /// Returns the mean rate of precession about the vertical of the load, rad/s (about L for a free top).
     ///
-    /// Where the axle passes through the vertical itself the half turn at each passage is counted as none.
+    /// If the axle passes exactly through the vertical, the half turn at each passage does not count.
     pub fn mean_precession(&self) -> f64 {
         self.alpha.wave.mean + self.beta.wave.mean
     }
 
-    /// Least and greatest angle of the axle from the vertical (opposite to the load; along L for a free top), rad.
+    /// Returns the smallest and the largest angle of the axle from the vertical (opposite to the load; along L for a free
+    /// top), rad.
     pub fn tilt_range(&self) -> (f64, f64) {
         let tilt = |below: f64, above: f64| 2.0 * libm::atan2(below.sqrt(), above.sqrt());
         let t = &self.turning;

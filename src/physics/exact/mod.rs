@@ -1,10 +1,10 @@
-//! The true motion of a rigid body about a fixed point, which every stepping scheme is held against.
+//! The exact motion of a rigid body about a fixed point, to which every scheme is compared.
 //!
 //! - [`LagrangeTop`]: a body symmetric about its axle, under a constant force that acts on the axle. Solved in closed
 //!   form by theta functions: any time, past or future, in one evaluation and without stepping.
-//! - [`AccurateMotion`]: any body under any constant forces and friction, by a Taylor series held to rounding.
+//! - [`AccurateMotion`]: any body under any constant forces and friction, by a Taylor series with only rounding errors.
 //!
-//! [`ExactMotion`] takes the one that serves; the scheme `exact` follows it.
+//! [`ExactMotion`] uses the closed form if there is one, otherwise the series. The scheme `exact` follows it.
 
 mod lagrange;
 mod phases;
@@ -26,8 +26,8 @@ use super::workings::{Listener, Nobody};
 use super::{Body, Damping, Loads, State};
 use nalgebra::{Matrix3, Vector3};
 
-/// The exact motion from one state on, while the loads stay as they are. Its accuracy is that of [`LagrangeTop`] or
-/// [`AccurateMotion`], whichever [`kind`](Self::kind) it is.
+/// The exact motion from one state, under constant loads. It is as accurate as [`LagrangeTop`] or [`AccurateMotion`],
+/// depending on its [`kind`](Self::kind).
 #[derive(Clone, Debug)]
 pub struct ExactMotion {
     begin: State,
@@ -38,26 +38,26 @@ pub struct ExactMotion {
 enum ExactSolution {
     Closed(Box<LagrangeTop>),
     Integrated(Box<AccurateMotion>),
-    /// Of numbers that are not finite.
+    /// For numbers that are not finite.
     None,
 }
 
-/// How exact motion is found.
+/// How the exact motion is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExactMethod {
     /// By elliptic functions: the body is symmetric about its axle and every force acts on it.
     Closed,
-    /// By an integration held to rounding: any body, any forces.
+    /// By an integration with only rounding errors: any body, any forces.
     Integrated,
-    /// By an integration held to rounding, with friction; where the spin stops is found as an event.
+    /// By an integration with only rounding errors, with friction. The time at which the spin stops is found as an event.
     Rubbing,
 }
 
 impl ExactMotion {
-    /// The motion of `body` under `loads` that is in `state` at the state's own time.
+    /// Makes the motion of `body` under `loads` that has `state` at the state's own time.
     ///
     /// # Panics
-    /// When a push is on a point that `body` does not have.
+    /// If a push acts on a point that `body` does not have.
     pub fn new(body: &Body, loads: &Loads, state: &State) -> Self {
         let (turn, momentum) = (state.orientation, state.momentum);
         let top = SymmetricTop::from_body(body);
@@ -85,13 +85,13 @@ impl ExactMotion {
         }
     }
 
-    /// The state at `time_s`, s. In closed form any time costs the same; an integration goes there from the time asked
-    /// for last. Not a number where the integration [has given up](Self::has_given_up).
+    /// Returns the state at `time_s`, s. In closed form, every time costs the same; an integration continues from the last
+    /// time. The state is NaN if the integration [has given up](Self::has_given_up).
     pub fn at(&mut self, time_s: f64) -> State {
         self.at_heard(time_s, &mut Nobody)
     }
 
-    /// The same, with each phase told to `listener`.
+    /// Like [`at`](Self::at), and passes each phase to `listener`.
     pub(crate) fn at_heard<L: Listener>(&mut self, time_s: f64, listener: &mut L) -> State {
         let t = time_s - self.begin.time_s;
         let (orientation, momentum) = match &mut self.solution {
@@ -113,7 +113,7 @@ impl ExactMotion {
         }
     }
 
-    /// The orientation of [`at`](Self::at) alone, which the closed form has in half of the time.
+    /// Returns only the orientation of [`at`](Self::at); in closed form, this takes half the time.
     #[inline]
     pub fn orientation_at(&mut self, time_s: f64) -> Matrix3<f64> {
         match &self.solution {
@@ -122,7 +122,7 @@ impl ExactMotion {
         }
     }
 
-    /// Where the point `at` of the body (body frame, m) is at `times` (s), as [`LagrangeTop::positions_near`] has it.
+    /// Returns the positions of the point `at` (body frame, m) at `times` (s), like [`LagrangeTop::positions_near`].
     pub fn positions_near(
         &self,
         at: &Vector3<f64>,
@@ -132,17 +132,17 @@ impl ExactMotion {
         self.closed_form()?.positions_near(at, &since)
     }
 
-    /// When it began, s.
+    /// Returns the time at which it begins, s.
     pub fn begin_s(&self) -> f64 {
         self.begin.time_s
     }
 
-    /// The state in which it began.
+    /// Returns the state in which it begins.
     pub fn begin(&self) -> &State {
         &self.begin
     }
 
-    /// How it is found.
+    /// Returns how it is computed.
     pub fn kind(&self) -> ExactMethod {
         match &self.solution {
             ExactSolution::Closed(_) => ExactMethod::Closed,
@@ -151,12 +151,12 @@ impl ExactMotion {
         }
     }
 
-    /// Whether a time was asked for to which the integration would have taken too long: from there on it is no number.
+    /// True if the integration to a requested time would have taken too long. All later states are NaN.
     pub fn has_given_up(&self) -> bool {
         matches!(&self.solution, ExactSolution::Integrated(motion) if motion.gave_up)
     }
 
-    /// The work of friction from where it began to the time asked for last, J.
+    /// Returns the work of friction from the beginning to the last requested time, J.
     pub fn friction_work(&self) -> f64 {
         match &self.solution {
             ExactSolution::Integrated(motion) => motion.friction_work(),
@@ -164,7 +164,7 @@ impl ExactMotion {
         }
     }
 
-    /// The closed form, where there is one.
+    /// Returns the closed form, if there is one.
     pub fn closed_form(&self) -> Option<&LagrangeTop> {
         match &self.solution {
             ExactSolution::Closed(top) => Some(top),

@@ -28,7 +28,7 @@ const MOST_TAYLOR_SERIES: u32 = 200_000;
 
 /// Motion of a rigid body about a fixed point under constant forces at body points, integrated to rounding.
 ///
-/// Errors: about 1e-15 per radian turned; where the motion itself parts neighbouring starts, that much more.
+/// Errors: about 1e-15 per radian turned. If the motion separates neighboring starts, the errors grow as much.
 ///
 /// Source: A. Jorba and M. Zou, Experimental Mathematics 14 (2005) 99-117.
 #[derive(Clone, Debug)]
@@ -76,13 +76,13 @@ struct Center {
 const MOST_CENTRES: usize = 512;
 
 impl AccurateMotion {
-    /// The body that is in this state at t = 0.
+    /// Makes the motion that has this state at t = 0.
     ///
     /// `inertia`: about the pivot, body frame, kg m^2. `moment`: sum of (body point, m)(world force, N)^T, N m; gravity is
     /// one force at the center of mass. `orientation`: rotation matrix from body to world components. `momentum`: L about
     /// the pivot, world frame, J s.
     ///
-    /// None if the inertia is not positive definite (all masses on one line) or anything is not finite.
+    /// Returns `None` if the inertia is not positive definite (all masses on one line), or if a number is not finite.
     pub fn new(
         inertia: Matrix3<f64>,
         moment: Matrix3<f64>,
@@ -92,7 +92,7 @@ impl AccurateMotion {
         Self::damped(inertia, moment, orientation, momentum, None)
     }
 
-    /// As [`new`](Self::new), with the friction of `damping`, which is of this body.
+    /// Like [`new`](Self::new), with friction. `damping` must be of this body.
     pub(super) fn damped(
         inertia: Matrix3<f64>,
         moment: Matrix3<f64>,
@@ -123,18 +123,20 @@ impl AccurateMotion {
         Some(motion)
     }
 
-    /// The work of friction from the start to the time asked for last, J.
+    /// Returns the work of friction from the start to the last requested time, J.
     pub(super) fn friction_work(&self) -> f64 {
         let rubbing = self.friction.as_ref();
         rubbing.map_or(0.0, |rubbing| rubbing.sliding.work(rubbing.asked_s))
     }
 
-    /// Orientation (body to world components) and L (J s, world frame) at `t` s after the start.
+    /// Returns the orientation (from body to world components) and L (J s, world frame) at `t` s after the start.
     ///
-    /// Asking for times in order costs one short polynomial each; going back integrates back, or where there is friction
-    /// on from an earlier time. Not a number for a time that is not finite, or that is too far for the turning of the body
-    /// to be told apart by it, or with friction before the start; nor from the first time on to which the body turns by more
-    /// than 2e5 to 6e5 rad from the time asked for before: then it has given up.
+    /// Times in increasing order cost one short polynomial each. An earlier time is integrated backwards or, with friction,
+    /// forwards from a stored state.
+    ///
+    /// The result is NaN if `t` is not finite, if it is so large that its rounding is a large angle of the body, or, with
+    /// friction, if it is negative. If the body turns by more than 2e5 to 6e5 rad since the last requested time, the motion
+    /// gives up: this and all later results are NaN.
     pub fn state_at(&mut self, t: f64) -> (Matrix3<f64>, Vector3<f64>) {
         if t < self.time || t - self.time > self.radius {
             self.go_to_centre(t);
