@@ -13,6 +13,7 @@ use crate::engine::scenario::schema::SchemaRow;
 use crate::engine::text::shipped::Shipped;
 use crate::lessons::shipped::LESSONS;
 use crate::report::figure::kind;
+use crate::report::figure::of_table::TABLE_KIND_NAMES;
 use crate::studies::sweep::SWEEPS;
 use anyhow::{Context, bail};
 use clap::Command;
@@ -46,11 +47,15 @@ fn completing(command: &str, arg: &str) -> Option<(CompletionSource, &'static [&
         (_, "kind") => |_, _| {
             [
                 named(&kind::FIGURE_KIND_NAMES, |name| (name, "")),
+                named(&TABLE_KIND_NAMES, |name| (name, "")),
                 columns(),
             ]
             .concat()
         },
-        (_, "measure") => |_, _| named(READOUTS, |it| (it.name, it.meaning)),
+        ("figure", "x") => |_, begin| [readouts(), keys(begin, |_| true, "")].concat(),
+        ("figure", "y") => |_, _| readouts(),
+        ("figure", "log") => |_, _| named(&["x", "y", "z", "xy"], |axes| (axes, "")),
+        (_, "measure") => |_, _| readouts(),
         (_, "topic") => |_, _| topics(),
         (_, "files" | "commands") => |_, _| Vec::new(),
         _ => return None,
@@ -160,6 +165,10 @@ fn presets() -> Vec<(String, String)> {
 
 fn shipped(list: &'static [Shipped]) -> Vec<(String, String)> {
     named(list, |file| (file.name, ""))
+}
+
+fn readouts() -> Vec<(String, String)> {
+    named(READOUTS, |readout| (readout.name, readout.meaning))
 }
 
 fn columns() -> Vec<(String, String)> {

@@ -218,7 +218,8 @@ pub fn length(points: &[Point]) -> f64 {
     points.array_windows().map(|[a, b]| distance(*a, *b)).sum()
 }
 
-fn distance(a: Point, b: Point) -> f64 {
+/// Returns the distance of two points, pt.
+pub fn distance(a: Point, b: Point) -> f64 {
     libm::hypot(b.x - a.x, b.y - a.y)
 }
 

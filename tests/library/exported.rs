@@ -471,3 +471,43 @@ fn the_errors_of_a_comparison_are_recomputed() {
     let unknown = good.replace("\nrk4,", "\nrk5,");
     assert!(refused(unknown.as_bytes()).contains("does not name a scheme"));
 }
+
+#[test]
+fn distance_from_the_exact_motion_is_an_optional_column() {
+    let columns = |names: &[&str]| LayoutFile {
+        columns: Some(names.iter().map(|name| (*name).to_owned()).collect()),
+        ..whole()
+    };
+    let text = |scenario: &Scenario| {
+        let bytes = csv(
+            scenario,
+            columns(&["t_s", "x_m", "y_m", "z_m", "distance_m"]),
+        );
+        let verified = verified(&bytes).unwrap();
+        assert!(verified.difference.is_none(), "{:?}", verified.difference);
+        String::from_utf8(bytes).unwrap()
+    };
+    let rows = |text: &str| -> Vec<Vec<Option<f64>>> {
+        let rows = text.lines().filter(|line| !line.starts_with('#')).skip(1);
+        rows.map(|row| row.split(',').map(|cell| cell.parse().ok()).collect())
+            .collect()
+    };
+    let report = rows(&text(&preset(
+        "cusps",
+        &["motion.scheme=report", "motion.steps=500"],
+    )));
+    let exact = rows(&text(&preset(
+        "cusps",
+        &["motion.scheme=exact", "motion.steps=500"],
+    )));
+    assert_eq!(report.len(), 501);
+    for (run, truth) in report.iter().zip(&exact) {
+        let place =
+            |row: &[Option<f64>]| Vector3::new(row[1].unwrap(), row[2].unwrap(), row[3].unwrap());
+        let distance = (place(run) - place(truth)).norm();
+        assert!((distance - run[4].unwrap()).abs() < 1e-14, "{run:?}");
+        assert!(truth[4].unwrap() < 1e-14, "{truth:?}");
+    }
+    // It is not among the columns of every CSV.
+    assert!(COLUMNS.iter().all(|column| column.name != "distance_m"));
+}

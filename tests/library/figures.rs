@@ -12,7 +12,7 @@ use gyrolab::report::figure::course::{RunSampler, SampleRequest, SampledRun};
 use gyrolab::report::figure::kind::{FIGURE_KIND_NAMES, FigureKind, RESIDUALS};
 use gyrolab::report::figure::labels::FigureLabels;
 use gyrolab::report::figure::of_runs::{self, DrawnFigure, FigureRun, KnownNumbers};
-use gyrolab::report::figure::of_table::{self, TableView};
+use gyrolab::report::figure::of_table::{self, TableKind, TableView};
 use gyrolab::report::figure::{FigureSource, FigureSpec};
 use gyrolab::studies::table::TableSource;
 use nalgebra::Vector3;
@@ -968,6 +968,54 @@ fn the_figure_of_a_comparison_shows_the_slope() {
     )
     .unwrap_err();
     assert!(wrong.contains("error_m"), "{wrong}");
+}
+
+#[test]
+fn a_work_precision_figure_shows_error_over_computing_time() {
+    let text = COMPARISON
+        .replace(",energy_drift\n", ",energy_drift,ns_per_step\n")
+        .replace("e-16\n", "e-16,300\n")
+        .replace("e-3\n", "e-3,100\n")
+        .replace("e-4\n", "e-4,100\n")
+        .replace("e-5\n", "e-5,100\n")
+        .replace("e-6\n", "e-6,100\n");
+    let view = TableView {
+        kind: TableKind::WorkPrecision,
+        ..TableView::of_columns(&[], COLUMN_PT)
+    };
+    let chart = of_table::chart(&table(&text), &view).unwrap();
+    assert!(chart.x.is_log && chart.panels[0].y.is_log);
+    let rk4 = &chart.panels[0].series[0];
+    assert_eq!(rk4.name, "rk4");
+    assert!((rk4.points[0][0] / 1e-6 - 1.0).abs() < 1e-12 && rk4.points[0][1] == 0.1);
+    says(
+        &chart.scene(),
+        &["computing time (10⁻⁶ s)", "largest error (m)"],
+    );
+}
+
+#[test]
+fn the_axis_of_errors_over_time_ends_at_rounding() {
+    let schemes = |names: &[&str]| -> Vec<FigureRun> {
+        let set = names.iter().map(|name| format!("motion.scheme={name}"));
+        set.map(|set| run("cusps", &[&set])).collect()
+    };
+    let kind = FigureKind::named("error").unwrap();
+    assert_eq!(kind.name(), "error");
+    let figure = drawn(&schemes(&["report", "strang"]), &spec("error"));
+    check_overlaps(&figure.scene).unwrap();
+    says(
+        &figure.scene,
+        &[
+            "distance from exact motion (m)",
+            "the report's scheme",
+            "strang",
+        ],
+    );
+    assert!(!words(&figure.scene).contains(&"rounding"));
+    let finest = drawn(&schemes(&["report", "srkn11b"]), &spec("error"));
+    check_overlaps(&finest.scene).unwrap();
+    says(&finest.scene, &["rounding", "srkn11b"]);
 }
 
 #[test]

@@ -3,12 +3,12 @@
 use crate::support::scenarios::{find_scheme, parse, preset};
 use crate::support::stage::{LARGE, Stage};
 use crate::support::words::{has, has_all, has_no};
-use gyrolab::engine::analysis::Monitor;
 use gyrolab::engine::analysis::compare::{ComparisonTable, compare};
 use gyrolab::engine::analysis::health::{Advice, Health, advise};
 use gyrolab::engine::analysis::predictability::{Equilibrium, predictability};
 use gyrolab::engine::analysis::readouts::{ReadoutValue, at_end, find};
 use gyrolab::engine::analysis::verdict::{Verdict, VerdictWord};
+use gyrolab::engine::analysis::{DistanceMeter, Monitor};
 use gyrolab::engine::run::{Clock, Simulation, resampled};
 use gyrolab::engine::scenario::Scenario;
 use gyrolab::engine::scenario::presets::PRESETS;
@@ -262,6 +262,27 @@ fn readouts_state_the_predictable_time() {
     };
     assert_eq!(read(&short, "predictable_until_s"), ReadoutValue::Nothing);
     assert_eq!(read(&short, "reliable"), ReadoutValue::Flag(true));
+}
+
+#[test]
+fn the_distance_from_the_exact_motion_is_null_beyond_the_predictable_time() {
+    let scenario = Arc::new(resampled(&parse(PUSHED), 0.05, find_scheme("rk4")));
+    let until_s = until_s(PUSHED).unwrap();
+    let mut simulation = Simulation::new(Arc::clone(&scenario));
+    let mut meter = DistanceMeter::new(&scenario);
+    let mut unknown = 0;
+    while simulation.step_number() < scenario.steps && simulation.step().is_ok() {
+        let state = simulation.now().after();
+        let distance_m = meter.distance_m(state);
+        assert_eq!(
+            distance_m.is_some(),
+            state.time_s <= until_s,
+            "{}",
+            state.time_s
+        );
+        unknown += u32::from(distance_m.is_none());
+    }
+    assert!(unknown > 0, "{until_s}");
 }
 
 #[test]

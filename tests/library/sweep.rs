@@ -130,7 +130,7 @@ fn a_row_needs_a_valid_value_in_every_field() {
         cells[place] = cell;
         cells.join(",") + "\n"
     };
-    assert!(cells.len() == 7 && is_row(&with(2, "")), "{good}");
+    assert!(cells.len() == 8 && is_row(&with(2, "")), "{good}");
     let wrong: [(usize, &[&str]); 7] = [
         (0, &["", "2", "1.0"]),
         (1, &["", "10", "10.1"]),

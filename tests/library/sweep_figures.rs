@@ -2,9 +2,10 @@
 
 use crate::figures::{check_overlaps, says, table, words};
 use gyrolab::plot::COLUMN_PT;
-use gyrolab::plot::chart::{Chart, ChartSeries};
+use gyrolab::plot::chart::{Chart, ChartSeries, EXACT_COLOR};
 use gyrolab::plot::ink::PointMark;
-use gyrolab::report::figure::of_table::{self, TableView};
+use gyrolab::report::figure::FigureSpec;
+use gyrolab::report::figure::of_table::{self, TableKind, TableView};
 
 #[test]
 fn gaps_in_a_theory_line_are_explained() {
@@ -109,7 +110,11 @@ fn theory_is_drawn_once_for_several_measured_curves() {
     assert_eq!(precession.y.name, "*Ω*_{p}");
     assert_eq!(
         names(&precession.series),
-        ["*M* *g* *h*/*L*_{3}", "simulated, report", "simulated, rk4"]
+        [
+            "*M* *g* *h*/*L*_{3}",
+            "simulated, the report's scheme",
+            "simulated, rk4"
+        ]
     );
     assert_eq!(precession.series[0].style.mark, Some(PointMark::Cross));
     assert_eq!(precession.series[1].style.mark, Some(PointMark::Dot));
@@ -158,7 +163,7 @@ fn a_curve_of_failed_runs_is_labeled_as_such() {
     let text = two_keys("motion.scheme", rows);
     let scene = chart(&text).scene();
     let failed = "rk4: no run gave a number";
-    says(&scene, &["simulated, report", failed]);
+    says(&scene, &["simulated, the report's scheme", failed]);
     assert!(!words(&scene).contains(&"simulated, rk4"));
 }
 
@@ -187,4 +192,178 @@ fn too_many_quantities_are_rejected_with_the_option_to_choose() {
     assert_eq!(columns, ["measured_lowest_z_m", "x_m"]);
     assert!(of_table::chart(&table, &TableView::of_columns(&columns, COLUMN_PT)).is_ok());
     assert!(refusal.starts_with("8 quantities"), "{refusal}");
+}
+
+/// A sweep of tilt and spin, seven values of each, of which one has no number.
+fn grid() -> String {
+    let mut text = "# [[vary]]\n# key = \"start.tilt_deg\"\n# values = [1]\n\
+        # [[vary]]\n# key = \"start.spin_rpm\"\n# values = [1]\n\
+        start.tilt_deg,start.spin_rpm,measured_precession_rad_per_s,predicted_precession_rad_per_s,reliable\n"
+        .to_owned();
+    for tilt in 1..=13 {
+        for spin in 1..=14 {
+            let value = if (tilt, spin) == (5, 7) {
+                String::new()
+            } else {
+                format!("{}", f64::from(tilt) + 0.01 * f64::from(spin))
+            };
+            text += &format!("{},{},{value},{value},true\n", 10 * tilt, 100 * spin);
+        }
+    }
+    text
+}
+
+fn map_view(x: Option<&str>) -> TableView {
+    TableView {
+        kind: TableKind::Map,
+        x: x.map(str::to_owned),
+        width_pt: COLUMN_PT,
+        ..TableView::default()
+    }
+}
+
+#[test]
+fn a_map_has_a_cell_for_each_pair_of_values() {
+    let text = grid();
+    let chart = of_table::chart(&table(&text), &map_view(None)).unwrap();
+    let scene = chart.scene();
+    check_overlaps(&scene).unwrap();
+    // What was measured is drawn, its theory only if it is asked for; whether rows are reliable is no quantity.
+    let [panel] = &chart.panels[..] else {
+        panic!("{} panels", chart.panels.len())
+    };
+    let map = panel.map.as_ref().unwrap();
+    assert_eq!((map.values.len(), map.values[0].len()), (13, 14));
+    assert_eq!(map.values[2][3], 3.04);
+    assert!(map.values[4][6].is_nan());
+    says(
+        &scene,
+        &[
+            "ω_(3,0) (rpm)",
+            "θ₀ (°)",
+            "Ω_p (rad s⁻¹)",
+            "crossed: no value",
+        ],
+    );
+    let turned = of_table::chart(&table(&text), &map_view(Some("start.tilt_deg"))).unwrap();
+    let map = turned.panels[0].map.as_ref().unwrap();
+    assert_eq!((map.values.len(), map.values[0].len()), (14, 13));
+    assert_eq!(map.values[3][2], 3.04);
+}
+
+#[test]
+fn a_map_needs_two_keys_with_numbers() {
+    let rows =
+        "report,10,0.9,0.8,0.1\nreport,20,0.8,0.7,0.1\nrk4,10,0.91,0.8,0.1\nrk4,20,0.81,0.7,0.1\n";
+    let refusal = |text: &str, x| of_table::chart(&table(text), &map_view(x)).unwrap_err();
+    let told = refusal(&two_keys("motion.scheme", rows), None);
+    assert!(told.contains("two keys that vary over numbers"), "{told}");
+    let told = refusal(&grid(), Some("reliable"));
+    assert!(
+        told.contains("start.spin_rpm or start.tilt_deg")
+            || told.contains("start.tilt_deg or start.spin_rpm"),
+        "{told}"
+    );
+}
+
+#[test]
+fn a_table_of_too_many_curves_suggests_a_map() {
+    let refusal = of_table::chart(&table(&grid()), &TableView::of_columns(&[], COLUMN_PT));
+    let told = refusal.unwrap_err();
+    assert!(told.starts_with("13 curves"), "{told}");
+    assert!(told.contains("--kind map"), "{told}");
+}
+
+#[test]
+fn any_column_can_be_the_x_axis() {
+    let rows = "report,10,0.9,0.8,3\nreport,20,0.8,0.7,2\nrk4,10,0.91,0.8,3\nrk4,20,0.81,0.7,2\n";
+    let text = two_keys("motion.scheme", rows);
+    let over = |x: &str| TableView {
+        x: Some(x.to_owned()),
+        ..TableView::of_columns(&["measured_precession_rad_per_s"], COLUMN_PT)
+    };
+    let chart = of_table::chart(&table(&text), &over("turns_per_step")).unwrap();
+    assert_eq!(chart.x.name, "turns per step");
+    assert_eq!(chart.panels[0].series[0].points, [[2.0, 0.8], [3.0, 0.9]]);
+    let wrong = of_table::chart(&table(&text), &over("turns_per_stp")).unwrap_err();
+    assert!(wrong.contains("turns_per_step"), "{wrong}");
+    let within = |range| TableView {
+        x_range: Some(range),
+        ..over("turns_per_step")
+    };
+    let chart = of_table::chart(&table(&text), &within((1.0, 2.5))).unwrap();
+    let (low, high) = chart.panels[0].y.range.unwrap();
+    assert!(0.7 < low && high < 0.9, "{low} to {high}");
+    let none = of_table::chart(&table(&text), &within((5.0, 6.0))).unwrap_err();
+    assert!(none.contains("no point"), "{none}");
+}
+
+#[test]
+fn legend_digits_distinguish_the_values() {
+    let rows: String = ["0.00158489319246111", "0.00251188643150958", "0.0025118"]
+        .iter()
+        .flat_map(|value| {
+            [
+                format!("{value},10,0.9,0.8,0.1\n"),
+                format!("{value},20,0.9,0.8,0.1\n"),
+            ]
+        })
+        .collect();
+    let chart = chart(&two_keys("motion.time_step_s", &rows));
+    let names: Vec<_> = names(&chart.panels[0].series)
+        .into_iter()
+        .filter(|name| name.contains("Δ"))
+        .map(|name| name.rsplit(' ').nth(1).unwrap().to_owned())
+        .collect();
+    assert_eq!(names, ["0.0015849", "0.0025119", "0.0025118"]);
+}
+
+#[test]
+fn theory_is_drawn_over_paler_points() {
+    let rows: String = (0..300)
+        .map(|row| format!("report,{row},0.9,0.8,0.1\n"))
+        .collect();
+    let chart = chart(&two_keys("motion.scheme", &rows));
+    let [theory, points] = &chart.panels[0].series[..] else {
+        panic!("{:?}", names(&chart.panels[0].series))
+    };
+    assert!(points.style.is_behind && !theory.style.is_behind);
+    assert_ne!(points.style.color, theory.style.color);
+}
+
+#[test]
+fn options_replace_the_figure_block_of_a_sweep() {
+    let block = "# [figure]\n# x = \"turns_per_step\"\n# y = [\"fast_top_precession_rad_per_s\"]\n# log = \"y\"\n";
+    let rows = "report,10,0.9,0.8,3\nreport,20,0.8,0.7,2\n";
+    let text = two_keys("motion.scheme", rows)
+        .replace("# [scenario.start]", &format!("{block}# [scenario.start]"));
+    let of = |spec: &FigureSpec| {
+        let table = table(&text);
+        of_table::chart(&table, &TableView::new(&table, spec)).unwrap()
+    };
+    let own = of(&FigureSpec::default());
+    assert_eq!(own.x.name, "turns per step");
+    assert_eq!((own.panels.len(), own.panels[0].y.is_log), (1, true));
+    let asked = of(&FigureSpec {
+        x: Some("start.tilt_deg".to_owned()),
+        y: vec!["measured_precession_rad_per_s".to_owned()],
+        ..FigureSpec::default()
+    });
+    assert_eq!(asked.x.name, "*θ*_{0}");
+    assert_eq!(asked.panels[0].series[0].points[0], [10.0, 0.9]);
+}
+
+#[test]
+fn the_exact_motion_of_a_sweep_has_its_own_color() {
+    let rows = "exact,10,0.9,,0.1\nexact,20,0.8,,0.1\nrk4,10,0.91,,0.1\nrk4,20,0.81,,0.1\n";
+    let chart = chart(&two_keys("motion.scheme", rows));
+    let [exact, rk4] = &chart.panels[0].series[..] else {
+        panic!("{:?}", names(&chart.panels[0].series))
+    };
+    assert_eq!(
+        (&*exact.name, exact.style.color),
+        ("exact motion", EXACT_COLOR)
+    );
+    assert!(!exact.style.dash_pt.is_empty());
+    assert_ne!(rk4.style.color, EXACT_COLOR);
 }

@@ -3,7 +3,7 @@
 use super::layout::PlacedPanel;
 use super::{ChartSeries, Panel, SeriesStyle};
 use crate::plot::ink::{PageRectangle, WHITE, at, paler, pen};
-use crate::plot::line::{clipped, first_passes, length, simplified, without_ripples};
+use crate::plot::line::{clipped, distance, first_passes, simplified, without_ripples};
 use crate::plot::scene::{Color, PageScene, Point, StrokeStyle, VectorPath};
 use crate::plot::stroke_outline;
 use std::collections::HashSet;
@@ -77,7 +77,12 @@ impl PlacedPanel {
             .iter()
             .map(|piece| simplified(piece, UNSEEN_PT))
             .collect();
-        for point in spread(&pieces, place) {
+        let metric = if self.is_true_to_scale {
+            distance
+        } else {
+            distance_along_x
+        };
+        for point in spread(&pieces, place, metric) {
             if self.frame.holds(point) {
                 scene.mark(mark, point, series.style.color);
             }
@@ -137,6 +142,15 @@ impl PlacedPanel {
             (0..series.points.len()).flat_map(|index| [0, 1].map(|axis| series.ends(index, axis)));
         (series.style.width_pt > 0.0 && self.has_line_in(frame, &series.points))
             || (series.style.mark.is_some() && bars.any(|bar| self.has_line_in(frame, &bar)))
+            || self.has_stripe_in(frame, series)
+    }
+
+    /// Returns whether a part of the stripe of `series` is in `frame`, if it is one along the axis x.
+    fn has_stripe_in(&self, frame: &PageRectangle, series: &ChartSeries) -> bool {
+        let mut limits = series.band.iter().map(|at| at[2]);
+        let is_along_x = series.points.is_empty() && limits.all(f64::is_finite);
+        let top = series.band.first().map(|at| self.y.place(at[2]));
+        is_along_x && top.is_some_and(|top| top < frame.bottom)
     }
 
     /// Returns whether a part of the line through `points` is in `frame`.
@@ -217,15 +231,16 @@ pub fn draw_curve(
 const SPARSE_MARKS: usize = 6;
 const SPARSE_SHIFT: f64 = 0.23;
 
-/// Returns places at equal distances along a line that consists of `pieces`.
-pub fn spread(pieces: &[Vec<Point>], place: usize) -> Vec<Point> {
-    let whole: f64 = pieces.iter().map(|piece| length(piece)).sum();
+/// Returns places along a line that consists of `pieces`, at equal distances by `metric`.
+pub fn spread(pieces: &[Vec<Point>], place: usize, metric: fn(Point, Point) -> f64) -> Vec<Point> {
+    let pairs = pieces.iter().flat_map(|piece| piece.windows(2));
+    let whole: f64 = pairs.map(|pair| metric(pair[0], pair[1])).sum();
     let apart = whole / SPARSE_MARKS as f64;
     let first = apart * (0.3 + SPARSE_SHIFT * place as f64).fract();
     let mut places = Vec::new();
     let mut passed = 0.0;
     for pair in pieces.iter().flat_map(|piece| piece.windows(2)) {
-        let long = libm::hypot(pair[1].x - pair[0].x, pair[1].y - pair[0].y);
+        let long = metric(pair[0], pair[1]);
         while places.len() < SPARSE_MARKS && long > 0.0 {
             let part = (first + apart * places.len() as f64 - passed) / long;
             if part > 1.0 {
@@ -279,6 +294,12 @@ impl Squares {
     }
 }
 
+/// Returns how far two points are from each other along the axis x. Marks at equal such distances along a curve over time are
+/// at equal times.
+fn distance_along_x(from: Point, to: Point) -> f64 {
+    (to.x - from.x).abs()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -308,10 +329,14 @@ mod tests {
             vec![at(0.0, 0.0), at(60.0, 0.0)],
             vec![at(70.0, 0.0), at(130.0, 0.0)],
         ];
-        let places: Vec<f64> = spread(&line, 0).iter().map(|place| place.x).collect();
+        let places: Vec<f64> = spread(&line, 0, distance)
+            .iter()
+            .map(|place| place.x)
+            .collect();
         assert_eq!(places, [6.0, 26.0, 46.0, 76.0, 96.0, 116.0]);
-        assert_ne!(spread(&line, 0), spread(&line, 1));
-        assert_eq!(spread(&[], 0), []);
-        assert_eq!(spread(&[vec![at(1.0, 1.0), at(1.0, 1.0)]], 0), []);
+        assert_ne!(spread(&line, 0, distance), spread(&line, 1, distance));
+        assert_eq!(spread(&[], 0, distance), []);
+        let still = [vec![at(1.0, 1.0), at(1.0, 1.0)]];
+        assert_eq!(spread(&still, 0, distance), []);
     }
 }

@@ -39,6 +39,7 @@ pub struct PlacedPanel {
     pub title: (String, f64),
     /// The bar that explains the colors of its map, if it has one.
     pub bar: Option<PlacedBar>,
+    pub is_true_to_scale: bool,
 }
 
 /// A chart with everything but its legend in its place. The legend is put in afterwards, and where it stands above the panels
@@ -77,6 +78,7 @@ impl PlacedPanel {
         };
         Self {
             bar: panel.map.as_ref().map(|map| map.bar(&frame)),
+            is_true_to_scale: chart.is_true_to_scale,
             frame,
             below: x.ticks_below(&chart.x),
             x,

@@ -198,6 +198,8 @@ pub struct SeriesStyle {
     pub is_hatched: bool,
     /// The mark at a few places along its line, which tells it from others without color.
     pub sparse_mark: Option<PointMark>,
+    /// Whether its line has a white edge, so that it is seen on dense curves.
+    pub has_halo: bool,
 }
 
 impl Default for SeriesStyle {
@@ -213,6 +215,7 @@ impl Default for SeriesStyle {
             is_band: false,
             is_hatched: false,
             sparse_mark: None,
+            has_halo: false,
         }
     }
 }
@@ -290,6 +293,7 @@ impl SeriesStyle {
         Self {
             color: EXACT_COLOR,
             dash_pt: EXACT_DASHES[index % EXACT_DASHES.len()],
+            has_halo: true,
             ..Self::default()
         }
     }
@@ -410,7 +414,7 @@ impl SeriesStyle {
     /// The white on both sides of its line together, pt: the exact motion is seen on the swings of a run then.
     pub fn halo_pt(&self) -> f64 {
         const HALO_PT: f64 = 0.9;
-        if self.color == EXACT_COLOR && self.width_pt > 0.0 {
+        if self.has_halo && self.width_pt > 0.0 {
             HALO_PT
         } else {
             0.0

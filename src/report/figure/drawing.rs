@@ -45,5 +45,6 @@ fn of_table(table: &TableSource, spec: &FigureSpec) -> Result<DrawnFigure, Strin
     figure
         .warnings
         .extend(without_point.into_iter().chain(hidden));
+    figure.warnings.extend(of_table::unreliable(table));
     Ok(figure)
 }

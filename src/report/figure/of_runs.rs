@@ -94,7 +94,9 @@ fn play(
     wanted: &SampleRequest,
     mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Result<Option<SampledRuns>, String> {
-    let &FigureJob { runs, spec, .. } = job;
+    let &FigureJob {
+        runs, spec, kind, ..
+    } = job;
     let Some(mut drawn) = play_runs(job, wanted, &mut watch) else {
         return Ok(None);
     };
@@ -107,7 +109,12 @@ fn play(
         }
         let is_curve = !wanted.columns.is_empty() && !shows_all_times(run, wanted);
         warnings.extend(
-            not_believed(run, course, spec.exact).or_else(|| few_a_swing(run).filter(|_| is_curve)),
+            not_believed(
+                run,
+                course,
+                spec.exact || matches!(kind, FigureKind::Error(_)),
+            )
+            .or_else(|| few_a_swing(run).filter(|_| is_curve)),
         );
         warnings.extend(limited(run, course));
         let caveat = course.health.as_ref().and_then(caveat);

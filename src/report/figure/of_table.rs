@@ -13,6 +13,9 @@ use crate::plot::letters;
 use crate::studies::table::{TableSource, TableSubject};
 pub use view::{TABLE_KIND_NAMES, TableKind, TableView};
 
+/// The column of a sweep that says if the other numbers of a row are reliable.
+const RELIABLE: &str = "reliable";
+
 /// A list of rows, by their places.
 type RowIndices = Vec<usize>;
 
@@ -69,6 +72,16 @@ pub fn warning(table: &TableSource, chart: &Chart) -> Option<String> {
             hidden.len(),
             shown.len() + hidden.len()
         )
+    })
+}
+
+/// Says how many runs of a sweep's `table` are not reliable, if some are not.
+pub fn unreliable(table: &TableSource) -> Option<String> {
+    let texts = table.texts(RELIABLE)?;
+    let count = texts.iter().filter(|text| **text == "false").count();
+    (count > 0).then(|| {
+        let all = texts.len();
+        format!("{count} of {all} runs are not reliable: their column {RELIABLE} is false")
     })
 }
 

@@ -1,5 +1,6 @@
 //! A key and its value in the name of a curve.
 
+use super::names::scheme_in_words;
 use super::of_table::within_room;
 use super::quantity;
 use crate::engine::text::number::significant;
@@ -51,9 +52,10 @@ impl CurveSetting {
     /// Creates the setting `key` = `value` in `scenario`, with `digits` digits for a number.
     pub fn new(scenario: &Table, key: &str, value: &str, digits: usize) -> Self {
         if key == SCHEME_KEY {
+            let words = scheme_in_words(value);
             return Self {
-                markup: letters::escape(value),
-                plain: value.to_owned(),
+                markup: letters::escape(words),
+                plain: words.to_owned(),
             };
         }
         let axis = quantity::axis_in(scenario, key);

@@ -108,7 +108,7 @@ impl FitReport<'_> {
                 self.remark(index),
             ]
         });
-        write_table(f, ["key", "value", "start", "bounds", ""], rows)
+        write_table(f, ["key", "value", "initial guess", "bounds", ""], rows)
     }
 
     fn correlations(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -274,11 +274,13 @@ fn write_table<const N: usize>(
     let rows: Vec<_> = std::iter::once(head.map(str::to_owned))
         .chain(rows)
         .collect();
-    let widths: Vec<usize> = (0..N)
-        .filter_map(|column| rows.iter().map(|row| width(&row[column])).max())
-        .collect();
+    let has_cells = |column: &usize| rows[1..].iter().any(|row| !row[*column].is_empty());
+    let columns: Vec<usize> = (0..N).filter(has_cells).collect();
+    let widest = |column: &usize| rows.iter().map(|row| width(&row[*column])).max();
+    let widths: Vec<usize> = columns.iter().filter_map(widest).collect();
     for row in &rows {
-        let cells = row.iter().zip(&widths).map(|(cell, most)| {
+        let cells = columns.iter().zip(&widths).map(|(column, most)| {
+            let cell = &row[*column];
             let room = " ".repeat(most - width(cell));
             format!("  {}{room}", printable(cell))
         });

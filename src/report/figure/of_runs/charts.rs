@@ -51,25 +51,44 @@ pub(super) fn over_time(
     job.chart(x, panels.collect())
 }
 
-/// The decades below the limit of rounding that an axis of errors shows.
-const ROUNDING_DECADES: f64 = 10.0;
+/// The share of the time at its beginning in which errors, which begin at 0, do not extend their axis.
+const BEGINNING: f64 = 0.01;
+/// How much of the rounding is shown below its limit, and of a curve that has nothing else, as factors.
+const ROUNDING_SHOWN: f64 = 0.1;
+const CURVE_SHOWN: f64 = 0.3;
 
-/// Gives `chart`, of distances of `runs` from the exact motion over time, a logarithmic axis. Of what is rounding it shows
-/// little, in a stripe: nothing follows from the size of that.
+/// Gives `chart`, of distances of `runs` from the exact motion over time, a logarithmic axis.
+///
+/// The axis does not go down to 0, where the errors begin, and far below the limit of rounding: nothing follows from how far
+/// a distance is below that. What is below it is in a stripe.
 pub(super) fn as_errors(chart: &mut Chart, runs: &[FigureRun]) {
     let floors = runs.iter().map(|run| size::rounding_m(&run.scenario));
     let floor_m = floors.fold(0.0, f64::max);
+    let (from_s, to_s) = chart.x.range.unwrap_or_default();
+    let first_s = from_s + BEGINNING * (to_s - from_s);
     for panel in &mut chart.panels {
         panel.y = ChartAxis {
             is_log: true,
             ..ChartAxis::new("distance from exact motion", panel.y.unit.clone())
         };
-        let points = panel.series.iter().flat_map(|series| &series.points);
-        let values = points.map(|point| point[1]);
-        let (lowest, highest) = panel.y.range_of(values.filter(|value| *value > 0.0));
-        if lowest < floor_m {
-            let ends = [floor_m / ROUNDING_DECADES, floor_m * ROUNDING_DECADES];
-            panel.y.range = Some((lowest.max(ends[0]), highest.max(ends[1])));
+        let of_curves: Vec<Vec<f64>> = panel
+            .series
+            .iter()
+            .map(|series| {
+                let later = series.points.iter().filter(|point| point[0] >= first_s);
+                later.map(|point| point[1]).collect()
+            })
+            .collect();
+        let (lowest, highest) = panel.y.range_of(of_curves.iter().flatten().copied());
+        let highest_of_each = of_curves
+            .iter()
+            .map(|values| values.iter().copied().fold(0.0, f64::max));
+        let least_m = highest_of_each
+            .filter(|highest| *highest > 0.0)
+            .fold(f64::INFINITY, f64::min);
+        let end = lowest.max((ROUNDING_SHOWN * floor_m).min(CURVE_SHOWN * least_m));
+        panel.y.range = Some((end, highest.max(end / ROUNDING_SHOWN)));
+        if end < floor_m {
             panel.series.push(ChartSeries::below("rounding", floor_m));
         }
     }

@@ -5,7 +5,7 @@ mod curves;
 pub(super) mod map;
 
 use super::view::TableView;
-use super::{numbers, points, within_room};
+use super::{RELIABLE, numbers, points, within_room};
 use crate::engine::text::number::counted;
 use crate::plot::chart::legend::longest_name;
 use crate::plot::chart::{ChartAxis, ChartSeries, MOST_CURVES, Panel, SeriesStyle};
@@ -182,7 +182,7 @@ fn rows_run(table: &TableSource, swept: &SweepTable) -> Vec<usize> {
     let readouts: Vec<_> = table
         .names()
         .iter()
-        .filter(|name| !swept.has_varied(name) && *name != columns::RELIABLE)
+        .filter(|name| !swept.has_varied(name) && *name != RELIABLE)
         .filter_map(|name| table.texts(name))
         .collect();
     (0..table.count())
@@ -226,7 +226,9 @@ impl SweepFigure<'_> {
                     one.style.is_behind = true;
                     one.style.color = paler(one.style.color, UNDER_THEORY_WHITE);
                 }
-                if !self.has_lines {
+                // A curve of the exact motion lies on its theory.
+                let is_on_theory = has_both && one.style.mark.is_some() && !is_theory(part);
+                if is_on_theory || !self.has_lines {
                     one.style.width_pt = 0.0;
                 }
             }
@@ -254,11 +256,16 @@ impl SweepFigure<'_> {
             .map(|name| numbers(self.table, name))
             .transpose()?;
         let is_other = part.role == QuantityOwner::Value && self.has_measured;
+        let line_width_pt = if self.has_lines {
+            self.width_pt
+        } else {
+            f64::INFINITY // no line looks smooth
+        };
         let curves = self.curves.iter().map(|curve| {
             let (name, style) = match part.role {
                 _ if is_other => (
                     self.name(SIMULATED_LABEL, &[]),
-                    curve.style(SeriesStyle::specks(curve.index)),
+                    curve.style(SeriesStyle::specks(curve.index), line_width_pt),
                 ),
                 role => {
                     let word = self.has_theory.then(|| part.word(false));
@@ -267,7 +274,7 @@ impl SweepFigure<'_> {
                         _ => SeriesStyle::marked_line(curve.index),
                     };
                     let name = self.name(&word.unwrap_or_default(), &curve.settings);
-                    (name, curve.style(style))
+                    (name, curve.style(style, line_width_pt))
                 }
             };
             let errors = errors.iter();

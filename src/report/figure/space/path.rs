@@ -6,6 +6,7 @@ use crate::plot::chart::axis::AxisScale;
 use crate::plot::chart::curve;
 use crate::plot::extent;
 use crate::plot::ink::{grey, paler};
+use crate::plot::line;
 use crate::plot::scene::{PageScene, Point, StrokeStyle};
 use crate::report::figure::job::SampledRunNumbers;
 use nalgebra::Vector3;
@@ -75,7 +76,7 @@ impl Space {
                     .iter()
                     .map(|line| line.iter().map(|(point, _)| *point).collect())
                     .collect();
-                for point in curve::spread(&lines, place) {
+                for point in curve::spread(&lines, place, line::distance) {
                     scene.mark(mark, point, style.color);
                 }
             }

@@ -4,14 +4,13 @@ use crate::engine::analysis::readouts::{self, ReadoutSource};
 use crate::engine::text::unit::Unit;
 use crate::plot::chart::ChartAxis;
 use crate::report::figure::names::EXACT_CURVE_NAME;
+use crate::report::figure::of_table::RELIABLE;
 use crate::report::figure::quantity::{self, MEASURED_PREFIX, SIMULATED};
 use crate::studies::table::{SweepTable, TableSource};
 
 const PREDICTED_PREFIX: &str = "predicted_";
 const TRUE_PREFIX: &str = "true_";
 const UNCERTAINTY_INFIX: &str = "_uncertainty";
-/// The column that says whether the other numbers of a row hold.
-pub(super) const RELIABLE: &str = "reliable";
 
 /// Whose number a column holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

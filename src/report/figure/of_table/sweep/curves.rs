@@ -2,7 +2,7 @@
 //! curves of which it says the same.
 
 use crate::plot::COLUMN_PT;
-use crate::plot::chart::{EXACT_COLOR, SeriesStyle};
+use crate::plot::chart::SeriesStyle;
 use crate::report::figure::of_table::{RowIndices, grouped};
 use crate::report::figure::setting::{CurveSetting, SCHEME_KEY, telling_digits};
 use crate::studies::table::{SweepTable, TableSource};
@@ -29,17 +29,24 @@ pub(super) struct SweepCurve {
 }
 
 impl SweepCurve {
-    /// Returns `style` in the color of the exact motion, if its runs are that.
-    pub fn style(&self, style: SeriesStyle) -> SeriesStyle {
+    /// Returns `style` as the exact motion has it, if its runs are that: joined by a dashed line, and without marks where the
+    /// rows are close on a page of that width.
+    pub fn style(&self, style: SeriesStyle, width_pt: f64) -> SeriesStyle {
+        if !self.is_exact {
+            return style;
+        }
+        let mark = style.mark.filter(|_| !is_smooth(self.rows.len(), width_pt));
         SeriesStyle {
-            color: if self.is_exact {
-                EXACT_COLOR
-            } else {
-                style.color
-            },
-            ..style
+            mark,
+            width_pt: SeriesStyle::default().width_pt,
+            ..style.as_exact()
         }
     }
+}
+
+/// Whether a line through so many rows looks smooth on a page of that width.
+fn is_smooth(rows: usize, width_pt: f64) -> bool {
+    rows as f64 > SMOOTH_CURVE_ROWS * width_pt / COLUMN_PT
 }
 
 /// Returns the curves of a sweep, along which the key `along`, and what varies together with it, varies.
@@ -142,7 +149,7 @@ impl TheoryLine {
     /// How it is drawn on a page of that width, the theory at `place` of its panel: as a line where the rows are close, else
     /// as marks at the rows, since theory goes another way between them than the fine strokes that join them.
     pub fn style(&self, place: usize, width_pt: f64) -> SeriesStyle {
-        if self.points.len() as f64 > SMOOTH_CURVE_ROWS * width_pt / COLUMN_PT {
+        if is_smooth(self.points.len(), width_pt) {
             SeriesStyle::theory(self.index, place)
         } else {
             SeriesStyle::theory_marked(self.index, place)
