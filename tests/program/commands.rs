@@ -74,7 +74,7 @@ fn a_signal_ends_show_with_130_and_leaves_no_files() {
     // timeout sends its signal to the process and then to the group, so it arrives twice.
     let script = "timeout --preserve-status -s INT 2 $G show cusps --at 18000000000000000000";
     assert_eq!(ground.shell(script).status.code(), Some(130));
-    let far = "far.toml:1: go_to: is more than 10,000,000 steps away: a longer time step";
+    let far = "far.toml:1: go_to: is more than 10,000,000 steps away: use a longer time step";
     ground.refused("show --do far.toml", 1, &[far]);
     let ended = "timeout --preserve-status -s TERM 2 $G show --do never.toml";
     assert_eq!(ground.shell(ended).status.code(), Some(130));

@@ -170,7 +170,7 @@ fn a_part_of_a_recording_is_fitted_from_its_own_start() {
     done(ground.run(&format!("{fit} --from 6 -o found.csv")));
     done(ground.run("verify found.csv"));
     let none = format!("{fit} --from 11");
-    ground.refused(&none, 1, &["throws.csv: has no value measured"]);
+    ground.refused(&none, 1, &["throws.csv: has no measured value"]);
 }
 
 /// Writes a recording of two throws. The phone rests between them, with a jolt at each catch.

@@ -117,12 +117,12 @@ fn broken_settings_are_reported_and_the_lab_still_opens() {
         fs::write(folder.join("settings.toml"), text).unwrap();
         let mut broken = open(&ground, &[]);
         broken.wait_for("settings.toml:1: ");
-        broken.wait_for("not used");
+        broken.wait_for("ignored until you choose it again");
         broken.ask("c\x1b[B\x1b[B\x1b[B\r\r", "markers half-block");
         broken.ask("\x1b", "L lessons");
         broken.quit();
         let mut mended = open(&ground, &[]);
-        assert!(!mended.words().contains("not used"), "{}", mended.screen());
+        assert!(!mended.words().contains("ignored until"), "{}", mended.screen());
         mended.quit();
         fs::remove_file(folder.join("settings.toml")).unwrap();
     }

@@ -258,7 +258,7 @@ fn verify_checks_a_write_up_as_a_whole() {
             "w/readouts.json: the same",
         ],
     );
-    has(told, "w/heidelberg-spin-decay.csv: measured data");
+    has(told, "w/heidelberg-spin-decay.csv: the same: measured data");
     // A file added by the student is named, but it is not a difference.
     ground.write("w/notes.txt", "mine");
     let again = done(ground.run("verify w"));
