@@ -104,7 +104,7 @@ impl Lab {
             Action::Lesson(key) => return Ok(Some(LabRequest::Lesson(key))),
             Action::Redraw => return Ok(Some(LabRequest::Redraw)),
             Action::Suspend if self.files.confined().is_some() => {
-                return Err("there is no shell to go back to: q quits".to_owned());
+                return Err("no shell to return to; press q to quit".to_owned());
             }
             Action::Suspend => return Ok(Some(LabRequest::Suspend)),
             Action::Quit => match self.quit_warning() {
