@@ -122,7 +122,11 @@ fn broken_settings_are_reported_and_the_lab_still_opens() {
         broken.ask("\x1b", "L lessons");
         broken.quit();
         let mut mended = open(&ground, &[]);
-        assert!(!mended.words().contains("ignored until"), "{}", mended.screen());
+        assert!(
+            !mended.words().contains("ignored until"),
+            "{}",
+            mended.screen()
+        );
         mended.quit();
         fs::remove_file(folder.join("settings.toml")).unwrap();
     }

@@ -1,4 +1,5 @@
-//! Where the parts of a chart stand on the page. Every label is measured, so that none is cut and none overlaps another.
+//! Positions of the parts of a chart on the page. Every label is measured, so that none is cut off and none overlaps
+//! another.
 
 use super::axis::{AxisScale, BESIDE, widest};
 use super::legend::Legend;
@@ -8,23 +9,23 @@ use super::{Chart, Panel};
 use crate::plot::COLUMN_PT;
 use crate::plot::ink::{self, LABEL_PT, PageRectangle, TITLE_PT};
 
-/// Between anything and the edge of the page, pt.
+/// Margin at the edge of the page, pt.
 pub const PAGE_EDGE: f64 = 2.0;
-/// Between an axis and the labels of its ticks, pt.
+/// Gap between an axis and the labels of its ticks, pt.
 pub const TICK_LABEL_GAP: f64 = 3.0;
-/// Between the labels of an axis and its title, at the left and below, pt.
+/// Gap between the labels of an axis and its title, on the left and below, pt.
 pub const AXIS_TITLE_GAP: f64 = 6.0;
 const TITLE_BELOW: f64 = 4.5;
-/// Between two panels, pt, beside the height of a label: the labels at their ends must not touch.
+/// Gap between two panels in addition to the height of a label, pt, so that the labels at their ends do not touch.
 const PANEL_GAP: f64 = 2.5;
-/// The smallest letters of a title that is too long for its axis, pt.
+/// Minimum font size of a title that is too long for its axis, pt.
 const LEAST_TITLE_PT: f64 = 5.5;
-/// On a page as wide as a column: height of one panel alone, of each of two, of each of more, pt.
+/// Height of a single panel, of each of two, and of each of more panels, on a page as wide as a column, pt.
 const HEIGHTS: [f64; 3] = [140.0, 88.0, 66.0];
 
 /// Length of a tick with a label, pt.
 pub const TICK_LENGTH: f64 = 3.0;
-/// Many decades need a higher panel.
+/// Factor of a panel's height if its axis is logarithmic.
 const LOG: f64 = 1.25;
 
 #[derive(Clone, Debug)]
@@ -32,31 +33,30 @@ pub struct PlacedPanel {
     pub frame: PageRectangle,
     pub x: AxisScale,
     pub y: AxisScale,
-    /// The ticks of the axis y and of the axis x.
+    /// Ticks of the y axis. `below` holds the ticks of the x axis.
     pub ticks: Ticks,
     pub below: Ticks,
-    /// The title of the axis y and the size of its letters, pt.
+    /// Title of the y axis and its font size, pt.
     pub title: (String, f64),
-    /// The bar that explains the colors of its map, if it has one.
+    /// The color bar of its map, if it has one.
     pub bar: Option<PlacedBar>,
     pub is_true_to_scale: bool,
 }
 
-/// A chart with everything but its legend in its place. The legend is put in afterwards, and where it stands above the panels
-/// these move down.
+/// Layout of a chart without its legend. A legend above the panels moves them down.
 #[derive(Clone, Debug)]
 pub struct ChartLayout {
     pub panels: Vec<PlacedPanel>,
-    /// The same panels with the stretch that is magnified; empty without one.
+    /// The panels with the magnified range; empty without one.
     pub magnified: Vec<PlacedPanel>,
-    /// Where the titles of the axes at the left have their baseline, pt.
+    /// Horizontal position of the baseline of the y axes' titles, pt.
     pub titles_at: f64,
     pub height_pt: f64,
-    /// Between the axes and the labels of their ticks, pt.
+    /// Gap between the axes and the labels of their ticks, pt.
     pub tick_gap: f64,
 }
 
-/// Returns the gap between the axes of `chart` and the labels of their ticks, which point outwards beside a map, pt.
+/// Returns the gap between the axes of `chart` and the labels of their ticks, pt. The ticks of a map point outward.
 fn tick_gap(chart: &Chart) -> f64 {
     let has_map = chart.panels.iter().any(|panel| panel.map.is_some());
     TICK_LABEL_GAP + if has_map { TICK_LENGTH } else { 0.0 }
@@ -90,7 +90,7 @@ impl PlacedPanel {
 }
 
 impl ChartLayout {
-    /// The places of the parts of `chart`, `above` pt below the upper edge of the page.
+    /// Computes the layout of `chart`, with `above` pt left free at the top of the page.
     pub fn new(chart: &Chart, above: f64) -> Self {
         let label = ink::height(LABEL_PT);
         let y_ranges: Vec<_> = chart.panels.iter().map(y_range).collect();
@@ -122,7 +122,8 @@ impl ChartLayout {
     }
 }
 
-/// Returns the panels of `part` along its scale `x`, each `height` pt high, the first one `top` pt below the upper edge.
+/// Positions the panels of `part` along its scale `x`, each `height` pt high, the first one `top` pt below the upper
+/// edge.
 fn placed(
     part: &Chart,
     x: AxisScale,
@@ -154,7 +155,8 @@ fn x_range(chart: &Chart) -> (f64, f64) {
     of_map.unwrap_or_else(|| chart.x.range_of(all.flat_map(|series| series.reach(0))))
 }
 
-/// The axes x of `chart` and of what it magnifies, from `left` to `right`: so far apart that their labels do not touch.
+/// Returns the x axes of `chart` and of its magnified part, from `left` to `right`, with a gap so that their labels do
+/// not touch.
 fn columns(chart: &Chart, left: f64, right: f64) -> [AxisScale; 2] {
     let Some(magnified) = &chart.magnified else {
         return [x_scale(chart, (left, right)); 2];
@@ -174,12 +176,12 @@ fn columns(chart: &Chart, left: f64, right: f64) -> [AxisScale; 2] {
     ]
 }
 
-/// Returns the scale of the x axis of `part` between two `places` on the page.
+/// Returns the scale of the x axis of `part` between two positions on the page.
 fn x_scale(part: &Chart, places: (f64, f64)) -> AxisScale {
     AxisScale::new(&part.x, x_range(part), places)
 }
 
-/// Returns by how much the label of a `tick` reaches over the end of its axis at `edge`, pt.
+/// Returns the length by which the label of a `tick` extends beyond the end of its axis at `edge`, pt.
 fn over_edge(along: &AxisScale, tick: Option<&Tick>, edge: f64) -> f64 {
     tick.map_or(0.0, |tick| {
         tick.half_width() - (edge - along.place(tick.at)).abs()
@@ -187,7 +189,7 @@ fn over_edge(along: &AxisScale, tick: Option<&Tick>, edge: f64) -> f64 {
     .max(0.0)
 }
 
-/// Where the panels begin and end, and how high each is, pt.
+/// Returns the left and right end of the panels, and the height of each, pt.
 fn sides(
     chart: &Chart,
     above: f64,
@@ -196,7 +198,7 @@ fn sides(
 ) -> (f64, f64, f64) {
     let mut height = panel_height(chart, above);
     let (mut left, mut right) = (PAGE_EDGE, chart.width_pt - PAGE_EDGE - 1.0);
-    // Which ticks there are depends on the room, and the room on their labels: three rounds settle both.
+    // The ticks depend on the space, and the space on their labels: three rounds are enough to settle both.
     for _ in 0..3 {
         let ticks = ticks_of(chart, y_ranges, height);
         let widest = ticks.iter().map(widest).fold(0.0, f64::max);
@@ -218,18 +220,18 @@ fn sides(
     (left, right, height)
 }
 
-/// Height of a title with what hangs below its baseline, pt.
+/// Returns the height of a title including its descenders, pt.
 pub fn title_height() -> f64 {
     1.35 * ink::height(TITLE_PT)
 }
 
-/// `title` with the size of letters at which it is no longer than `room`, pt.
+/// Returns `title` with the font size at which it is at most `room` pt long.
 pub fn fitted(title: String, room: f64) -> (String, f64) {
     let size = TITLE_PT * (room / ink::width(&title, TITLE_PT)).min(1.0);
     (title, size.max(LEAST_TITLE_PT))
 }
 
-/// Returns the least height of `chart` with its legend, pt.
+/// Returns the minimum height of `chart` with its legend, pt.
 pub fn least_height_pt(chart: &Chart) -> f64 {
     const LEAST_PANEL_PT: f64 = 18.0;
     let legend_pt = Legend::from_chart(chart, []).height_above(chart.width_pt);
@@ -237,14 +239,15 @@ pub fn least_height_pt(chart: &Chart) -> f64 {
     around_pt(count, legend_pt) + LEAST_PANEL_PT * count as f64
 }
 
-/// Returns the height of everything but its panels in a chart of `count` panels, `above` pt below the upper edge, pt.
+/// Returns the height of everything except the panels in a chart of `count` panels, which starts `above` pt below the
+/// upper edge; pt.
 fn around_pt(count: usize, above: f64) -> f64 {
     let label = ink::height(LABEL_PT);
     let between = (label + PANEL_GAP) * count.saturating_sub(1) as f64;
     above + PAGE_EDGE + 0.5 * label + between + below_pt()
 }
 
-/// Returns the height of what is below the panels, pt.
+/// Returns the height of the part below the panels, pt.
 fn below_pt() -> f64 {
     TICK_LABEL_GAP + 1.5 * ink::height(LABEL_PT) + TITLE_BELOW + title_height() + PAGE_EDGE
 }
@@ -258,9 +261,9 @@ fn panel_height(chart: &Chart, above: f64) -> f64 {
     let height = HEIGHTS[count.clamp(1, HEIGHTS.len()) - 1];
     let is_log = chart.panels.iter().any(|panel| panel.y.is_log);
     let height = if is_log { LOG * height } else { height };
-    // A wide figure is lower for its width than a narrow one.
+    // Relative to its width, a wide figure is lower than a narrow one.
     let wide = libm::pow((chart.width_pt / COLUMN_PT).clamp(0.6, 3.0), 0.6);
-    // Numbers in the panels' titles are the same for all: the longest title decides.
+    // All panels have the same height, so the longest title decides.
     let longest = chart.panels.iter().map(|panel| {
         let title = panel.y.title(&Ticks::default());
         ink::width(&title, TITLE_PT)
@@ -284,7 +287,7 @@ fn ticks_of(chart: &Chart, ranges: &[(f64, f64)], height: f64) -> Vec<Ticks> {
     ticks.collect()
 }
 
-/// Where the panels end at the right, so that half of the last label has room.
+/// Returns the right end of the panels, so that half of the last label has room.
 fn right_edge(chart: &Chart, range: (f64, f64), left: f64, right: f64) -> f64 {
     let scale = AxisScale::new(&chart.x, range, (left, right));
     let ticks = scale.ticks_below(&chart.x);

@@ -1,5 +1,5 @@
-//! Figures of tables: error over time step with its slope, or over its cost; readouts over what was varied, measured beside
-//! predicted, or as colors on a map; what was measured on the model that was fitted, and what is left of it.
+//! Figures of tables. A comparison shows errors over time steps, with slopes, or over cost. A sweep shows readouts over
+//! the varied keys, or as a map. A fit shows measured values, the model and residuals.
 
 mod comparison;
 mod fit;
@@ -16,13 +16,13 @@ pub use view::{TABLE_KIND_NAMES, TableKind, TableView};
 /// The column of a sweep that says if the other numbers of a row are reliable.
 const RELIABLE: &str = "reliable";
 
-/// A list of rows, by their places.
+/// Indices of rows.
 type RowIndices = Vec<usize>;
 
-/// Draws `table` as `view` says.
+/// Draws `table` as `view` requests.
 ///
 /// # Errors
-/// When the table has not what is asked for, or that cannot be drawn.
+/// Returns an error if the table lacks a requested column, or if the figure cannot be drawn.
 pub fn chart(table: &TableSource, view: &TableView) -> Result<Chart, String> {
     for column in view.y.iter().chain(&view.x) {
         if !table.names().contains(column) {
@@ -58,7 +58,7 @@ pub fn chart(table: &TableSource, view: &TableView) -> Result<Chart, String> {
     Ok(chart)
 }
 
-/// How many values of the `chart` of `table` have no point, where some have none.
+/// Returns a warning with the number of values in the `chart` of `table` that are not shown.
 pub fn warning(table: &TableSource, chart: &Chart) -> Option<String> {
     let values = chart.panels.iter().flat_map(|panel| {
         let points = panel.series.iter().flat_map(|series| &series.points);
@@ -75,7 +75,7 @@ pub fn warning(table: &TableSource, chart: &Chart) -> Option<String> {
     })
 }
 
-/// Says how many runs of a sweep's `table` are not reliable, if some are not.
+/// Returns a warning with the number of runs in a sweep's `table` that are not reliable, if there are any.
 pub fn unreliable(table: &TableSource) -> Option<String> {
     let texts = table.texts(RELIABLE)?;
     let count = texts.iter().filter(|text| **text == "false").count();
@@ -91,7 +91,7 @@ fn numbers(table: &TableSource, name: &str) -> Result<Vec<f64>, String> {
         .ok_or_else(|| format!("{name}: its values are no numbers, and cannot be drawn"))
 }
 
-/// `markup`, or where it is longer than `room_pt` `plain`, which is cut where that is too long as well.
+/// Returns `markup` if it fits into `room_pt`, else `plain`, shortened if necessary.
 pub(super) fn within_room(markup: String, plain: &str, room_pt: f64) -> String {
     if ink::width(&markup, LABEL_PT) <= room_pt {
         markup
@@ -100,7 +100,7 @@ pub(super) fn within_room(markup: String, plain: &str, room_pt: f64) -> String {
     }
 }
 
-/// Returns the points of those of `rows` that have a place along the axis below, from left to right.
+/// Returns the points of the `rows` that have a position on the horizontal axis, from left to right.
 fn points(rows: &RowIndices, along: &[f64], values: &[f64]) -> Vec<[f64; 2]> {
     let mut points: Vec<_> = rows
         .iter()
@@ -111,7 +111,7 @@ fn points(rows: &RowIndices, along: &[f64], values: &[f64]) -> Vec<[f64; 2]> {
     points
 }
 
-/// The rows of each text, in the order in which the texts come first.
+/// Groups rows by their text, in order of the first occurrence.
 fn grouped<T: AsRef<str>>(texts: &[T]) -> Vec<(String, RowIndices)> {
     let mut groups: Vec<(String, RowIndices)> = Vec::new();
     for (row, text) in texts.iter().enumerate() {

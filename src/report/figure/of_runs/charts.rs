@@ -1,4 +1,4 @@
-//! The charts of runs: their curves over time, their paths from above.
+//! The charts of runs: curves over time, and paths from above.
 
 use crate::engine::export::CsvColumn;
 use crate::engine::run::Truth;
@@ -11,11 +11,11 @@ use crate::report::figure::{chords, dense, quantity, size};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// A curve of more points has lines that are thinner, of their width.
+/// Number of points above which the lines are thinner, and their width relative to the default.
 const MANY_POINTS: usize = 600;
 const THIN: f64 = 0.75;
 
-/// Columns of the runs over time, a panel each.
+/// Creates the chart of columns over time, one panel per column.
 pub(super) fn over_time(
     job: &FigureJob<'_>,
     columns: &[&'static CsvColumn],
@@ -34,7 +34,7 @@ pub(super) fn over_time(
                 ChartSeries::new(&drawn.name, points, drawn.style.clone())
             })
             .collect();
-        // Only thin lines show many swings beside each other.
+        // Many swings in several panels are only visible with thin lines.
         if columns.len() > 1
             && series
                 .iter()
@@ -51,16 +51,17 @@ pub(super) fn over_time(
     job.chart(x, panels.collect())
 }
 
-/// The share of the time at its beginning in which errors, which begin at 0, do not extend their axis.
+/// Fraction of the time range, from its start, in which the errors do not extend their axis, because they start at 0.
 const BEGINNING: f64 = 0.01;
-/// How much of the rounding is shown below its limit, and of a curve that has nothing else, as factors.
+/// Lower end of an axis of errors, relative to the limit of rounding, and relative to the maximum of a curve below this
+/// limit.
 const ROUNDING_SHOWN: f64 = 0.1;
 const CURVE_SHOWN: f64 = 0.3;
 
-/// Gives `chart`, of distances of `runs` from the exact motion over time, a logarithmic axis.
+/// Gives `chart`, which shows distances of `runs` from the exact motion over time, a logarithmic axis.
 ///
-/// The axis does not go down to 0, where the errors begin, and far below the limit of rounding: nothing follows from how far
-/// a distance is below that. What is below it is in a stripe.
+/// The axis reaches neither 0, where the errors start, nor far below the limit of rounding, where the size of a
+/// distance is meaningless. A stripe marks the values below this limit.
 pub(super) fn as_errors(chart: &mut Chart, runs: &[FigureRun]) {
     let floors = runs.iter().map(|run| size::rounding_m(&run.scenario));
     let floor_m = floors.fold(0.0, f64::max);
@@ -94,7 +95,7 @@ pub(super) fn as_errors(chart: &mut Chart, runs: &[FigureRun]) {
     }
 }
 
-/// Returns the stripes of the pushes of `runs` between two times, s: each stretch of time once.
+/// Returns the stripes of the pushes of `runs` between two times, s; each time range once.
 fn pushes(runs: &[FigureRun], from_s: f64, end_s: f64) -> Vec<ChartSeries> {
     let mut stretches: Vec<(f64, f64)> = Vec::new();
     for (begin, end) in runs.iter().flat_map(|run| Marks::new(&run.scenario).pushes) {
@@ -109,14 +110,15 @@ fn pushes(runs: &[FigureRun], from_s: f64, end_s: f64) -> Vec<ChartSeries> {
     stripes.collect()
 }
 
-/// Returns the stripe of the time from which on one of the runs `drawn` cannot be predicted, between two times, s.
+/// Returns the stripe of the time after which the motion of one of the runs `drawn` cannot be predicted, between two
+/// times, s.
 fn unpredictable(drawn: &[SampledRunNumbers], from_s: f64, end_s: f64) -> Option<ChartSeries> {
     let times = drawn.iter().filter_map(|it| it.course.predictable_until_s);
     let until_s = times.fold(f64::INFINITY, f64::min);
     (until_s < end_s).then(|| ChartSeries::unpredictable(until_s.max(from_s), end_s))
 }
 
-/// The paths of the runs from above, and the places that were `measured`.
+/// Creates the chart of the paths from above, with the `measured` positions.
 pub(super) fn above(
     job: &FigureJob<'_>,
     drawn: &[SampledRunNumbers],
@@ -158,8 +160,9 @@ pub(super) fn path_warning(
     )
 }
 
-/// The circles between which the exact motion of the traced point stays, from above; none where it is one circle, pushes or
-/// edits change it, or it has no closed form. A metre is `pt_per_m` long on the page.
+/// Returns the circles between which the exact motion of the traced point stays, seen from above. There are none if the
+/// motion is a circle, if pushes or edits change it, or if it has no closed form. A meter is `pt_per_m` long on the
+/// page.
 fn limits(run: &FigureRun, pt_per_m: f64) -> Vec<ChartSeries> {
     const SAME_CURVE: f64 = 0.01;
     let scenario = &run.scenario;
@@ -185,9 +188,9 @@ fn limits(run: &FigureRun, pt_per_m: f64) -> Vec<ChartSeries> {
         .into()
 }
 
-/// A circle about the origin, as straight lines: it may be far larger than the page.
+/// Returns a circle around the origin as straight lines, since it may be far larger than the page.
 fn circle(radius_m: f64, pt_per_m: f64) -> Vec<[f64; 2]> {
-    /// How far the lines are off it, pt, and how many there are at most.
+    /// Maximum distance of the lines from the circle, pt, and their maximum number.
     const OFF_PT: f64 = 0.02;
     const MOST_CURVE_STEPS: f64 = 1e5;
     let count = PI * (0.5 * radius_m * pt_per_m / OFF_PT).sqrt();
@@ -199,8 +202,8 @@ fn circle(radius_m: f64, pt_per_m: f64) -> Vec<[f64; 2]> {
     places.collect()
 }
 
-/// The stretches of both axes of paths: one is never less than half of the other, so that a path along a line has a picture
-/// too.
+/// Returns the ranges of both axes of a path. Neither is less than half of the other, so that even a straight path has
+/// a picture.
 fn both_ranges(series: &[ChartSeries], runs: &[FigureRun]) -> [(f64, f64); 2] {
     const LEAST_MAGNIFIED_SHARE: f64 = 0.5;
     let size = size::axis(runs, "x_m");

@@ -1,4 +1,4 @@
-//! Errors of schemes over their time steps, with their slopes, or over their cost.
+//! Errors of schemes over time steps, with slopes, or over cost.
 
 use super::view::{TableKind, TableView};
 use super::{grouped, numbers, points};
@@ -15,7 +15,7 @@ use crate::studies::table::{ComparisonSource, TableSource};
 const TIME_STEP: &str = "time_step_s";
 const ERROR: &str = "error_m";
 
-/// Returns the axis of the time step, of the cost, or of the column that is asked for, and a panel for each column.
+/// Returns the axis of the time step, the cost or the requested column, and one panel per column.
 pub(super) fn drawn(
     table: &TableSource,
     source: &ComparisonSource,
@@ -37,7 +37,7 @@ pub(super) fn drawn(
         let curves = groups.iter().enumerate().map(|(index, (scheme, rows))| {
             let points = points(rows, &along, &values);
             let name = if points.iter().any(|point| point[1] > 0.0) {
-                // Panels beside each other share their names.
+                // Several panels share the names in the legend.
                 let slope = slope(&points).filter(|_| is_order && columns.len() == 1);
                 named(scheme, slope, view.width_pt)
             } else {
@@ -54,7 +54,7 @@ pub(super) fn drawn(
     Ok((logarithmic(x), panels))
 }
 
-/// Returns the axis below, and the numbers along it.
+/// Returns the horizontal axis and the values along it.
 fn along(
     table: &TableSource,
     view: &TableView,
@@ -63,7 +63,7 @@ fn along(
     match (&view.x, kind) {
         (Some(column), _) => Ok((of_comparison(column), numbers(table, column)?)),
         (None, TableKind::WorkPrecision) => {
-            // Where stepping went fastest: other work on the machine has cost nothing there.
+            // Cost at the fastest measured speed, which other work on the machine did not disturb.
             let [steps, step_ns] = ["steps", "ns_per_step"].map(|name| numbers(table, name));
             let costs = steps?.into_iter().zip(step_ns?);
             let axis = ChartAxis::new("computing time", "s");
@@ -75,7 +75,7 @@ fn along(
     }
 }
 
-/// Returns the stripe in which errors are those of rounding, where one of `errors_m` is.
+/// Returns the stripe of rounding errors, if one of `errors_m` lies in it.
 fn rounding(source: &ComparisonSource, errors_m: &[f64]) -> Option<ChartSeries> {
     let document = Document::parse_header("", &source.run_file).ok()?;
     let floor_m = size::rounding_m(&document.scenario().ok()?);
@@ -90,7 +90,7 @@ fn logarithmic(axis: ChartAxis) -> ChartAxis {
     }
 }
 
-/// A scheme and the slope of its errors, as markup.
+/// Returns the name of a scheme with the slope of its errors, as markup.
 fn named(scheme: &str, slope: Option<f64>, width_pt: f64) -> String {
     let said = slope.map(|slope| format!(", slope {}", significant(slope, 2)));
     let markup = ticks::with_minus(&said.unwrap_or_default());
@@ -111,8 +111,10 @@ fn of_comparison(name: &str) -> ChartAxis {
     }
 }
 
-/// The measured order of a scheme: the slope of its errors on logarithmic axes. It is taken from end to end of the longest stretch of at least three points in which neighbouring slopes differ by a
-/// sixteenth at most. Coarser steps do not show the order yet; of finer ones the error is rounding.
+/// Returns the measured order of a scheme: the slope of its errors on logarithmic axes.
+///
+/// The slope is measured over the longest range of at least three points in which neighboring slopes differ by at most
+/// a sixteenth. Longer steps do not show the order yet, and with shorter steps the error is rounding.
 fn slope(points: &[[f64; 2]]) -> Option<f64> {
     const LEAST_DECADE_SPAN: f64 = 0.3;
     const EVEN_DECADES: f64 = 1.0 / 16.0;
@@ -134,13 +136,13 @@ fn slope(points: &[[f64; 2]]) -> Option<f64> {
                 .then_some(place)
         })
         .collect();
-    // Of two that are as long, the one of the shorter steps, which come first.
+    // Of two ranges of equal length, the one with shorter steps wins; these come first.
     let longest = even.into_iter().rev().max_by_key(ExactSizeIterator::len)?;
     let whole = slope_between(shown[longest.start], shown[longest.end]);
     Some((whole * 10.0).round() / 10.0)
 }
 
-/// Returns the slope of the line from one point to another on logarithmic axes.
+/// Returns the slope of the line between two points on logarithmic axes.
 fn slope_between(from: &[f64; 2], to: &[f64; 2]) -> f64 {
     libm::log(to[1] / from[1]) / libm::log(to[0] / from[0])
 }
@@ -149,7 +151,7 @@ fn slope_between(from: &[f64; 2], to: &[f64; 2]) -> f64 {
 mod tests {
     use super::*;
 
-    /// Errors that fall by these powers from each time step to its half, from the shortest on.
+    /// Errors that decrease with these powers each time the time step is halved, starting at the shortest.
     fn errors(slopes: &[f64]) -> Vec<[f64; 2]> {
         let mut points = vec![[1e-3, 1e-6]];
         for slope in slopes {
@@ -165,10 +167,10 @@ mod tests {
             (&[2.0, 2.01, 1.99, 2.4], Some(2.0)),
             (&[0.02, -0.1, 4.0, 3.9], Some(4.0)),
             (&[10.9, 11.1], Some(11.0)),
-            // strang on method-2: between its coarsest steps the error falls by a factor of 280, and rises then.
+            // strang on method-2: between the longest steps the error falls by a factor of 280, and then rises.
             (&[0.78, -2.19, 8.16], None),
             (&[1.0, 2.0, 4.0], None),
-            // srkn11b on method-2: it has not come to its order yet.
+            // srkn11b on method-2: it has not reached its order yet.
             (&[5.98, 4.98, 3.18], None),
             (&[2.0], None),
         ];

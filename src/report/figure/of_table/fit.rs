@@ -1,4 +1,4 @@
-//! What was measured, on the model that was fitted to it; below, what is left of it.
+//! The figure of a fit: measured values with the model, and residuals below.
 
 use super::view::TableView;
 use super::{RowIndices, grouped, numbers, points, within_room};
@@ -15,27 +15,27 @@ use crate::report::figure::quantity;
 use crate::studies::table::{FitTable, FittedKey, TableSource};
 use std::sync::Arc;
 
-/// Points on the curve of a model over time: several for each dot of a column's width.
+/// Number of points on the model's curve over time: several per dot of a column's width.
 const MODEL_CURVE_POINTS: u32 = 1500;
-/// The column that counts the rows of the measured data.
+/// The column with the row numbers of the measured data.
 const ROW_COLUMN: &str = "row";
-/// The most runs under several settings that can be distinguished.
+/// Maximum number of groups of settings that can be distinguished.
 const MOST_GROUPS: usize = 6;
 
-/// What is drawn.
+/// The figure of a fit that is being drawn.
 struct FitFigure<'a> {
     table: &'a TableSource,
     fit: &'a FitTable,
-    /// The run file, in which the keys have their names.
+    /// The run file that the keys belong to.
     scenario: toml::Table,
-    /// The longest name in the legend, pt.
+    /// Maximum length of a name in the legend, pt.
     room_pt: f64,
-    /// The column over which it is drawn, and its numbers.
+    /// The column on the horizontal axis. `x` holds its values.
     along: &'a str,
     x: Vec<f64>,
 }
 
-/// The axis of the time or of a setting, and for each quantity a panel with its values and one with what is left of them.
+/// Returns the axis of the time or of a setting, and two panels per quantity: its values and its residuals.
 pub(super) fn drawn(
     table: &TableSource,
     fit: &FitTable,
@@ -69,7 +69,7 @@ pub(super) fn drawn(
 }
 
 impl FitFigure<'_> {
-    /// `key` with what stands for its value, such as "*z* of weight = 0.1555 m".
+    /// Formats `key` with its `value`, such as "*z* of weight = 0.1555 m".
     fn said(&self, key: &str, value: &str) -> String {
         let axes = key
             .split('+')
@@ -80,7 +80,7 @@ impl FitFigure<'_> {
         said.trim_end().to_owned()
     }
 
-    /// What the legend says of the model: the value of each free key.
+    /// Returns the legend's lines for the model: the value of each free key, and the scheme.
     fn model(&self) -> Vec<String> {
         let mut lines = Vec::new();
         for found in &self.fit.found {
@@ -102,10 +102,10 @@ impl FitFigure<'_> {
     }
 }
 
-/// Digits of a value whose uncertainty cannot be stated.
+/// Digits of a value without an uncertainty.
 const FIT_VALUE_DIGITS: usize = 6;
 
-/// The value with its uncertainty, as markup.
+/// Formats the value with its uncertainty, as markup.
 fn stated(found: &FittedKey) -> String {
     let stated = found
         .uncertainty
@@ -120,15 +120,15 @@ fn stated(found: &FittedKey) -> String {
     }
 }
 
-/// Returns the column over which a fit is drawn, the setting with the most different numbers, and these; the number of the
-/// row where no setting is a number.
+/// Returns the column for the horizontal axis: the setting with the most different numbers, with these numbers. Returns
+/// the row number if no setting is a number.
 fn along<'a>(table: &TableSource, settings: &'a [String]) -> Result<(&'a str, Vec<f64>), String> {
     let settings = settings.iter().rev().filter_map(|name| {
         let numbers = table.numbers(name)?;
         let is_whole = numbers.iter().all(|number| number.is_finite());
         is_whole.then_some((name.as_str(), numbers))
     });
-    // Of columns with as many, the first.
+    // Of columns with equal counts, the first wins.
     let most = settings.max_by_key(|(_, numbers)| {
         let mut distinct = numbers.clone();
         distinct.sort_by(f64::total_cmp);
@@ -141,7 +141,7 @@ fn along<'a>(table: &TableSource, settings: &'a [String]) -> Result<(&'a str, Ve
     }
 }
 
-/// The fitted run's own curve of the quantity `name` over the times that `x` spans.
+/// Computes the fitted run's curve of the quantity `name` over the time range of `x`.
 fn curve(run_file: &str, name: &str, x: &[f64]) -> Option<Vec<[f64; 2]>> {
     let scenario = Document::parse_header("", run_file).ok()?.scenario().ok()?;
     let quantity = RunQuantity::find(name)?;
@@ -171,13 +171,13 @@ fn curve(run_file: &str, name: &str, x: &[f64]) -> Option<Vec<[f64; 2]>> {
 }
 
 impl FitFigure<'_> {
-    /// `rows` by what else was set, each with its values as its name; all of them where that are too many.
+    /// Groups `rows` by the other settings, with their values as names. Returns a single group if there are too many.
     fn groups(&self, rows: RowIndices) -> Vec<(String, RowIndices)> {
         let others = self.fit.settings.iter().filter(|name| *name != self.along);
         let columns: Vec<(&str, Vec<&str>)> = others
             .filter_map(|name| Some((name.as_str(), self.table.texts(name)?)))
             .collect();
-        // What is the same in every row tells no two apart.
+        // A setting with the same value in every row distinguishes nothing.
         let telling: Vec<_> = columns
             .iter()
             .filter(|(_, texts)| rows.iter().any(|&row| texts[row] != texts[rows[0]]))
@@ -201,7 +201,7 @@ impl FitFigure<'_> {
         groups
     }
 
-    /// The numbers of `column` in `rows`, from left to right, with the errors of what was measured.
+    /// Returns the values of `column` in `rows`, from left to right, with the errors of the measured values.
     fn series(&self, column: &str, rows: &RowIndices) -> Result<ChartSeries, String> {
         let values = numbers(self.table, column)?;
         let errors = numbers(self.table, "uncertainty")?;
@@ -213,7 +213,7 @@ impl FitFigure<'_> {
         })
     }
 
-    /// The panel of the values on the model.
+    /// Creates the panel of the measured values and the model.
     fn values(&self, name: &str, groups: &[(String, RowIndices)]) -> Result<Panel, String> {
         let curve = (self.along == TIME_COLUMN).then(|| curve(&self.fit.run_file, name, &self.x));
         let curve = curve.flatten();
@@ -231,7 +231,7 @@ impl FitFigure<'_> {
                 model,
                 style,
             ));
-            // The values of further keys, each on a line of the legend without a curve.
+            // The values of further keys are lines of the legend without a curve.
             series.extend(said.by_ref().map(ChartSeries::named));
             series.push(ChartSeries {
                 name: match groups {
@@ -245,7 +245,7 @@ impl FitFigure<'_> {
         Ok(Panel::new(quantity::axis(name), series).of_column(name))
     }
 
-    /// The panel of what is left, in units of the uncertainties where all are stated.
+    /// Creates the panel of the residuals, in units of the uncertainties if all are stated.
     fn residuals(&self, name: &str, groups: &[(String, RowIndices)]) -> Result<Panel, String> {
         let all_rows = groups.iter().flat_map(|(_, rows)| rows);
         let errors = numbers(self.table, "uncertainty")?;

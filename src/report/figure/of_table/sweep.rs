@@ -1,4 +1,4 @@
-//! Readouts over what was varied: points that were measured, and the theory of them.
+//! Figures of sweeps: readouts over the varied keys, as measured points and theory.
 
 mod columns;
 mod curves;
@@ -17,10 +17,10 @@ use crate::studies::table::{SweepTable, TableSource};
 use columns::{QuantityColumn, QuantityColumns, QuantityOwner};
 use curves::SweepCurve;
 
-/// Panels on a page where none was asked for by name.
+/// Maximum number of panels on a page, unless columns are requested by name.
 const MOST_PANELS: usize = 7;
 
-/// Returns the axis of what was varied, or of the column that is asked for, and a panel for each quantity.
+/// Returns the axis of the varied key or the requested column, and one panel per quantity.
 pub(super) fn drawn(
     table: &TableSource,
     swept: &SweepTable,
@@ -61,19 +61,19 @@ pub(super) fn drawn(
     Ok((along.axis(swept), panels))
 }
 
-/// What a sweep is drawn over.
+/// The horizontal axis of a sweep's figure.
 struct Along {
-    /// The key whose values follow each other on a curve, and these.
+    /// The key that varies along a curve. `values` holds its values.
     key: String,
     values: Vec<f64>,
-    /// The column along the axis below: that key, or a readout; and its numbers.
+    /// The column on the horizontal axis: this key or a readout. `x` holds its values.
     column: String,
     x: Vec<f64>,
 }
 
 impl Along {
-    /// Returns the key, or the readout, with the name `asked`. Without one it is the key that runs fastest of those with
-    /// numbers; the other keys make curves.
+    /// Uses the key or readout named `asked`. By default, uses the fastest-varying key with numbers; the other keys
+    /// distinguish the curves.
     fn new(table: &TableSource, swept: &SweepTable, asked: Option<&str>) -> Result<Self, String> {
         let column = asked.filter(|name| !swept.has_varied(name));
         let key = asked.filter(|name| swept.has_varied(name));
@@ -93,7 +93,8 @@ impl Along {
         })
     }
 
-    /// Whether lines may join the points of `curves`: along each the axis below goes one way as the key does.
+    /// Returns true if lines may join the points of `curves`: along each curve, the horizontal axis is monotonic in the
+    /// key.
     fn has_lines(&self, curves: &[SweepCurve]) -> bool {
         self.column == self.key
             || curves.iter().all(|curve| {
@@ -113,7 +114,7 @@ impl Along {
     }
 }
 
-/// Returns the key that runs fastest of those whose values are numbers, those with a single value last, and its values.
+/// Returns the fastest-varying key whose values are numbers, and its values. Keys with a single value come last.
 fn fastest<'a>(table: &TableSource, swept: &'a SweepTable) -> Result<(&'a str, Vec<f64>), String> {
     let keys = swept.varied().rev();
     let keys = keys.filter_map(|key| Some((key.as_str(), table.numbers(key)?)));
@@ -167,17 +168,17 @@ fn too_many(quantities: &[QuantityColumns]) -> String {
     )
 }
 
-/// Ratio of greatest to least value from which an axis is logarithmic.
+/// Ratio of maximum to minimum above which an axis is logarithmic.
 const DECADES: f64 = 1e3;
 
-/// The part of white in the color of points under a line of theory.
+/// Fraction of white in the color of points below a line of theory.
 const UNDER_THEORY_WHITE: f64 = 0.5;
-/// What follows the name of theory of which some line has gaps.
+/// Added to the name of a theory whose lines have gaps.
 const IN_GAPS: &str = " (gaps: no prediction)";
-/// What the legend calls values of the run that were not read off its steps, beside those that were.
+/// Name in the legend of values of a run without a measurement error, if there are values with one.
 const SIMULATED_LABEL: &str = "simulated, without error";
 
-/// The rows of `table` whose runs did not fail.
+/// Returns the rows of `table` whose runs did not fail.
 fn rows_run(table: &TableSource, swept: &SweepTable) -> Vec<usize> {
     let readouts: Vec<_> = table
         .names()
@@ -190,19 +191,19 @@ fn rows_run(table: &TableSource, swept: &SweepTable) -> Vec<usize> {
         .collect()
 }
 
-/// What is drawn, and over what.
+/// The figure of a sweep that is being drawn.
 struct SweepFigure<'a> {
     table: &'a TableSource,
     along: &'a [f64],
-    /// Whether lines may join its points.
+    /// True if lines may join its points.
     has_lines: bool,
     curves: &'a [SweepCurve],
-    /// The longest name in the legend, pt.
+    /// Maximum length of a name in the legend, pt.
     room_pt: f64,
     width_pt: f64,
     has_theory: bool,
     has_measured: bool,
-    /// Whether there are points beside theory.
+    /// True if there are points in addition to theory.
     has_points: bool,
     /// The rows whose runs did not fail.
     rows_run: Vec<usize>,
@@ -221,12 +222,12 @@ impl SweepFigure<'_> {
                 self.points(part, &values)?
             };
             for one in &mut of_part {
-                // Theory is drawn over the points: many of them would hide its line.
+                // Theory is drawn on top of the points, because many points would hide its line.
                 if has_both && !is_theory(part) {
                     one.style.is_behind = true;
                     one.style.color = paler(one.style.color, UNDER_THEORY_WHITE);
                 }
-                // A curve of the exact motion lies on its theory.
+                // A curve of the exact motion coincides with its theory.
                 let is_on_theory = has_both && one.style.mark.is_some() && !is_theory(part);
                 if is_on_theory || !self.has_lines {
                     one.style.width_pt = 0.0;
@@ -243,12 +244,12 @@ impl SweepFigure<'_> {
         Ok(Panel::new(y, series).of_column(column))
     }
 
-    /// What a curve with these `settings` is called in the legend.
+    /// Returns the name of a curve with these `settings` in the legend.
     fn name(&self, word: &str, settings: &[CurveSetting]) -> String {
         setting::name(word, settings, self.room_pt)
     }
 
-    /// The points of `part`, which has these `values`, a series for each curve that has some.
+    /// Returns the points of `part` with these `values`, one series per curve that has any.
     fn points(&self, part: &QuantityColumn, values: &[f64]) -> Result<Vec<ChartSeries>, String> {
         let errors = part
             .uncertainty
@@ -289,7 +290,8 @@ impl SweepFigure<'_> {
             .collect())
     }
 
-    /// The lines of the theory `part`, the one at `place` of its panel: one for all curves for which it says the same.
+    /// Returns the lines of the theory `part`, at index `place` of its panel. Curves with the same theory share one
+    /// line.
     fn theory(
         &self,
         part: &QuantityColumn,
@@ -311,7 +313,7 @@ impl SweepFigure<'_> {
         let lines = curves::lines(each);
         let is_of_exact = lines.len() == 1 && part.is_of_exact_motion();
         let lines = lines.into_iter().map(|line| {
-            // The curves are told apart by the points: of theory it is said once how it is drawn.
+            // The points distinguish the curves, so the legend names each theory only once.
             let name = if self.has_points {
                 self.name(&(part.word(is_alone) + gaps), &[])
             } else {
@@ -324,7 +326,7 @@ impl SweepFigure<'_> {
         lines.collect()
     }
 
-    /// What the legend says of each curve that has no point: the names of those curves whose runs all failed.
+    /// Returns entries of the legend for curves without points, because all their runs failed.
     fn failed(&self, quantities: &[QuantityColumns]) -> Result<Vec<ChartSeries>, String> {
         const FAILED: &str = "no run gave a number";
         let columns = quantities
@@ -347,13 +349,14 @@ impl SweepFigure<'_> {
     }
 }
 
-/// Whether no value is below 0, and the greatest is at least `times` the least above 0.
+/// Returns true if no value is below 0, and the maximum is at least `times` the minimum above 0.
 fn spans_decades(values: impl Iterator<Item = f64>, times: f64) -> bool {
     let ends = extent(values.filter(|value| value.is_finite() && *value != 0.0));
     ends.is_some_and(|(low, high)| low > 0.0 && high / low >= times)
 }
 
-/// Whether a good part of `values`, all above 0, lies far below their greatest: they go by factors and not by steps.
+/// Returns true if at least a third of `values`, all above 0, lie below the geometric mean of their range: they vary by
+/// factors, not by steps.
 fn is_geometric(values: &[f64]) -> bool {
     let high = values.iter().copied().fold(0.0, f64::max);
     let low = values.iter().copied().fold(high, f64::min);

@@ -1,4 +1,4 @@
-//! The columns of a sweep: whose number each is, and which of them are the same quantity.
+//! The columns of a sweep, by origin and quantity.
 
 use crate::engine::analysis::readouts::{self, ReadoutSource};
 use crate::engine::text::unit::Unit;
@@ -12,14 +12,14 @@ const PREDICTED_PREFIX: &str = "predicted_";
 const TRUE_PREFIX: &str = "true_";
 const UNCERTAINTY_INFIX: &str = "_uncertainty";
 
-/// Whose number a column holds.
+/// Origin of the numbers in a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum QuantityOwner {
-    /// What theory says, of the exact motion or of the scheme.
+    /// Theory of the exact motion or of the scheme.
     Theory,
-    /// What was measured on the run.
+    /// Measured in the run.
     Measured,
-    /// A value of the run that is no measurement: its tilt at the end, the turns of its wheel in a step.
+    /// A value of the run that is not a measurement, such as its tilt at the end, or the turns of its wheel per step.
     Value,
 }
 
@@ -35,25 +35,24 @@ impl QuantityOwner {
     }
 }
 
-/// A quantity of a sweep, by its columns: what was measured of it, and what theory says. Theory comes first: the points stand
-/// on it.
+/// The columns of one quantity: theory first, because it is drawn below the points.
 pub(super) type QuantityColumns = Vec<QuantityColumn>;
 
-/// A column.
+/// A column of a sweep.
 pub(super) struct QuantityColumn {
     pub name: String,
     pub role: QuantityOwner,
-    /// The column of its standard errors.
+    /// The column with the standard errors.
     pub uncertainty: Option<String>,
 }
 
-/// What a name is without saying whose number it is.
+/// Removes the prefix that tells the origin of a number from a name.
 fn bare(name: &str) -> &str {
     let parts = [MEASURED_PREFIX, PREDICTED_PREFIX].map(|word| name.strip_prefix(word));
     parts.into_iter().flatten().next().unwrap_or(name)
 }
 
-/// The quantities of a sweep in the order of its columns: all of them, or those that are asked for.
+/// Returns the quantities of a sweep in the order of its columns: all, or the requested ones.
 pub(super) fn quantities(
     table: &TableSource,
     swept: &SweepTable,
@@ -94,8 +93,8 @@ pub(super) fn quantities(
     quantities
 }
 
-/// What quantity the column `name` holds a number of. Theory of a special case, such as `fast_top_precession_rad_per_s`, is
-/// of the quantity that was measured beside it, `measured_precession_rad_per_s`.
+/// Returns the quantity of the column `name`. Theory of a special case, such as `fast_top_precession_rad_per_s`,
+/// belongs to the measured quantity, here `measured_precession_rad_per_s`.
 fn what<'a>(name: &'a str, names: &[&'a String]) -> &'a str {
     let own = bare(name);
     if QuantityOwner::from_name(name) != QuantityOwner::Theory {
@@ -112,7 +111,8 @@ fn what<'a>(name: &'a str, names: &[&'a String]) -> &'a str {
         .unwrap_or(own)
 }
 
-/// The column of the standard errors of `name`: measured_precession_uncertainty_rad_per_s of measured_precession_rad_per_s.
+/// Returns the column with the standard errors of `name`, such as measured_precession_uncertainty_rad_per_s for
+/// measured_precession_rad_per_s.
 fn uncertainty_of(table: &TableSource, name: &str) -> Option<String> {
     table
         .names()
@@ -124,7 +124,7 @@ fn uncertainty_of(table: &TableSource, name: &str) -> Option<String> {
         .cloned()
 }
 
-/// The axis of a quantity: named by what was measured where theory stands beside it, else by the column.
+/// Returns the axis of a quantity, named after the measured column if there are several, else after the only column.
 pub(super) fn axis(parts: &[QuantityColumn]) -> ChartAxis {
     let named = parts
         .iter()
@@ -134,7 +134,7 @@ pub(super) fn axis(parts: &[QuantityColumn]) -> ChartAxis {
         return ChartAxis::default();
     };
     let own = quantity::axis(&part.name);
-    // Words say whose number it is; the legend says so already where both stand beside each other.
+    // With several columns, the legend already tells their origins.
     if parts.len() == 1 {
         return own;
     }
@@ -150,14 +150,14 @@ pub(super) fn axis(parts: &[QuantityColumn]) -> ChartAxis {
 }
 
 impl QuantityColumn {
-    /// Whether it holds what theory says of the exact motion, and no approximation of that.
+    /// Returns true if the column holds the theory of the exact motion, not an approximation.
     pub fn is_of_exact_motion(&self) -> bool {
         let source = readouts::find(&self.name).map(|readout| readout.source);
         let is_of_exact = [PREDICTED_PREFIX, TRUE_PREFIX].map(|word| self.name.starts_with(word));
         source == Some(ReadoutSource::Theory) && is_of_exact.contains(&true)
     }
 
-    /// What the legend calls it, as markup; `is_alone`: the axis says which theory it is.
+    /// Returns the name in the legend, as markup. `is_alone` is true if the axis already names the theory.
     pub fn word(&self, is_alone: bool) -> String {
         let source = readouts::find(&self.name).map(|readout| readout.source);
         match self.role {
@@ -177,7 +177,7 @@ impl QuantityColumn {
     }
 }
 
-/// Two of the columns as an example of a choice, those that were measured before others.
+/// Returns two columns as an example of a choice, measured ones first.
 pub(super) fn example(quantities: &[QuantityColumns]) -> String {
     let (measured, others): (Vec<_>, Vec<_>) = quantities
         .iter()

@@ -1,5 +1,5 @@
-//! The curves of a sweep: its rows by what else was varied, and what each is called; and the lines of theory, one for all
-//! curves of which it says the same.
+//! The curves of a sweep: its rows grouped by the other varied keys, and the lines of theory, which curves with the
+//! same theory share.
 
 use crate::plot::COLUMN_PT;
 use crate::plot::chart::SeriesStyle;
@@ -7,30 +7,30 @@ use crate::report::figure::of_table::{RowIndices, grouped};
 use crate::report::figure::setting::{CurveSetting, SCHEME_KEY, telling_digits};
 use crate::studies::table::{SweepTable, TableSource};
 
-/// Numbers that differ by no more than this part of themselves are the same.
+/// Numbers with at most this relative difference are equal.
 const SAME_NUMBER: f64 = 1e-6;
-/// From this many rows on a line looks smooth at the width of a column; with fewer its points are marked.
+/// Number of rows above which a line looks smooth at the width of a column. With fewer rows, its points are marked.
 const SMOOTH_CURVE_ROWS: f64 = 40.0;
 
-/// The scheme that is the exact motion.
+/// The scheme of the exact motion.
 const EXACT: &str = "exact";
 
-/// The rows of one curve.
+/// One curve of a sweep.
 #[derive(Clone, Debug)]
 pub(super) struct SweepCurve {
-    /// Which of the curves it is, from 0.
+    /// Index of the curve.
     pub index: usize,
-    /// Its rows.
+    /// Indices of its rows.
     pub rows: RowIndices,
-    /// The values of what else was varied.
+    /// Values of the other varied keys.
     pub settings: Vec<CurveSetting>,
-    /// Whether its runs are by the scheme `exact`.
+    /// True if its runs use the scheme `exact`.
     pub is_exact: bool,
 }
 
 impl SweepCurve {
-    /// Returns `style` as the exact motion has it, if its runs are that: joined by a dashed line, and without marks where the
-    /// rows are close on a page of that width.
+    /// Returns `style` for the curve. Exact runs get the color and the dashed line of the exact motion, without marks
+    /// if the rows are close together on a page of this width.
     pub fn style(&self, style: SeriesStyle, width_pt: f64) -> SeriesStyle {
         if !self.is_exact {
             return style;
@@ -44,12 +44,12 @@ impl SweepCurve {
     }
 }
 
-/// Whether a line through so many rows looks smooth on a page of that width.
+/// Returns true if a line through this number of rows looks smooth on a page of this width.
 fn is_smooth(rows: usize, width_pt: f64) -> bool {
     rows as f64 > SMOOTH_CURVE_ROWS * width_pt / COLUMN_PT
 }
 
-/// Returns the curves of a sweep, along which the key `along`, and what varies together with it, varies.
+/// Returns the curves of a sweep. The key `along`, and the keys that vary together with it, vary along a curve.
 pub(super) fn curves(table: &TableSource, swept: &SweepTable, along: &str) -> Vec<SweepCurve> {
     let axes = swept.axes.iter();
     let others = axes.filter(|keys| !keys.iter().any(|key| key == along));
@@ -88,16 +88,16 @@ pub(super) fn curves(table: &TableSource, swept: &SweepTable, along: &str) -> Ve
 
 /// A line of theory.
 pub(super) struct TheoryLine {
-    /// The first of the curves that it is for.
+    /// Index of the first curve with this theory.
     index: usize,
-    /// Its points from left to right.
+    /// Points from left to right.
     pub points: Vec<[f64; 2]>,
-    /// What is set alike for all of them.
+    /// Settings that all curves of the line share.
     pub settings: Vec<CurveSetting>,
 }
 
-/// The lines of what theory says of each of these curves, whose points run from left to right. A curve of which it says
-/// nothing has none.
+/// Returns the lines of theory for these curves, whose points are sorted from left to right. A curve without theory has
+/// no line.
 pub(super) fn lines<'a>(
     curves: impl Iterator<Item = (&'a SweepCurve, Vec<[f64; 2]>)>,
 ) -> Vec<TheoryLine> {
@@ -123,7 +123,7 @@ impl TheoryLine {
         self.points.binary_search_by(|point| point[0].total_cmp(&x))
     }
 
-    /// Whether it has the values of `points`, wherever both have one, and they do somewhere.
+    /// Returns true if the line agrees with `points` wherever both have a value, and if there is such a position.
     fn says(&self, points: &[[f64; 2]]) -> bool {
         let pairs = points.iter().filter_map(|&[x, value]| {
             let own = self.points[self.place(x).ok()?][1];
@@ -134,7 +134,7 @@ impl TheoryLine {
             && pairs.all(|(a, b)| (a - b).abs() <= SAME_NUMBER * a.abs().max(b.abs()))
     }
 
-    /// Takes in a curve of which theory says the same, and the `points` that were missing.
+    /// Adds a curve with the same theory, and the `points` that were missing.
     fn take_in(&mut self, curve: &SweepCurve, points: Vec<[f64; 2]>) {
         self.settings.retain(|it| curve.settings.contains(it));
         for point in points.into_iter().filter(|point| point[1].is_finite()) {
@@ -146,8 +146,9 @@ impl TheoryLine {
         }
     }
 
-    /// How it is drawn on a page of that width, the theory at `place` of its panel: as a line where the rows are close, else
-    /// as marks at the rows, since theory goes another way between them than the fine strokes that join them.
+    /// Returns the style of the line on a page of this width, for the theory at index `place` of its panel. It is a
+    /// line if the rows are close together, else marks, since straight strokes between distant rows do not follow the
+    /// theory.
     pub fn style(&self, place: usize, width_pt: f64) -> SeriesStyle {
         if is_smooth(self.points.len(), width_pt) {
             SeriesStyle::theory(self.index, place)

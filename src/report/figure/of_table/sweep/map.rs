@@ -1,4 +1,4 @@
-//! Readouts of a sweep over two keys, as maps of colors.
+//! Maps of readouts of a sweep over two keys.
 
 use super::columns;
 use super::{DECADES, is_geometric, spans_decades};
@@ -9,24 +9,24 @@ use crate::report::figure::of_table::view::TableView;
 use crate::report::figure::quantity;
 use crate::studies::table::{SweepTable, TableSource};
 
-/// The most maps on a page.
+/// Maximum number of maps on a page.
 const MOST_MAPS: usize = 4;
-/// The most cells of a map.
+/// Maximum number of cells of a map.
 const MOST_CELLS: usize = 250_000;
 
 /// A key along an axis of a map.
 struct MapKey {
     key: String,
-    /// Its value in each row of the table.
+    /// Value in each row of the table.
     of_rows: Vec<f64>,
-    /// These, each once, from the least to the greatest.
+    /// The distinct values, in ascending order.
     values: Vec<f64>,
 }
 
 /// Returns the axis of one key, and for each quantity a panel over it and the other key.
 ///
 /// # Errors
-/// When the sweep does not vary two keys over numbers, or has more quantities than have room.
+/// Returns an error if the sweep does not vary two keys with numbers, or if there are too many quantities for a page.
 pub(in crate::report::figure::of_table) fn drawn(
     table: &TableSource,
     swept: &SweepTable,
@@ -61,8 +61,8 @@ pub(in crate::report::figure::of_table) fn drawn(
 }
 
 impl MapKey {
-    /// Returns the first of the keys that vary together whose values are numbers, two at least; the one that is `asked` for
-    /// where it is among them.
+    /// Returns the first of the keys that vary together with at least two different numbers. The key `asked` takes
+    /// precedence.
     fn new(table: &TableSource, together: &[String], asked: Option<&str>) -> Option<Self> {
         let first = together.iter().find(|key| Some(key.as_str()) == asked);
         let mut keys = first.into_iter().chain(together);
@@ -87,7 +87,7 @@ impl MapKey {
         }
     }
 
-    /// Returns the place of the value of `row` among its values.
+    /// Returns the index of the value of `row` among the distinct values.
     fn place(&self, row: usize) -> Option<usize> {
         let value = self.of_rows[row];
         let found = self
@@ -97,7 +97,7 @@ impl MapKey {
     }
 }
 
-/// Returns the two keys of a map, first the one along the axis x: the one that is `asked` for, or the one that runs fastest.
+/// Returns the two keys of a map. The first, for the x axis, is `asked` or the fastest-varying key.
 fn keys(
     table: &TableSource,
     swept: &SweepTable,
@@ -128,7 +128,7 @@ fn keys(
     }
 }
 
-/// Returns why `axes`, the keys that vary, make no map.
+/// Describes why `axes`, the keys that vary, do not make a map.
 fn not_two(axes: &[&Vec<String>]) -> String {
     let keys: Vec<String> = axes.iter().map(|keys| keys.join("+")).collect();
     format!(
@@ -137,7 +137,7 @@ fn not_two(axes: &[&Vec<String>]) -> String {
     )
 }
 
-/// Returns the columns that are drawn: those that are asked for, or the readouts that are not theory, or else all.
+/// Returns the columns to draw: the requested ones, or the readouts that are not theory, or else all.
 fn quantities(
     table: &TableSource,
     swept: &SweepTable,
@@ -148,7 +148,7 @@ fn quantities(
     if view.y.is_empty() && quantities.len() > MOST_MAPS {
         return Err(super::too_many(&quantities).replace("--kind ", "--y "));
     }
-    // Of what was measured and its theory the first is drawn, unless the theory is asked for.
+    // For a measured quantity and its theory, the measured column is drawn unless the theory is requested.
     let drawn = quantities.iter().flat_map(|quantity| {
         let shown = if view.y.is_empty() {
             quantity.len() - 1
@@ -167,7 +167,7 @@ fn quantities(
     }
 }
 
-/// Returns `values`, one for each row of the table, in their cells: a row for each value of the second key.
+/// Arranges `values`, one per row of the table, in cells, with one row per value of the second key.
 fn grid(keys: &[MapKey; 2], values: &[f64]) -> Vec<Vec<f64>> {
     let [x, y] = keys;
     let mut cells = vec![vec![f64::NAN; x.values.len()]; y.values.len()];
