@@ -80,7 +80,7 @@ enum CliCommand {
     /// Compare schemes and time steps with the exact motion
     Compare(compare::CompareArgs),
     /// Draw runs, or a table of compare, sweep or fit, as SVG, PDF or PNG
-    Figure(figure::FigureArgs),
+    Figure(Box<figure::FigureArgs>),
     /// Write up a run, or the CSV of a fit: a folder with a document, figures, numbers and CSV
     Writeup(writeup::WriteupArgs),
     /// Repeat the report's computations and test its claims, as one document

@@ -164,7 +164,7 @@ impl PlacedPanel {
 pub fn hatch(rectangle: &PageRectangle, color: Color, scene: &mut PageScene) {
     const APART_PT: f64 = 4.0;
     const HATCH_PT: f64 = 0.35;
-    let pen = pen(HATCH_PT, paler(color, 0.4));
+    let pen = pen(HATCH_PT, color);
     let height = rectangle.height();
     let count = ((rectangle.width() + height) / APART_PT).ceil() as u32;
     for number in 0..count {

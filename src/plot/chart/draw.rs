@@ -300,7 +300,12 @@ impl Panel {
         if let Some(map) = &self.map {
             map.draw(placed, scene);
         }
-        for series in self.series.iter().rev() {
+        let (hatched, filled): (Vec<_>, Vec<_>) = self
+            .series
+            .iter()
+            .rev()
+            .partition(|series| series.style.is_hatched);
+        for series in filled.into_iter().chain(hatched) {
             placed.fill_band(series, scene);
         }
         for series in behind.iter().rev() {

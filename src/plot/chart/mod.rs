@@ -269,6 +269,9 @@ const THEORY_DASHES: [&[f64]; 6] = [
 /// The color of the time of a push, before it is made pale.
 const PUSH_COLOR: Color = grey(120);
 
+/// The color of a hatched time, which is seen on a band too.
+const HATCH_COLOR: Color = grey(100);
+
 /// Width of the dots of a path whose points are not joined, pt.
 const DOT_PT: f64 = 1.1;
 
@@ -311,6 +314,7 @@ impl SeriesStyle {
     /// The time in which the motion cannot be predicted: hatched.
     pub fn unpredictable() -> Self {
         Self {
+            color: HATCH_COLOR,
             is_hatched: true,
             ..Self::push()
         }

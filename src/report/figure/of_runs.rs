@@ -239,9 +239,9 @@ fn draw(
             labels.check_in_space()?;
             let mut proposed = None;
             let scene = job.spec.fitted(|spec| {
-                let (scene, dense) = space::scene(&FigureJob { spec, ..*job }, drawn);
-                proposed = dense;
-                scene
+                let (path, shorter) = space::scene(&FigureJob { spec, ..*job }, drawn);
+                proposed = shorter;
+                path
             });
             dense = proposed;
             warnings.extend(chords::warning(drawn, |course| &course.path));

@@ -4,6 +4,7 @@
 //! then magnified: lines and marks grow with the letters.
 
 use super::spec::{FigureSpec, WIDTHS_MM};
+use crate::engine::text::number::shortest;
 use crate::plot::chart::Chart;
 use crate::plot::chart::layout::least_height_pt;
 use crate::plot::ink::{TITLE_PT, at};
@@ -19,6 +20,9 @@ pub const FONT_SIZES_PT: RangeInclusive<f64> = 4.0..=72.0;
 const SLIDE_WIDTH_PT: f64 = 254.0 * PT_PER_MM;
 const SLIDE_HEIGHT_PT: f64 = 142.9 * PT_PER_MM;
 const SLIDE_FONT_PT: f64 = 18.0;
+
+/// A page may be narrower than the narrowest by rounding.
+const ROOM_ROUNDING: f64 = 1.0 - 1e-9;
 
 /// What a figure is made for: sets the size of its page and letters if they are not given.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -139,12 +143,25 @@ impl FigureSpec {
         scene
     }
 
+    /// Checks that the page has room for its letters.
+    ///
+    /// # Errors
+    /// Returns an error if it has not.
+    pub(super) fn check_letters(&self) -> Result<(), String> {
+        if self.page_width_pt() >= WIDTHS_MM.start() * PT_PER_MM * ROOM_ROUNDING {
+            return Ok(());
+        }
+        Err(format!(
+            "letters of {} pt are too large for a page of {} mm: choose a larger --width, or a smaller --font-size",
+            shortest(TITLE_PT * self.magnification()),
+            shortest((self.given_width_pt() / PT_PER_MM).round())
+        ))
+    }
+
     /// Returns whether the page and its letters have sizes that the command line allows.
     pub(super) fn has_page(&self) -> bool {
         let is_size = |pt: f64| WIDTHS_MM.contains(&((pt / PT_PER_MM * 1e6).round() / 1e6));
         let mut sizes = [self.width_pt, self.height_pt].into_iter().flatten();
-        sizes.all(is_size)
-            && self.font_pt.is_none_or(|pt| FONT_SIZES_PT.contains(&pt))
-            && is_size(self.page_width_pt())
+        sizes.all(is_size) && self.font_pt.is_none_or(|pt| FONT_SIZES_PT.contains(&pt))
     }
 }

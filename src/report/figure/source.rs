@@ -39,6 +39,7 @@ impl FigureSource {
         if !self.spec.is_sound() || (runs == 0 && self.table.is_none()) {
             return Err(refused("contains an invalid request for a figure"));
         }
+        self.spec.check_letters().map_err(|rule| refused(&rule))?;
         if ![0, runs].contains(&named) && self.table.is_none() {
             return Err(refused(&format!(
                 "--label is given {named} times for {runs} runs: give it once per run, in order"

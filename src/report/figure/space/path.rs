@@ -5,7 +5,7 @@ use crate::plot::chart::SeriesStyle;
 use crate::plot::chart::axis::AxisScale;
 use crate::plot::chart::curve;
 use crate::plot::extent;
-use crate::plot::ink::{grey, paler};
+use crate::plot::ink::{WHITE, grey, paler};
 use crate::plot::line;
 use crate::plot::scene::{PageScene, Point, StrokeStyle};
 use crate::report::figure::job::SampledRunNumbers;
@@ -94,6 +94,14 @@ fn draw_at(nearness: usize, pieces: &[Vec<Point>], style: &SeriesStyle, scene: &
         color: paler(pen.color, FARTHEST_WHITE * (1.0 - part)),
         ..pen
     };
+    if style.halo_pt() > 0.0 {
+        let halo = StrokeStyle {
+            width_pt: pen.width_pt + style.halo_pt(),
+            color: WHITE,
+            ..pen.clone()
+        };
+        draw(pieces, &halo, style, scene);
+    }
     draw(pieces, &pen, style, scene);
 }
 
