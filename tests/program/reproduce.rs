@@ -56,6 +56,6 @@ fn a_folder_with_files_is_left_alone_without_force() {
     let ground = Ground::new();
     fs::create_dir(ground.file("mine")).unwrap();
     ground.write("mine/notes.txt", "mine");
-    ground.refused("reproduce -o mine", 1, &["mine contains files", "--force"]);
+    ground.refused("reproduce -o mine", 1, &["mine holds files", "--force"]);
     assert_eq!(names(&ground.file("mine")), ["notes.txt"]);
 }

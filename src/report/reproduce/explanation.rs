@@ -56,12 +56,12 @@ fn findings(numbers: &Numbers) -> [String; 4] {
     let slower = with_digits(numbers.method_2.slower_percent(), 2, "%");
     [
         format!(
-            "**The wobble in the report's last figure is made by its time step.** After a push, the upper end of the axle \
+            "**The wobble in the report's last figure is made by its time step** ([#wobble-push-traces]). After a push, the upper end of the axle \
              rises and falls by {swing} in the report's computation. In the exact motion it rises and falls by {true_swing}, \
              {times} times less. The wheel turns {turns} times in every time step, and the method takes no account of what \
              happens meanwhile."
         ),
-        "**The oscillation in its first figures is real.** The report takes it for an error. It is the nutation of a top \
+        "**The oscillation in its first figures is real** ([#method-1-traces]). The report takes it for an error. It is the nutation of a top \
          that starts with its axle at an angle to its angular momentum. The exact motion has it too."
             .to_owned(),
         format!(
@@ -143,7 +143,8 @@ pub(super) fn method(document: &mut Document, numbers: &Numbers) {
          step* $Δt$ later:",
     );
     document.numbered_list([
-        "From the positions it computes the inertia tensor $I$, and from $L = I Ω$ the angular velocity $Ω$.",
+        "From the positions it computes the inertia tensor $I$, which says how hard the body is to turn about each axis. From \
+         $L = I Ω$ it computes the angular velocity $Ω$: the axis about which the body turns now, and how fast.",
         "It turns all masses about the direction of $Ω$ by the angle $ψ = |Ω| Δt$.",
         "From the new positions it computes the torque $τ$ of the weight.",
         "It adds $τ Δt$ to $L$. Then the next step begins.",

@@ -11,7 +11,8 @@ pub(super) fn sections(document: &mut Document, numbers: &Numbers) {
     document.paragraph(
         "The report's own figures are lost. Its text says what they showed: the coordinates of the axle's upper end over \
          time, and its path in space. In the figures here, the solid line is the report's method with the report's time \
-         step. The dashed line is the exact motion.",
+         step. The dashed line is the exact motion. What is set off is quoted from the report; [...] marks words that are left \
+         out.",
     );
     first_sections(document, numbers);
     method_1(document, numbers);
@@ -49,13 +50,17 @@ fn method_1(document: &mut Document, numbers: &Numbers) {
         "*Set-up.* The body stands upright. Its angular momentum is $L = (400, 0, 2000)$ J s, at an angle of {lag} to the \
          axle. The time step is 0.001 s."
     ));
+    document.quote(
+        "The spinning trace is restricted to the positive x domain. [...] There is an angle between the angular momentum and \
+         axis, this will cause difference between the matlab simulation and real physics phenomenon. [...] The axis top is not \
+         stable as it has a little oscillation in the z direction as well.",
+    );
     let round = with_digits(run.report.nutation_s * 1000.0, 3, "ms");
     let swing = with_digits(run.report.z_m.size_mm(), 3, "mm");
     document.paragraph(&format!(
         "The axle circles $L$ on a cone. It is upright at the start and after every round, {round} later. In between it \
-         leans to the other side of $L$, and its upper end is {swing} lower. The report sees \"a little oscillation in the \
-         z direction\", and expects a difference from \"real physics\". But this is the nutation. The exact motion has it \
-         too: in [#method-1-traces] the two lines cannot be told apart."
+         leans to the other side of $L$, and its upper end is {swing} lower. This is the oscillation in z. It is the \
+         nutation, and real physics: the exact motion has it too. In [#method-1-traces] the two lines cannot be told apart."
     ));
     figure(
         document,
@@ -64,8 +69,7 @@ fn method_1(document: &mut Document, numbers: &Numbers) {
     );
     let later = numbers.later_x_m.report.markup(3);
     document.paragraph(&format!(
-        "The report finds that the trace \"is restricted to the positive x domain\". This holds at first, because $L$ points \
-         to positive x. But the weight turns $L$ about the vertical, as it does with any top. After half a turn $L$ points \
+        "The trace stays at positive x only at first, because $L$ points to positive x. But the weight turns $L$ about the vertical, as it does with any top. After half a turn $L$ points \
          to negative x, and so does the trace: x runs from {later} m ([#method-1-longer])."
     ));
     figure(
@@ -83,19 +87,23 @@ fn more_tilted(document: &mut Document, numbers: &Numbers) {
         "*Set-up.* The same with \"a more tilted angular moment\". The report gives no numbers. We take \
          $L = (800, 0, 2000)$ J s.",
     );
+    document.quote(
+        "The results show more change in both x,y and z position for same time, means the gyro spinning faster and therefore \
+         result more error in z position. The circular trace becomes larger since we decrease the angle.",
+    );
     let [tilt, tilt_before] =
         [run, before].map(|run| with_digits(run.report.highest_tilt_deg, 3, "deg"));
     let [swing, swing_before] =
         [run, before].map(|run| with_digits(run.report.z_m.size_mm(), 3, "mm"));
     document.paragraph(&format!(
-        "The circle is larger, as the report says: the axle leans by up to {tilt} instead of {tilt_before}, and z swings by \
+        "The circle is larger: the axle leans by up to {tilt} instead of {tilt_before}, and z swings by \
          {swing} instead of {swing_before}. Again this is the nutation, and no error."
     ));
     let faster = 100.0 * (run.report.momentum / before.report.momentum - 1.0);
     let faster = with_digits(faster, 2, "%");
     let spin = with_digits(run.report.spin_rpm, 4, "rpm");
     document.paragraph(&format!(
-        "\"The gyro spinning faster\" is half right. $L$ is longer by {faster}, and the body turns faster by as much. Its \
+        "That it spins faster is half right. $L$ is longer by {faster}, and the body turns faster by as much. Its \
          spin about the axle is the same in both runs, {spin}."
     ));
     figure(
@@ -115,18 +123,22 @@ fn short_steps(document: &mut Document, numbers: &Numbers) {
         "*Set-up.* Body and angular momentum are tilted together by {tilt}, with $L =$ {momentum} along the axle. The report \
          does not say how long it ran. We take {duration}."
     ));
+    document.quote(
+        "We can observe no change in the z direction. [...] The animation appears only rotation around the axis but no \
+         rotation around the center. The plot below implies xy position are still changing but in an extreme slow rate. So we \
+         need to decrease the time step to speed up animation.",
+    );
     let around = with_digits(run.goes_around_deg(&run.report), 3, "deg");
     let turn = with_digits(run.report.turn_s(), 4, "s");
     let steps = with_digits(run.report.turn_s() / run.time_step_s, 3, "");
     document.paragraph(&format!(
-        "The report sees \"only rotation around the axis but no rotation around the center\". But in {duration} the axle \
-         goes around by {around}. A whole turn takes {turn}, or {steps} steps. Nothing is wrong with this time step. The \
-         animation ended too soon."
+        "The plot was right: x and y do change. In {duration} the axle goes around the center by {around}. A whole turn takes \
+         {turn}, or {steps} steps. Nothing is wrong with this time step. The animation ended too soon."
     ));
     let swing = with_decimals(run.report.z_m.size_mm(), 2, "mm");
     document.paragraph(&format!(
-        "\"We can observe no change in the z direction.\" z swings by {swing}, and so does the exact motion. It is the \
-         nutation. The scale of z in the figures is stretched so that it can be seen."
+        "The height does change. z swings by {swing}, and so does the exact motion. It is the nutation. The scale of z in the \
+         figures is stretched so that it can be seen."
     ));
     figure(
         document,
@@ -148,21 +160,25 @@ fn long_steps(document: &mut Document, numbers: &Numbers) {
     let duration = with_digits(run.duration_s, 3, "s");
     let longer = with_digits(run.time_step_s / numbers.method_2_slow.time_step_s, 3, "");
     document.paragraph(&format!(
-        "*Set-up.* The same with a time step of 0.1 s. The report speaks of \"shrinking the time step\", but makes it \
-         {longer} times longer. We run it for {duration}, about one turn."
+        "*Set-up.* The same with a time step of 0.1 s. We run it for {duration}, about one turn."
     ));
+    document.quote(
+        "After shrinking the time step (dt=1e-1) we have the following result. The animation looks more smooth and natural as \
+         the trace is almost a nice circle and the change of height is almost a constant shown by a straight line. And the \
+         spinning rate around the axis is faster than the spinning rate around the center.",
+    );
     let [turn, true_turn] = [run.report, run.exact].map(|it| with_digits(it.turn_s(), 4, "s"));
     let slower = with_digits(run.slower_percent(), 2, "%");
     document.paragraph(&format!(
-        "\"The trace is almost a nice circle.\" It is, and the circle is the gyroscope's. A turn takes {turn}. In the exact \
+        "The report calls this shrinking, but it has made the time step {longer} times longer. The trace is almost a nice \
+         circle, and the circle is the gyroscope's. A turn takes {turn}. In the exact \
          motion it takes {true_turn}, so the report's is {slower} too long."
     ));
     let [swing, true_swing] =
         [run.report, run.exact].map(|it| with_digits(it.z_m.percent(), 2, "%"));
     document.paragraph(&format!(
-        "\"The change of height is almost a constant shown by a straight line.\" The height swings by {swing}. In the exact \
-         motion it swings by {true_swing}. Here the time step begins to show. This is the swing about the lag that was \
-         computed above."
+        "The height is not quite constant: it swings by {swing}. In the exact motion it swings by {true_swing}. Here the time \
+         step begins to show. This is the swing about the lag that was computed above."
     ));
     figure(
         document,
@@ -183,9 +199,13 @@ fn push(document: &mut Document, numbers: &Numbers) {
         "*Set-up.* Method 2 with the time step 0.1 s. During the first 200 steps, 20 s, a force of 100 N presses the upper \
          end of the axle straight down.",
     );
+    document.quote(
+        "In this plot, we can see the wobble in z direction is periodic; the radius of the circle in the trace is increasing as \
+         the height of the axis is dropping showing there is an error.",
+    );
     let [z, true_z] = [run.report, run.exact].map(|it| it.z_m.markup(4));
     document.paragraph(&format!(
-        "\"We can see the wobble in z direction is periodic.\" In the report's computation, z runs from {z} m. In the exact \
+        "In the report's computation, z runs from {z} m. In the exact \
          motion it runs from {true_z} m, which is a straight line in [#wobble-push-traces]. The push makes the exact top go \
          around faster as long as it lasts. It does not make it wobble."
     ));
@@ -210,8 +230,7 @@ fn push(document: &mut Document, numbers: &Numbers) {
     ));
     let length = numbers.length_m.markup(6);
     document.paragraph(&format!(
-        "\"The radius of the circle in the trace is increasing as the height of the axis is dropping showing there is an \
-         error.\" This is no error. The axle is rigid, so its upper end keeps its distance from the foot: in all rows of the \
+        "That the radius grows as the height drops is no error. The axle is rigid, so its upper end keeps its distance from the foot: in all rows of the \
          run, $√(x^2 + y^2 + z^2)$ runs from {length} m. Whoever lowers the end of a leaning pole moves it outward. In every \
          swing the radius grows while the height drops, and shrinks while it rises."
     ));
@@ -298,8 +317,12 @@ fn slow_tops(document: &mut Document, numbers: &Numbers) {
 
 fn conclusions(document: &mut Document, numbers: &Numbers) {
     document.subsection("Section 4, the last paragraph");
+    document.quote(
+        "Overall, our experiment shows matlab can accurately simulate the precession in physics world. [...] The larger the \
+         angle from the axis to the ground the faster the precession motion is.",
+    );
     document.paragraph(
-        "\"The larger the angle from the axis to the ground the faster the precession motion is.\" A fast top precesses at \
+        "A fast top precesses at \
          $M g h/L$ at any tilt. Looked at closely, the rate does depend on the tilt, a little for a fast top and more for a \
          slow one, and in the sense that the report gives. The report's own method shows the opposite at 0.1 s ([#tilt]): \
          the effect of its time step is larger than the true one.",
@@ -327,8 +350,7 @@ fn conclusions(document: &mut Document, numbers: &Numbers) {
         rows: rows.collect(),
     }));
     document.paragraph(
-        "\"Overall, our experiment shows matlab can accurately simulate the precession in physics world.\" For the \
-         precession this is nearly right. For the wobble it is not. No figure of the report could have shown the \
+        "Is the simulation accurate? For the precession it nearly is. For the wobble it is not. No figure of the report could have shown the \
          difference: that takes a second run with a shorter time step, or the exact motion.",
     );
 }
