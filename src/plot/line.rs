@@ -301,6 +301,43 @@ mod tests {
         assert_eq!(far, [[(5.0, 5.0), (5.0, 10.0)]]);
     }
 
+    #[test]
+    fn a_dashed_line_does_not_follow_ripples_that_nobody_sees() {
+        let rippled = |height: f64| -> Vec<Point> {
+            (0..2000)
+                .map(|i| at(0.1 * f64::from(i), height * f64::from(i % 2)))
+                .collect()
+        };
+        let straight = without_ripples(&rippled(0.2), |place| *place, 0.25);
+        assert!(length(&straight) < 1.01 * 199.9, "{}", length(&straight));
+        let seen = rippled(1.0);
+        assert_eq!(without_ripples(&seen, |place| *place, 0.25), seen);
+        // A bend is no ripple.
+        let bend: Vec<Point> = (0..100)
+            .map(|i| at(f64::from(i), 1e-3 * f64::from(i * i)))
+            .collect();
+        assert_eq!(without_ripples(&bend, |place| *place, 0.25), bend);
+    }
+
+    #[test]
+    fn a_dashed_line_that_follows_itself_is_drawn_once() {
+        let circle = |radius: f64, turns: u32| -> Vec<Point> {
+            (0..=100 * turns)
+                .map(|i| 0.02 * std::f64::consts::PI * f64::from(i))
+                .map(|angle| at(radius * libm::cos(angle), radius * libm::sin(angle)))
+                .collect()
+        };
+        let once = circle(50.0, 1);
+        let whole_pt = length(&once);
+        let drawn_pt = |lines: &[Vec<Point>]| -> f64 {
+            let parts = first_passes(lines, |place| *place, 2.0);
+            parts.iter().map(|part| length(part)).sum()
+        };
+        assert!((drawn_pt(std::slice::from_ref(&once)) / whole_pt - 1.0).abs() < 0.05);
+        assert!((drawn_pt(&[circle(50.0, 7)]) / whole_pt - 1.0).abs() < 0.05);
+        assert!((drawn_pt(&[once, circle(60.0, 1)]) / whole_pt - 2.2).abs() < 0.1);
+    }
+
     proptest! {
         #[test]
         fn simplification_keeps_every_point_near_the_line(

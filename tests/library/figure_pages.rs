@@ -6,7 +6,8 @@ use super::figures::{
 };
 use crate::support::scenarios::parse;
 use crate::support::words::has;
-use gyrolab::plot::{PageFormat, PageScene, Point, write};
+use gyrolab::plot::chart::EXACT_COLOR;
+use gyrolab::plot::{PageFormat, PageScene, Paint, Point, write};
 use gyrolab::report::figure::kind::FigureKind;
 use gyrolab::report::figure::labels::FigureLabels;
 use gyrolab::report::figure::of_runs::FigureRun;
@@ -185,4 +186,27 @@ fn a_curve_with_ten_steps_per_swing_reaches_its_extremes() {
         let highest = most(lows.into_iter());
         assert!(highest < 0.25, "{preset}: {highest} degrees");
     }
+}
+
+/// The nutation of the exact motion is lower than a dot: its dashes must not follow it.
+#[test]
+fn dashes_of_the_exact_motion_are_as_long_as_they_look() {
+    let figure = drawn(&[run("wobble-push", &[])], &with_exact("z_m"));
+    let [panel] = panels(&figure.scene)[..] else {
+        panic!("one panel")
+    };
+    let exact = lines(&figure.scene, panel).into_iter().filter(
+        |item| matches!(&item.paint, Paint::Stroke(pen) if !pen.dash_pt.is_empty() && pen.color == EXACT_COLOR),
+    );
+    let length_pt: f64 = exact
+        .map(|item| {
+            let points: Vec<Point> = item.path.points().collect();
+            gyrolab::plot::line::length(&points)
+        })
+        .sum();
+    let width_pt = panel[1].x - panel[0].x;
+    assert!(
+        (length_pt / width_pt - 1.0).abs() < 0.05,
+        "{length_pt} {width_pt}"
+    );
 }

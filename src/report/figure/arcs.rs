@@ -1,8 +1,8 @@
-//! The motion within a time step, for figures: where a step turns the body far, a straight line would cut the bend off.
+//! The motion within long time steps, for figures. Straight lines between the steps would cut off its bends.
 //!
 //! The scheme itself defines this motion: it takes a part of the step from the state before it. The report's scheme turns
-//! the body about Ω, so its points go along arcs of circles. A step that turns the body by half a turn or more is left
-//! alone: such a run is under-sampled, and what it shows are its steps.
+//! the body about Ω, so its points move along arcs of circles. Nothing is computed within a step that turns the body by
+//! half a turn or more: such a run is under-sampled, and its figure shows its steps.
 
 use super::course::SampleRequest;
 use crate::engine::run::{Simulation, Step};
@@ -44,7 +44,8 @@ impl StepArcs {
         }
     }
 
-    /// Returns the states within `step`, without its ends, in order of time. Each step of the run must be given, in order.
+    /// Returns the states within `step`, without its ends, in order of time. The caller passes each step of the run in
+    /// order.
     pub fn within(&mut self, step: &Step) -> Vec<State> {
         let has_changed = std::mem::replace(&mut self.changes, step.changes()) != step.changes();
         let motion = step.motion();
@@ -93,15 +94,15 @@ impl StepArcs {
     }
 }
 
-/// Returns whether a figure of what is `wanted` of the run of `scenario` shows its motion between the steps too, or has so
-/// many steps that the lines between them do.
+/// Returns true if a figure of what is `wanted` of the run of `scenario` shows its motion between the steps: by states
+/// within them, or because the steps are short.
 pub(super) fn are_drawn(scenario: &Scenario, wanted: &SampleRequest) -> bool {
     let turn_rad = first_turn_rad(scenario);
     let is_enough = parts(turn_rad) <= most_parts(scenario, wanted);
     is_enough && is_shown(scenario.first_motion(), turn_rad)
 }
 
-/// Returns whether figures of the whole run of `scenario` show its motion within long time steps.
+/// Returns true if figures of the whole run of `scenario` show its motion between the steps.
 pub fn show_whole_run(scenario: &Scenario) -> bool {
     let whole = SampleRequest {
         columns: Vec::new(),
@@ -112,7 +113,7 @@ pub fn show_whole_run(scenario: &Scenario) -> bool {
     are_drawn(scenario, &whole)
 }
 
-/// Returns whether straight lines between the steps of the run of `scenario` would cut bends off.
+/// Returns true if straight lines between the steps of the run of `scenario` would cut off bends.
 pub(super) fn are_bent(scenario: &Scenario) -> bool {
     first_turn_rad(scenario) > STRAIGHT_RAD
 }
@@ -123,7 +124,7 @@ fn first_turn_rad(scenario: &Scenario) -> f64 {
     turn_rad(body, &scenario.start, scenario.first_motion().time_step_s)
 }
 
-/// Returns whether the motion within a step that turns the body by `turn_rad` is that of the run.
+/// Returns true if figures show the motion within a step that turns the body by `turn_rad`.
 fn is_shown(motion: &Motion, turn_rad: f64) -> bool {
     let is_exact = motion.scheme.order.is_none(); // figures compute it at any time
     !is_exact && turn_rad.is_finite() && (turn_rad < PI || motion.scheme.turns_exactly)
@@ -142,7 +143,7 @@ fn parts(turn_rad: f64) -> u64 {
     (turn_rad / PART_RAD).ceil() as u64
 }
 
-/// Returns the most parts of a step for what is `wanted` of the run of `scenario`; 1 where numbers of steps are.
+/// Returns the most parts of a step for what is `wanted` of the run of `scenario`; 1 if it includes step numbers.
 fn most_parts(scenario: &Scenario, wanted: &SampleRequest) -> u64 {
     if wanted.counts_steps() {
         return 1;

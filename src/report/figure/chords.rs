@@ -1,8 +1,9 @@
 //! Paths with too few points for a figure, whose bends would be cut off by straight lines between the points.
 //!
-//! If a run takes ten time steps per turn of its path, chords lie inside the circle of its points. Compared with the
-//! exact motion this looks like an error of the run, so the points are drawn without joining them. The exact motion has
-//! more points and is always a line, although over a very long time they are too few as well.
+//! A step of half a turn or more, and each step of a very long run, has no point within it (`arcs`). Then chords lie
+//! inside the circle of the points. Compared with the exact motion this looks like an error of the run, so the points
+//! are drawn without joining them. The exact motion has more points and is always a line, although over a very long
+//! time they are too few as well.
 
 use super::course::SampledRun;
 use super::job::SampledRunNumbers;
