@@ -211,7 +211,7 @@ fn mistakes_are_reported_with_line_and_nearest_name() {
         ),
         (
             "[[do]]\nsave = { path = \"x\", from_here = true, to_step = 3 }",
-            "do.0.save.to_step (3) has no place",
+            "do.0.save.to_step (3) cannot be used with from_here",
         ),
         ("[[do]]\nspeed = \"fast\"", "or \"top\""),
         ("[[do]]\nshow = [\"trace\"]", "did you mean traces?"),
@@ -221,7 +221,7 @@ fn mistakes_are_reported_with_line_and_nearest_name() {
         ("[[do]]\nzoom = { above = 0 }", "must be from 0.5 to 100"),
         (
             "[[do]]\npush = { force_N = [0, 0, 1], toward = \"down\" }",
-            "do.0.push.toward (\"down\") has no place",
+            "do.0.push.toward (\"down\") cannot be used with a force",
         ),
         (
             "[[do]]\npush = { force_N = -1 }",

@@ -288,7 +288,7 @@ fn exports_of_every_layout_pass_verification() {
         let [verdict] = &result.notes[..] else {
             panic!("{:?}", result.notes);
         };
-        assert!(verdict.starts_with("Do not believe this run"));
+        assert!(verdict.starts_with("Not reliable"));
     }
     let good = preset("steady-slow", &["motion.steps=50"]);
     let notes = verified(&csv(&good, whole())).unwrap().notes;

@@ -527,7 +527,7 @@ fn schemes_that_cannot_model_friction_are_rejected_with_a_reason() {
     );
     let edit = "edit=[{step=10,set={\"motion.scheme\"=\"srkn11b\"}}]";
     assert_eq!(
-        refused("first-dip", &[edit]).split(" cannot").next(),
+        refused("first-dip", &[edit]).split(" does not").next(),
         Some("edit.0.set.motion.scheme (\"srkn11b\")")
     );
     // Without friction, or with coefficients of zero, the scheme is allowed.

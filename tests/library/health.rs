@@ -80,7 +80,7 @@ fn runs_spoiled_by_the_time_step_get_warnings() {
         let health = health(scenario.clone());
         let sentence = health.sentence(Some(&advise(&scenario)));
         assert_eq!(health.is_believed(), Some(false));
-        begins(&sentence, "Do not believe this run");
+        begins(&sentence, "Not reliable");
         has(&sentence, words);
         let advised = match name {
             // At another time step, which --time-step rejects, its push would differ.
@@ -322,7 +322,7 @@ fn check_verdict(scenario: &Scenario) {
     match health.is_believed().unwrap() {
         true => assert!(begins("The numbers are reliable") && is_near),
         false if is_near => assert!(begins("The traced point is right, but not the nutation")),
-        false => assert!(begins("Do not believe")),
+        false => assert!(begins("Not reliable")),
     }
 }
 

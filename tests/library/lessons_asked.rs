@@ -157,7 +157,5 @@ fn followers_see_sentences_that_name_keys() {
         ..ClassOverlay::default()
     };
     stage.class.set_overlay(overlay, &mut stage.lab);
-    stage
-        .wait(0.0)
-        .shows("Press space, and - for a slower film.");
+    stage.wait(0.0).shows("Press space, and - to play");
 }

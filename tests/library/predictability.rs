@@ -65,7 +65,7 @@ fn the_predictable_time_does_not_depend_on_the_time_step() {
                 "{case}"
             );
             assert!(case.contains("is predictable until t = ") && case.contains(UNPREDICTABLE));
-            has_no(&case, "Do not believe");
+            has_no(&case, "Not reliable");
             has_no(&case, "exact motion itself");
         }
     }
@@ -104,10 +104,7 @@ fn accurate_schemes_diverge_at_the_predictable_time() {
 fn a_run_that_fails_while_predictable_is_unreliable() {
     let health = health(PUSHED, "rk4", 0.1);
     let sentence = health.sentence(None);
-    assert!(
-        sentence.starts_with("Do not believe this run"),
-        "{sentence}"
-    );
+    assert!(sentence.starts_with("Not reliable"), "{sentence}");
     has(&sentence, UNPREDICTABLE);
     assert_eq!(health.is_reliable(), Some(false));
 }
@@ -157,7 +154,7 @@ fn a_balanced_upright_top_gets_no_verdict() {
         let sentence = health.sentence(None);
         let case = format!("{scheme} at {time_step_s} s: {sentence}");
         has_all(&case, &[BALANCED, UNPREDICTABLE]);
-        has_no(&case, "Do not believe");
+        has_no(&case, "Not reliable");
         has_no(&case, "The numbers are reliable");
         assert_eq!(health.is_believed(), None, "{case}");
         assert_eq!(health.is_reliable(), Some(false), "{case}");

@@ -539,7 +539,7 @@ fn euler_rates_cannot_be_combined_with_other_forms() {
     );
     has(
         refusal("psi_dot_rad_per_s = 2\nomega_frame = 'body'"),
-        "goes with omega_rad_per_s",
+        "belongs to omega_rad_per_s",
     );
     has(refusal("tilt_deg = 2"), "psi_dot_rad_per_s");
     has(

@@ -34,7 +34,7 @@ fn exports_of_every_kind_are_verified() {
     has_all(
         &told,
         [
-            "whole.csv: the same: all 41 rows, recomputed\n    Do not believe this run: ",
+            "whole.csv: the same: all 41 rows, recomputed\n    Not reliable: ",
             "part.csv: the same: all 4 rows",
             "spin.csv: the same: all 41 rows",
             "excel.csv: the same: all 41 rows",

@@ -55,7 +55,7 @@ fn a_write_up_describes_and_reproduces_its_run() {
             "# The wobble push",
             "force_N = [0.0, 0.0, -50.0]\nfirst_step = 1\nsteps = 200",
             "700 of 0.1 s",
-            "Do not believe this run",
+            "Not reliable",
             "are our reading; changed since\n\n",
             "| tilt swing since 20 s |",
             "| nutation period since 20 s |",

@@ -180,7 +180,7 @@ impl Health {
         let fix = advice.map_or(String::new(), |advice| fix_words(self, advice));
         if self.point_holds() == Some(false) {
             return format!(
-                "Do not believe this run: {}, and the traced point is up to {far} from the exact motion{fix}.{limit}",
+                "Not reliable: {}, and the traced point is up to {far} from the exact motion{fix}.{limit}",
                 cause(self)
             );
         }
