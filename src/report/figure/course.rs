@@ -1,4 +1,4 @@
-//! The numbers of a figure, from a run that is stepped through: once more, or while something else is read off it.
+//! Sampling of a run for a figure, either by playing it again or while it is played for another purpose.
 
 use super::arcs::StepArcs;
 use super::path::{self, TracedPath};
@@ -20,7 +20,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 const EXACT_TOGETHER: usize = 4;
-/// A curve over time is drawn by the extremes of this many parts of its time: more than the widest page has dots across.
+/// Number of bins of a curve over time: more than the widest page has dots across.
 const CURVE_BINS: f64 = 8192.0;
 
 #[derive(Clone, Debug)]
@@ -36,34 +36,36 @@ pub struct SampledRun {
     wanted: SampleRequest,
     curves: Arc<Vec<Recording>>,
     pub path: Arc<TracedPath>,
-    /// The same from above, with z = 0: a path that goes up and down in one place is not interrupted there.
+    /// The path seen from above, with z = 0. It is not interrupted where the path goes up and down in one place.
     pub above: Arc<TracedPath>,
     pub end_s: f64,
-    /// Whether no moment lay in the stretch.
+    /// True if the time range contains no sample.
     pub is_empty: bool,
-    /// Where its numbers stopped being finite, if they did.
+    /// The step at which numbers stopped being finite, if any.
     pub broke: Option<NotFinite>,
-    /// Its health at its last step; `None` where it was not compared with the exact motion.
+    /// Accuracy at the last step; `None` if the run was not compared with the exact motion.
     pub health: Option<Health>,
-    /// The time from which on no computation can predict the motion, s; `None` up to that time, and where it is not known.
+    /// Time after which no computation can predict the motion, s. `None` if the run ends before it, or if it is
+    /// unknown.
     pub predictable_until_s: Option<f64>,
-    /// The period of its nutation, s, of the exact motion where it is known: its moments may be too few to count them.
+    /// Period of the nutation of the exact motion, s, if known: there may be too few samples to count its swings.
     pub swing_s: Option<f64>,
 }
 
-/// A column in a part of the time.
+/// The values of a column in a bin of time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bin {
-    /// Its first and last time, s.
+    /// First and last time, s.
     pub times_s: [f64; 2],
     pub extent: Extent,
     last: f64,
-    /// How often the curve turned up or down.
+    /// Number of times the curve turned up or down.
     pub turns: u32,
 }
 
 impl SampleRequest {
-    /// Whether something is wanted that the exact motion has not: the number of the step, or of the stretch between edits.
+    /// Returns true if a column is requested that the exact motion does not have: the number of the step, or of the
+    /// segment between edits.
     pub fn counts_steps(&self) -> bool {
         let mut columns = self.columns.iter();
         columns.any(|column| ["step", "segment"].contains(&column.name))
@@ -76,7 +78,7 @@ impl SampleRequest {
 }
 
 impl SampledRun {
-    /// The part of the run of `scenario` that is `wanted`, where it has all of that.
+    /// Returns the `wanted` samples of the run of `scenario`, if this sampled run contains all of them.
     pub(super) fn part(&self, scenario: &Scenario, wanted: &SampleRequest) -> Option<Self> {
         let end_s = wanted.end_s(scenario);
         let mut columns = wanted.columns.iter();
@@ -96,7 +98,7 @@ impl SampledRun {
         columns.position(|it| it.name == column.name)
     }
 
-    /// `column` part by part, in the order of time.
+    /// Returns the bins of `column` in order of time.
     pub(super) fn parts(&self, column: &CsvColumn) -> Vec<Bin> {
         let Some(place) = self.place(column) else {
             return Vec::new();
@@ -114,7 +116,7 @@ impl SampledRun {
             .collect()
     }
 
-    /// The points of `column`, every extreme among them.
+    /// Returns the points of `column`, including every extreme.
     pub fn points(&self, column: &CsvColumn) -> Vec<[f64; 2]> {
         let mut points: Vec<[f64; 2]> = Vec::new();
         for part in self.parts(column) {
@@ -137,7 +139,7 @@ impl SampledRun {
     }
 }
 
-/// The blocks of `curves`, those of one part of the time together.
+/// Returns the bins of `curves`, merged within each part of the time.
 fn in_parts(curves: &Recording) -> Vec<RecordingBin> {
     let mut blocks: Vec<RecordingBin> = Vec::new();
     let Some(whole) = curves.whole() else {
@@ -154,7 +156,7 @@ fn in_parts(curves: &Recording) -> Vec<RecordingBin> {
     blocks
 }
 
-/// Returns which part of `whole` holds the time `time_s`.
+/// Returns the part of `whole` that contains the time `time_s`.
 fn part_at(whole: &RecordingBin, time_s: f64) -> u64 {
     let length_s = (whole.end_s - whole.begin_s).max(f64::MIN_POSITIVE);
     (CURVE_BINS * ((time_s - whole.begin_s) / length_s)) as u64
@@ -166,19 +168,19 @@ pub struct RunSampler {
     scenario: Arc<Scenario>,
     stretch_end_s: f64,
     arcs: StepArcs,
-    /// The azimuth at the newest step.
+    /// The azimuth at the latest step.
     azimuth: Azimuth,
     curves: Vec<Recording>,
     path: path::PathRecorder,
     above: path::PathRecorder,
-    /// Computes the distance from the exact motion, if that is a curve.
+    /// Computes the distance from the exact motion, if it is one of the columns.
     meter: Option<DistanceMeter>,
     end_s: f64,
     is_empty: bool,
 }
 
 impl RunSampler {
-    /// A recorder of what is `wanted` of the run of `scenario`, before its start.
+    /// Creates a sampler of the `wanted` samples of the run of `scenario`, before its start.
     pub fn new(scenario: &Arc<Scenario>, wanted: SampleRequest) -> Self {
         Self {
             arcs: StepArcs::new(scenario, &wanted),
@@ -199,7 +201,7 @@ impl RunSampler {
         }
     }
 
-    /// Returns a recorder of the exact motion, whose path is a line.
+    /// Creates a sampler of the exact motion, whose path is a line.
     fn of_exact_motion(scenario: &Arc<Scenario>, wanted: SampleRequest) -> Self {
         Self {
             path: path::PathRecorder::new(true),
@@ -208,8 +210,8 @@ impl RunSampler {
         }
     }
 
-    /// Takes in `step`; to be shown the start and every step up to the first one at the end of the stretch or behind it. The
-    /// curves have that one too, and the last one before the stretch, so that they come from one edge and go on to the other.
+    /// Samples `step`. Call it for the start and for every step up to the first one at or after the end of the time
+    /// range. The curves also include one step before and after the range, so that they reach both edges.
     pub fn follow(&mut self, step: &Step) {
         let beyond_s = step.motion().time_step_s;
         for state in self.arcs.within(step) {
@@ -221,8 +223,8 @@ impl RunSampler {
         self.take(step.time_s(), beyond_s, step.position(), || step.sample());
     }
 
-    /// Takes the numbers of one moment, those of the curves if it is less than `beyond_s` (s) outside of the stretch; `sample`
-    /// is asked for them where they are needed.
+    /// Records one sample. The curves include it if it is less than `beyond_s` (s) outside the time range. `sample` is
+    /// only called if its numbers are needed.
     fn take(
         &mut self,
         time_s: f64,
@@ -259,7 +261,7 @@ impl RunSampler {
         }
     }
 
-    /// What was written down; `broke` says why the run ended before the stretch, where it did.
+    /// Returns the samples. `broke` tells why the run ended before the end of the time range, if it did.
     pub fn end(self, broke: Option<NotFinite>) -> SampledRun {
         SampledRun {
             wanted: self.wanted,
@@ -276,13 +278,13 @@ impl RunSampler {
     }
 }
 
-/// Times that are so near to the ends of a stretch up to `end_s` belong to it, s.
+/// Returns the tolerance for times at the edges of a range that ends at `end_s`, s.
 fn rounding_s(end_s: f64) -> f64 {
     1e-9 * end_s.abs()
 }
 
-/// Steps through the run of `scenario` and gives what is `wanted` of it. `watch` is told the step reached and the last one, and
-/// says whether to go on; `None` where it said no.
+/// Plays the run of `scenario` and returns the `wanted` samples. `watch` is called with the current and the last step.
+/// Returns `None` if `watch` stopped the run.
 pub fn play(
     scenario: &Arc<Scenario>,
     wanted: &SampleRequest,
@@ -316,23 +318,22 @@ pub fn play(
     })
 }
 
-/// Moments of the exact motion within the shortest of its periods that is known, and at least over the whole stretch; and at
-/// most, whatever the periods are.
+/// Samples of the exact motion per shortest known period, the minimum number over the whole range, and the maximum.
 const A_PERIOD: f64 = 200.0;
 const LEAST_EXACT_SAMPLES: f64 = 3000.0;
 const MOST_EXACT_SAMPLES: f64 = 400_000.0;
-/// The part of a period, beside whole ones, between moments that are farther apart than it: the golden section, which meets
-/// ever other phases. Another part could meet the same ones again, and show a slow swing that the motion does not have.
+/// Fraction of a period added to a sampling interval that exceeds the period: the golden section, which always meets
+/// other phases. Another fraction could repeat phases and show a slow swing that the motion does not have.
 const OTHER_PHASE: f64 = 0.381_966;
 
-/// As [`play`], of the exact motion beside the run: between the time steps too, where these are too long to show it.
+/// Samples the exact motion like [`play`], also between the time steps if these are too long to show it.
 pub fn exact(
     scenario: &Arc<Scenario>,
     wanted: &SampleRequest,
     mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Option<SampledRun> {
     let mut truth = Truth::new(Arc::clone(scenario));
-    // The azimuth is counted on from the start, and nothing else needs what came before.
+    // The azimuth is counted from the start. All other numbers are independent of earlier times.
     let mut columns = wanted.columns.iter();
     let is_counted = columns.any(|column| column.name == "azimuth_deg");
     let begin_s = if is_counted {
@@ -383,13 +384,13 @@ pub fn exact(
     })
 }
 
-/// Returns the time in which the body of `scenario` turns once at the start, s.
+/// Returns the duration of one turn of the body of `scenario` at the start, s.
 fn turn_s(scenario: &Scenario) -> Option<f64> {
     let rate = observables::angular_velocity(&scenario.body.mechanics, &scenario.start).norm();
     (rate > 0.0 && rate.is_finite()).then_some(TAU / rate)
 }
 
-/// How far the moments of a stretch of the exact motion are apart, s.
+/// Returns the interval between samples of the exact motion, s.
 fn apart_s(length_s: f64, time_step_s: f64, known_period_s: Option<f64>) -> f64 {
     let period_s = known_period_s.unwrap_or(f64::INFINITY);
     let apart_s = (period_s / A_PERIOD)
@@ -426,7 +427,7 @@ mod tests {
     use super::*;
     use crate::engine::scenario::Document;
 
-    /// A stretch of `scenario`, and the points of its curve of z.
+    /// Returns a time range of `scenario`, and the points of its z curve.
     fn of_z(
         scenario: &Arc<Scenario>,
         from_s: f64,
@@ -446,14 +447,14 @@ mod tests {
 
     #[test]
     fn a_curve_reaches_both_ends_of_its_time_range() {
-        // Its steps are of 0.1 s.
+        // Its time step is 0.1 s.
         let scenario = Document::open("wobble-push").unwrap().scenario().unwrap();
         let scenario = Arc::new(scenario);
         for (from_s, to_s, times, places) in [
             (20.05, 20.25, vec![20.0, 20.1, 20.2, 20.3], 2),
-            // No step lies between them.
+            // No step lies in the range.
             (20.02, 20.08, vec![20.0, 20.1], 0),
-            // They are at steps: nothing more is needed.
+            // Both ends are at steps: nothing more is needed.
             (20.0, 20.2, vec![20.0, 20.1, 20.2], 3),
             (0.0, 0.15, vec![0.0, 0.1, 0.2], 2),
         ] {
@@ -473,7 +474,7 @@ mod tests {
         let (_, points) = of_z(&scenario, 0.0, None);
         assert!(points.windows(2).all(|pair| pair[0][0] <= pair[1][0]));
         let mut run = Simulation::new(Arc::clone(&scenario));
-        // Each fiftieth of the run has its extremes near.
+        // Each fiftieth of the run has its extremes among the nearby points.
         for fiftieth in 0..50 {
             let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
             let begin_s = run.now().time_s();

@@ -1,4 +1,4 @@
-//! The kinds of figures of a run, by the names of the lab's panes and of a CSV's columns.
+//! The kinds of figures of runs, named after the lab's panes and the columns of a CSV.
 
 use crate::engine::analysis::readouts;
 use crate::engine::data::TimeSeries;
@@ -13,7 +13,7 @@ pub enum FigureKind {
     OverTime(Vec<&'static CsvColumn>),
     /// The distance from the exact motion over time, on a logarithmic axis.
     Error(Vec<&'static CsvColumn>),
-    /// What was measured less what the run says, a panel for each quantity.
+    /// Measured values minus the values of a run, with one panel per quantity.
     Residuals,
     Above,
     ThreeD,
@@ -24,9 +24,9 @@ const MOST_FIGURE_COLUMNS: usize = 30;
 pub const RESIDUALS: &str = "residuals";
 pub const ERROR: &str = "error";
 
-/// The kinds of figure of any run, by name.
+/// Names of the kinds of figures that any run can have.
 pub const RUN_FIGURE_NAMES: [&str; 4] = [TRACES, ABOVE, THREE_D, ERROR];
-/// Those, and the kind that needs measured data. A list of columns is the other way to name a figure.
+/// These names, and the kind that needs measured data. A list of columns also names a figure.
 pub const FIGURE_KIND_NAMES: [&str; 5] = {
     let [traces, above, three_d, error] = RUN_FIGURE_NAMES;
     [traces, above, three_d, error, RESIDUALS]
@@ -62,16 +62,16 @@ impl FigureKind {
         }
     }
 
-    /// What was measured in `series`, over time.
+    /// Returns the kind that shows the measured quantities of `series` over time.
     pub fn measured(series: &TimeSeries) -> Self {
         let names = series.curves.iter().map(|curve| curve.quantity.name);
         Self::OverTime(names.filter_map(find).collect())
     }
 
-    /// Returns the kind of that name: one of [`FIGURE_KIND_NAMES`], or columns with commas between them.
+    /// Parses the name of a kind: one of [`FIGURE_KIND_NAMES`], or columns separated by commas.
     ///
     /// # Errors
-    /// If there is no such kind or column: perhaps the name that was meant.
+    /// Returns an error if there is no such kind or column, with a suggestion if there is a similar name.
     pub fn named(name: &str) -> Result<Self, String> {
         match name {
             TRACES => return Ok(Self::traces()),
@@ -89,7 +89,7 @@ impl FigureKind {
             ));
         }
         let columns = name.split(',').map(str::trim).map(|name| {
-            // Whoever shows the refusal names the whole list.
+            // The caller's message already names the whole list.
             column(name).map_err(|rule| {
                 if is_list {
                     format!("{name} {rule}")
