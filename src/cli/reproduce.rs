@@ -128,7 +128,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_command_is_one_of_gyrolab() {
+    fn every_command_parses_as_a_gyrolab_command() {
         for made in TABLES {
             let command = command(made).unwrap();
             assert!(

@@ -302,7 +302,7 @@ mod tests {
     }
 
     #[test]
-    fn a_dashed_line_does_not_follow_ripples_that_nobody_sees() {
+    fn dashed_lines_ignore_invisible_ripples() {
         let rippled = |height: f64| -> Vec<Point> {
             (0..2000)
                 .map(|i| at(0.1 * f64::from(i), height * f64::from(i % 2)))

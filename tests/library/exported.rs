@@ -508,6 +508,6 @@ fn distance_from_the_exact_motion_is_an_optional_column() {
         assert!((distance - run[4].unwrap()).abs() < 1e-14, "{run:?}");
         assert!(truth[4].unwrap() < 1e-14, "{truth:?}");
     }
-    // It is not among the columns of every CSV.
+    // A CSV has this column only on request.
     assert!(COLUMNS.iter().all(|column| column.name != "distance_m"));
 }

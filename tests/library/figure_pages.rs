@@ -35,7 +35,7 @@ fn labels_have_italics_and_scripts_and_panels_their_own_ranges() {
 }
 
 #[test]
-fn pages_have_the_height_and_the_letters_that_were_asked_for() {
+fn pages_have_the_requested_height_and_font() {
     const MM: f64 = 72.0 / 25.4;
     let runs = [run("cusps", &["motion.steps=300"])];
     let sizes = |scene: &PageScene| {
@@ -188,9 +188,9 @@ fn a_curve_with_ten_steps_per_swing_reaches_its_extremes() {
     }
 }
 
-/// The nutation of the exact motion is lower than a dot: its dashes must not follow it.
+/// The nutation of the exact motion is smaller than a dot, so the length of the dashes must not include it.
 #[test]
-fn dashes_of_the_exact_motion_are_as_long_as_they_look() {
+fn dashes_of_the_exact_motion_ignore_its_invisible_nutation() {
     let figure = drawn(&[run("wobble-push", &[])], &with_exact("z_m"));
     let [panel] = panels(&figure.scene)[..] else {
         panic!("one panel")

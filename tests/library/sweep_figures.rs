@@ -194,7 +194,7 @@ fn too_many_quantities_are_rejected_with_the_option_to_choose() {
     assert!(refusal.starts_with("8 quantities"), "{refusal}");
 }
 
-/// A sweep of tilt and spin, seven values of each, of which one has no number.
+/// The CSV of a sweep over seven tilts and seven spins, with one missing number.
 fn grid() -> String {
     let mut text = "# [[vary]]\n# key = \"start.tilt_deg\"\n# values = [1]\n\
         # [[vary]]\n# key = \"start.spin_rpm\"\n# values = [1]\n\
@@ -228,7 +228,7 @@ fn a_map_has_a_cell_for_each_pair_of_values() {
     let chart = of_table::chart(&table(&text), &map_view(None)).unwrap();
     let scene = chart.scene();
     check_overlaps(&scene).unwrap();
-    // What was measured is drawn, its theory only if it is asked for; whether rows are reliable is no quantity.
+    // The measurement is drawn, and theory only on request; `reliable` is not a quantity.
     let [panel] = &chart.panels[..] else {
         panic!("{} panels", chart.panels.len())
     };

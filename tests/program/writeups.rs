@@ -297,7 +297,7 @@ fn a_run_of_the_exact_motion_is_described_as_such() {
 }
 
 #[test]
-fn a_run_that_is_not_reliable_says_so_wherever_it_goes() {
+fn an_unreliable_run_is_marked_in_page_figures_and_csv() {
     let lab = Ground::new();
     done(lab.run("writeup wobble-push --steps 300 -o w"));
     let page = lab.read("w/README.md");
@@ -307,14 +307,14 @@ fn a_run_that_is_not_reliable_says_so_wherever_it_goes() {
     for figure in ["w/traces.svg", "w/3d.svg"] {
         has(lab.read(figure), "caveats = [\"not reliable: ");
     }
-    // The CSV's header has it from the start; the CSV runs and verifies.
+    // The header of the CSV has the warning; the CSV can be run and verified.
     let csv = lab.read("w/run.csv");
     let warning = "# # warning: not reliable: under-sampled from the start";
     assert!(csv.starts_with(warning), "{csv:.200}");
     done(lab.run("run w/run.csv -o again.csv"));
     assert_eq!(lab.read("again.csv"), csv);
     done(lab.run("verify again.csv w"));
-    // So does one that was written before there was a warning.
+    // A CSV from before the warning existed still verifies.
     let (_, older) = csv.split_once('\n').unwrap();
     lab.write("older.csv", older);
     done(lab.run("verify older.csv"));
@@ -323,7 +323,7 @@ fn a_run_that_is_not_reliable_says_so_wherever_it_goes() {
 }
 
 #[test]
-fn the_csv_of_a_writeup_has_the_rows_and_columns_that_were_asked_for() {
+fn the_csv_of_a_write_up_has_the_requested_rows_and_columns() {
     let lab = Ground::new();
     done(lab.run("writeup cusps --every 100 --columns t_s,z_m --format tex -o w"));
     let csv = lab.read("w/run.csv");
@@ -340,7 +340,7 @@ fn the_csv_of_a_writeup_has_the_rows_and_columns_that_were_asked_for() {
 }
 
 #[test]
-fn a_fit_is_written_up() {
+fn a_write_up_can_contain_a_fit() {
     let lab = Ground::new();
     let free = "--free friction.spin_viscous_Nms,start.spin_rpm";
     let fit = format!("fit heidelberg-spin-decay --in heidelberg {free} --duration 70 -o fit.csv");

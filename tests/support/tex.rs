@@ -1,15 +1,15 @@
-//! A TeX document in a folder: parsed, and compiled where a TeX is installed.
+//! Checks TeX documents: by parsing, and by compiling if TeX is installed.
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-/// A line may be wider than the page by this, in points, before a reader sees it.
+/// Tolerance for lines wider than the page, pt.
 const MOST_OVERFULL_PT: f64 = 15.0;
 
-/// Checks the document `name` in `folder`: braces and environments are balanced, references and citations lead somewhere,
-/// included files exist, and pdflatex compiles it if there is one.
+/// Checks the document `name` in `folder`: braces and environments are balanced, references and citations resolve, included
+/// files exist, and pdflatex compiles it if installed.
 #[track_caller]
 pub fn check(folder: &Path, name: &str) {
     let text = fs::read_to_string(folder.join(name)).unwrap();
@@ -34,7 +34,7 @@ pub fn check(folder: &Path, name: &str) {
     compile(folder, name);
 }
 
-/// Checks that every brace that is not escaped has its counterpart.
+/// Checks that unescaped braces are balanced.
 #[track_caller]
 fn check_braces(text: &str) {
     let (mut depth, mut is_escaped) = (0_i64, false);
@@ -63,19 +63,19 @@ fn check_environments(text: &str) {
     assert!(open.is_empty(), "{open:?}");
 }
 
-/// The arguments of a command, such as `\label{`.
+/// Returns the arguments of a command, such as `\label{`.
 fn arguments<'a>(text: &'a str, command: &str) -> Vec<&'a str> {
     let parts = text.split(command).skip(1);
     parts.map(|part| part.split('}').next().unwrap()).collect()
 }
 
-/// The file that a line includes, if it includes one.
+/// Returns the file that a line includes, if any.
 fn picture(line: &str) -> Option<&str> {
     let options = line.split_once("\\includegraphics[")?.1;
     options.split_once("]{")?.1.split('}').next()
 }
 
-/// Compiles the document twice where there is a TeX. No line is wider than the page.
+/// Compiles the document twice if TeX is installed. Asserts that no line is wider than the page.
 #[track_caller]
 fn compile(folder: &Path, name: &str) {
     let output = tempfile::tempdir().unwrap();

@@ -106,7 +106,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_verdict_names_the_difference_and_whether_it_matters() {
+    fn a_verdict_states_the_difference_and_its_significance() {
         let verdict = |number, sigma| {
             let run = Stated { number, sigma };
             compare(run, 2.0, Tolerance::OF_RATE, "s")
