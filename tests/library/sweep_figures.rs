@@ -194,7 +194,7 @@ fn too_many_quantities_are_rejected_with_the_option_to_choose() {
     assert!(refusal.starts_with("8 quantities"), "{refusal}");
 }
 
-/// The CSV of a sweep over seven tilts and seven spins, with one missing number.
+/// Returns the CSV of a sweep over 13 tilts and 14 spins, with one missing number.
 fn grid() -> String {
     let mut text = "# [[vary]]\n# key = \"start.tilt_deg\"\n# values = [1]\n\
         # [[vary]]\n# key = \"start.spin_rpm\"\n# values = [1]\n\
