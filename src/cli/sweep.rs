@@ -73,8 +73,9 @@ pub(super) fn sweep(args: &SweepArgs) -> anyhow::Result<ExitCode> {
         (Some(name), Some(output)) => run(&sweep_of(name, args)?, output, args.force),
         (None, Some(output)) if !args.join.is_empty() => {
             let (sweep, tally) = join(&args.join, output, args.force)?;
-            tell_of(&tally, &sweep, &progress::interruption()?);
+            tell_of_empty(&tally, &sweep, &progress::interruption()?);
             tell_of_rows(sweep.rows(), output);
+            tell_of_reliability(&tally);
             Ok(ExitCode::SUCCESS)
         }
         (None, Some(_)) => refuse(
@@ -165,8 +166,8 @@ fn place(problem: &mut Problem, keys: &[String], args: &SweepArgs) {
         .and_then(|number| keys.get(number))
         .unwrap_or(&problem.key);
     if let Some(argument) = args.vary.iter().rev().find(|argument: &&String| {
-        let keys = argument.split('=').next().unwrap_or_default();
-        keys.trim() == key || axis::split_keys(keys).any(|own| own == key)
+        let varied = argument.split('=').next().unwrap_or_default();
+        varied.trim() == key || axis::split_keys(varied).any(|own| own == key)
     }) {
         return axis::place(problem, argument);
     }
@@ -194,12 +195,13 @@ fn run(sweep: &Sweep, output: &Path, may_replace: bool) -> anyhow::Result<ExitCo
     let interruption = progress::interruption()?;
     let mut part = match PartialSweep::open(output, sweep, may_replace)? {
         Opened::Whole(tally) => {
-            tell_of(&tally, sweep, &interruption);
+            tell_of_empty(&tally, sweep, &interruption);
             let rows = counted(sweep.rows(), "row");
             tell(format_args!(
                 "gyrolab: {} is complete: {rows}",
                 PrintablePath(output)
             ));
+            tell_of_reliability(&tally);
             return Ok(ExitCode::SUCCESS);
         }
         Opened::Part(part) => part,
@@ -207,7 +209,8 @@ fn run(sweep: &Sweep, output: &Path, may_replace: bool) -> anyhow::Result<ExitCo
     tell_of_part(sweep, &part);
     let added = add_rows(sweep, &mut part, &interruption);
     let (rows, all) = (part.rows, sweep.rows());
-    tell_of(&part.tally, sweep, &interruption);
+    let tally = part.tally.clone();
+    tell_of_empty(&tally, sweep, &interruption);
     if added.is_err() || rows < all {
         tell(format_args!(
             "gyrolab: {rows} of {} are in {}: run the same command again to continue",
@@ -219,6 +222,7 @@ fn run(sweep: &Sweep, output: &Path, may_replace: bool) -> anyhow::Result<ExitCo
     }
     part.keep()?;
     tell_of_rows(sweep.rows(), output);
+    tell_of_reliability(&tally);
     Ok(ExitCode::SUCCESS)
 }
 
@@ -237,11 +241,18 @@ fn tell_of_part(sweep: &Sweep, part: &PartialSweep) {
     ));
 }
 
-/// Says how many runs are reliable, how many rows hold no readouts, and of the first few of these which points they are, and why.
-fn tell_of(tally: &RowTally, sweep: &Sweep, interruption: &Interruption) {
-    if let Some(words) = tally.reliability.in_words() {
-        tell(format_args!("gyrolab: {words}"));
+/// Prints how many runs are reliable, if the rows say so.
+fn tell_of_reliability(tally: &RowTally) {
+    let count = tally.reliability;
+    match count.in_words() {
+        Some(words) if count.unreliable > 0 => warn(format_args!("gyrolab: {words}")),
+        Some(words) => tell(format_args!("gyrolab: {words}")),
+        None => {}
     }
+}
+
+/// Prints how many rows hold no readouts, and of the first few which points they are, and why.
+fn tell_of_empty(tally: &RowTally, sweep: &Sweep, interruption: &Interruption) {
     let empty = &tally.empty;
     if empty.count == 0 {
         return;

@@ -487,9 +487,11 @@ fn distance_from_the_exact_motion_is_an_optional_column() {
         assert!(verified.difference.is_none(), "{:?}", verified.difference);
         String::from_utf8(bytes).unwrap()
     };
-    let rows = |text: &str| -> Vec<Vec<Option<f64>>> {
-        let rows = text.lines().filter(|line| !line.starts_with('#')).skip(1);
-        rows.map(|row| row.split(',').map(|cell| cell.parse().ok()).collect())
+    let rows = |written: &str| -> Vec<Vec<Option<f64>>> {
+        let lines = written.lines().filter(|line| !line.starts_with('#'));
+        lines
+            .skip(1)
+            .map(|row| row.split(',').map(|cell| cell.parse().ok()).collect())
             .collect()
     };
     let report = rows(&text(&preset(

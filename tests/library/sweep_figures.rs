@@ -246,9 +246,9 @@ fn a_map_has_a_cell_for_each_pair_of_values() {
         ],
     );
     let turned = of_table::chart(&table(&text), &map_view(Some("start.tilt_deg"))).unwrap();
-    let map = turned.panels[0].map.as_ref().unwrap();
-    assert_eq!((map.values.len(), map.values[0].len()), (14, 13));
-    assert_eq!(map.values[3][2], 3.04);
+    let values = &turned.panels[0].map.as_ref().unwrap().values;
+    assert_eq!((values.len(), values[0].len()), (14, 13));
+    assert_eq!(values[3][2], 3.04);
 }
 
 #[test]

@@ -63,7 +63,7 @@ fn rows_equal_single_runs_in_grid_order() {
     let rows = rows(&csv);
     assert_eq!(
         rows[0],
-        "start.momentum_Js.2,motion.scheme,z_m,tilt_deg,path,measured_tilt_swing_deg,most_distance_m"
+        "start.momentum_Js.2,motion.scheme,z_m,tilt_deg,path,measured_tilt_swing_deg,most_distance_m,reliable"
     );
     assert_eq!(rows.len(), 61);
     assert!(rows[1].starts_with("10.0,report,") && rows[2].starts_with("10.0,rk4,"));
@@ -115,7 +115,7 @@ fn scenario_paths_are_relative_to_the_sweep_file() {
     let args = "deep/sweep.toml --vary motion.steps=1..5:5 --measure t_s";
     run_sweep(&ground, args, "other.csv");
     let other = ground.read("other.csv");
-    assert_eq!(rows(&other)[0], "motion.steps,t_s");
+    assert_eq!(rows(&other)[0], "motion.steps,t_s,reliable");
     assert_eq!(rows(&other).len(), 6);
 }
 
@@ -430,7 +430,7 @@ fn a_failed_point_has_an_empty_row_and_a_reported_reason() {
     let rows = rows(&csv);
     assert!(rows[1].starts_with("report,0.5,0.8"), "{csv}");
     let empty = [rows[3], rows[4], rows[6]];
-    let wanted = ["report,1e200,,,", "rk4,0.5,,,", "rk4,1e200,,,"];
+    let wanted = ["report,1e200,,,,", "rk4,0.5,,,,", "rk4,1e200,,,,"];
     assert_eq!(empty, wanted, "{csv}");
     has_all(
         &told,
@@ -505,7 +505,7 @@ fn varying_the_time_step_keeps_durations_in_seconds() {
     // The push lasts 20 s, as with `run --time-step`.
     let json = ground.json("run wobble-push --time-step 0.05 --json");
     let lowest = json["measured_lowest_z_m"].as_f64().unwrap();
-    assert!(rows[2].ends_with(&format!(",{lowest}")), "{csv} {lowest}");
+    assert!(rows[2].contains(&format!(",{lowest},")), "{csv} {lowest}");
     // An accumulating push depends on the time step.
     let accumulating = "wobble-push-accumulating --vary motion.time_step_s=0.1,0.05 --measure t_s";
     let of_one = run_sweep(&ground, accumulating, "acc.csv");
@@ -775,4 +775,63 @@ fn options_set_the_length_of_every_run_of_a_sweep() {
         2,
         &["--output needs a sweep, a scenario, or --join"],
     );
+}
+
+#[test]
+fn keys_vary_together_and_with_equal_ratios() {
+    let ground = Ground::new();
+    let args = "cusps --set motion.steps=2 --vary start.tilt_deg+start.momentum_Js.2=[10,20],[30,60] \
+        --vary motion.time_step_s=0.0001..0.01:3:log --measure z_m";
+    let told = run_sweep(&ground, args, "out.csv");
+    has(&told, "gyrolab: reliable: ");
+    let csv = ground.read("out.csv");
+    let rows = rows(&csv);
+    assert_eq!(
+        rows[0],
+        "start.tilt_deg,start.momentum_Js.2,motion.time_step_s,z_m,reliable"
+    );
+    let points: Vec<_> = rows[1..]
+        .iter()
+        .map(|row| row.splitn(4, ',').take(3).collect::<Vec<_>>().join(","))
+        .collect();
+    assert_eq!(points[..2], ["10.0,20.0,0.0001", "10.0,20.0,0.001"]);
+    assert_eq!((points.len(), &*points[5]), (6, "30.0,60.0,0.01"));
+    ground.stdout("verify out.csv");
+    run_sweep(&ground, "out.csv", "again.csv");
+    assert_eq!(ground.read("again.csv"), csv);
+    let mistakes = [
+        ("start.tilt_deg+start.tilt_deg=1,2", "varies"),
+        ("motion.time_step_s=0..0.1:3:log", "above 0"),
+        ("motion.time_step_s=0.01..0.1:3:lin", "A..B:N:log"),
+        ("start.tilt_deg+start.tlt_deg=1,2", "start.tilt_deg"),
+    ];
+    for (vary, words) in mistakes {
+        let wrong = format!("cusps --vary {vary} --measure z_m");
+        assert_rejected(&ground, &wrong, "wrong.csv", &[words]);
+    }
+}
+
+#[test]
+fn a_figure_block_is_checked_and_sets_the_default_figure() {
+    let ground = Ground::new();
+    let file = |figure: &str| {
+        format!(
+            "scenario = \"cusps\"\nmeasure = [\"turns_per_step\", \"z_m\"]\n[figure]\n{figure}\n\
+             [[vary]]\nkey = \"motion.time_step_s\"\nvalues = [0.1, 0.05]\n"
+        )
+    };
+    ground.write("good.toml", &file("x = \"turns_per_step\"\ny = [\"z_m\"]"));
+    run_sweep(&ground, "good.toml", "good.csv");
+    ground.stdout("figure good.csv --text -o good.svg");
+    has(ground.read("good.svg"), "turns per step");
+    for (figure, word) in [
+        ("x = \"turns\"", "turns_per_step"),
+        ("kind = \"pie\"", "map"),
+        ("log = \"q\"", "x, y, z"),
+        ("x_range = [2, 1]", "lower one first"),
+        ("colour = 1", "figure.colour"),
+    ] {
+        ground.write("bad.toml", &file(figure));
+        ground.refused("check bad.toml", 1, &["bad.toml", word]);
+    }
 }

@@ -188,10 +188,10 @@ fn the_differing_field_of_a_sweep_is_named() {
             "a.csv: differs: line {line}, the row of motion.steps 5, motion.scheme report: z_m is 7, computed {z_m}\n"
         )
     );
-    let columns = told(&good.replace(",z_m,path\n", ",path,z_m\n"));
+    let columns = told(&good.replace(",z_m,path,reliable\n", ",path,z_m,reliable\n"));
     has(
         &columns,
-        " is \"motion.steps,motion.scheme,path,z_m\", computed \"motion.steps,motion.scheme,z_m,path\"",
+        " is \"motion.steps,motion.scheme,path,z_m,reliable\", computed \"motion.steps,motion.scheme,z_m,path,reliable\"",
     );
     // Control sequences are escaped and shortened in every place.
     let steering = format!("\u{1b}]0;title\u{7}{}", "x".repeat(100_000));

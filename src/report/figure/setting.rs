@@ -95,9 +95,9 @@ impl CurveSetting {
         });
         let digits: Vec<usize> = digits.collect();
         let of_one = scenarios.iter().enumerate().map(|(of, scenario)| {
-            let here = keys.iter().zip(&digits);
-            let here = here.filter_map(|(key, digits)| Some((entry(of, key)?, *digits)));
-            here.map(|((key, value), digits)| Self::new(scenario, key, value, digits))
+            let told = keys.iter().zip(&digits);
+            let here = told.filter_map(|(key, most)| Some((entry(of, key)?, *most)));
+            here.map(|((key, value), most)| Self::new(scenario, key, value, most))
                 .collect()
         });
         of_one.collect()

@@ -59,8 +59,8 @@ impl SweepAxis {
             points: points.collect(),
         };
         let mut problems = Vec::new();
-        for values in &axis.points {
-            for ((key, kind), value) in axis.keys.iter().zip(&kinds).zip(values) {
+        for point in &axis.points {
+            for ((key, kind), value) in axis.keys.iter().zip(&kinds).zip(point) {
                 if let Err(rule) = check_value(*kind, value) {
                     problems.push(Problem::with_value(key.clone(), value, rule));
                 }
@@ -89,14 +89,11 @@ fn kinds_of(key: &str) -> Result<Vec<ValueKind>, (String, String)> {
 
 /// Returns the values of the keys of these `kinds` for `value`: one in a list for each key, or the same for all of them.
 fn point(kinds: &[ValueKind], value: Value) -> Vec<Value> {
+    let is_of_each = kinds.iter().all(|kind| kind.check(&value).is_ok());
     match value {
-        Value::Array(list)
-            if kinds.len() > 1
-                && list.len() == kinds.len()
-                && !matches!(kinds, [ValueKind::Vector, ..]) =>
-        {
+        Value::Array(list) if !is_of_each && kinds.len() > 1 && list.len() == kinds.len() => {
             let each = kinds.iter().zip(list);
-            each.map(|(kind, value)| as_kind(*kind, value)).collect()
+            each.map(|(kind, own)| as_kind(*kind, own)).collect()
         }
         same => {
             let each = kinds.iter();
@@ -115,7 +112,7 @@ pub(super) fn read_axes(files: &[VaryFile], problems: &mut Vec<Problem>) -> Vec<
         let place = format!("vary.{index}");
         match SweepAxis::new(file, &place) {
             Ok(axis) => {
-                let mut earlier: Vec<&String> = axes.iter().flat_map(|axis| &axis.keys).collect();
+                let mut earlier: Vec<&String> = axes.iter().flat_map(|other| &other.keys).collect();
                 for key in &axis.keys {
                     let clash = earlier.iter().find_map(|other| clash(key, other));
                     problems.extend(clash.map(|rule| Problem::at(key.clone(), rule)));
@@ -251,7 +248,12 @@ fn read(argument: &str) -> Result<VaryFile, String> {
         kinds.all(|kind| matches!(kind, ValueKind::Number(_) | ValueKind::Whole(..)))
     });
     let Some((from, rest)) = text.split_once("..").filter(|_| are_numbers) else {
-        vary.values = Some(listed(text)?);
+        let values = if vary.key.contains(KEY_SEPARATOR) {
+            listed(text, values_of_keys)
+        } else {
+            listed(text, toml_value)
+        };
+        vary.values = Some(values?);
         return Ok(vary);
     };
     let (to, count) = rest.split_once(':').unwrap_or_default();
@@ -268,8 +270,25 @@ fn read(argument: &str) -> Result<VaryFile, String> {
     Ok(vary)
 }
 
-/// The values between the commas of `text` that stand in no brackets and no quotes: each TOML, or else text.
-fn listed(text: &str) -> Result<Vec<Value>, String> {
+/// Parses a value as TOML, or else as text.
+fn toml_value(text: &str) -> Result<Value, String> {
+    let (value, mistake) = toml_or_text(text);
+    mistake.map_or(Ok(value), Err)
+}
+
+/// Parses what keys have that vary together: a value, or a list in brackets with a value for each key.
+fn values_of_keys(text: &str) -> Result<Value, String> {
+    let inner = text
+        .strip_prefix('[')
+        .and_then(|rest| rest.strip_suffix(']'));
+    match inner {
+        Some(inner) => listed(inner, toml_value).map(Value::Array),
+        None => toml_value(text),
+    }
+}
+
+/// Splits `text` at the commas outside of brackets and quotes, and parses each part with `parse`.
+fn listed(text: &str, parse: fn(&str) -> Result<Value, String>) -> Result<Vec<Value>, String> {
     let (mut depth, mut quote, mut begin) = (0_i64, None, 0);
     let mut parts = Vec::new();
     for (at, c) in text.char_indices() {
@@ -288,9 +307,9 @@ fn listed(text: &str) -> Result<Vec<Value>, String> {
     parts.push(&text[begin..]);
     parts
         .into_iter()
-        .map(|part| match (part.trim(), toml_or_text(part.trim())) {
-            ("", _) => Err("has an empty place between its commas".to_owned()),
-            (_, (value, mistake)) => mistake.map_or(Ok(value), Err),
+        .map(|part| match part.trim() {
+            "" => Err("has an empty place between its commas".to_owned()),
+            part => parse(part),
         })
         .collect()
 }

@@ -85,7 +85,7 @@ pub(super) fn as_errors(chart: &mut Chart, runs: &[FigureRun]) {
             .iter()
             .map(|values| values.iter().copied().fold(0.0, f64::max));
         let least_m = highest_of_each
-            .filter(|highest| *highest > 0.0)
+            .filter(|value| *value > 0.0)
             .fold(f64::INFINITY, f64::min);
         let end = lowest.max((ROUNDING_SHOWN * floor_m).min(CURVE_SHOWN * least_m));
         panel.y.range = Some((end, highest.max(end / ROUNDING_SHOWN)));

@@ -67,7 +67,7 @@ fn along(
             let [steps, step_ns] = ["steps", "ns_per_step"].map(|name| numbers(table, name));
             let costs = steps?.into_iter().zip(step_ns?);
             let axis = ChartAxis::new("computing time", "s");
-            Ok((axis, costs.map(|(steps, ns)| 1e-9 * steps * ns).collect()))
+            Ok((axis, costs.map(|(count, ns)| 1e-9 * count * ns).collect()))
         }
         (None, TableKind::Curves | TableKind::Map) => {
             Ok((of_comparison(TIME_STEP), numbers(table, TIME_STEP)?))

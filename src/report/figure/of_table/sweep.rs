@@ -116,14 +116,14 @@ impl Along {
 
 /// Returns the fastest-varying key whose values are numbers, and its values. Keys with a single value come last.
 fn fastest<'a>(table: &TableSource, swept: &'a SweepTable) -> Result<(&'a str, Vec<f64>), String> {
-    let keys = swept.varied().rev();
-    let keys = keys.filter_map(|key| Some((key.as_str(), table.numbers(key)?)));
-    let keys: Vec<(&str, Vec<f64>)> = keys.collect();
+    let fastest_first = swept.varied().rev();
+    let numeric = fastest_first.filter_map(|key| Some((key.as_str(), table.numbers(key)?)));
+    let keys: Vec<(&str, Vec<f64>)> = numeric.collect();
     let varies = |values: &[f64]| values.iter().any(|value| *value != values[0]);
     let fastest = keys.iter().find(|(_, values)| varies(values));
     fastest.or(keys.first()).cloned().ok_or_else(|| {
-        let keys: Vec<_> = swept.varied().map(String::as_str).collect();
-        format!("none of the varied keys is a number: {}", keys.join(", "))
+        let varied: Vec<_> = swept.varied().map(String::as_str).collect();
+        format!("none of the varied keys is a number: {}", varied.join(", "))
     })
 }
 
@@ -137,7 +137,7 @@ fn too_many_curves(table: &TableSource, swept: &SweepTable, count: usize, along:
         let curves = table
             .numbers(key)
             .map(|_| curves::curves(table, swept, key).len());
-        curves.is_some_and(|count| count <= MOST_CURVES)
+        curves.is_some_and(|fewer| fewer <= MOST_CURVES)
     });
     let map = if swept.axes.len() == 2 {
         "--kind map draws both keys with colors for the values; "

@@ -71,9 +71,9 @@ pub(super) fn curves(table: &TableSource, swept: &SweepTable, along: &str) -> Ve
         .into_iter()
         .enumerate()
         .map(|(index, (_, rows))| {
-            let values = others.iter().zip(&digits);
-            let settings = values.map(|((key, texts), digits)| {
-                CurveSetting::new(&swept.scenario, key, texts[rows[0]], *digits)
+            let told = others.iter().zip(&digits);
+            let settings = told.map(|((key, texts), most)| {
+                CurveSetting::new(&swept.scenario, key, texts[rows[0]], *most)
             });
             let scheme = others.iter().find(|(key, _)| *key == SCHEME_KEY);
             SweepCurve {
