@@ -780,7 +780,7 @@ fn options_set_the_length_of_every_run_of_a_sweep() {
 #[test]
 fn keys_vary_together_and_with_equal_ratios() {
     let ground = Ground::new();
-    let args = "cusps --set motion.steps=2 --vary start.tilt_deg+start.momentum_Js.2=[10,20],[30,60] \
+    let args = "cusps --set motion.steps=20 --vary start.tilt_deg+start.momentum_Js.2=[10,20],[30,60] \
         --vary motion.time_step_s=0.0001..0.01:3:log --measure z_m";
     let told = run_sweep(&ground, args, "out.csv");
     has(&told, "gyrolab: reliable: ");
