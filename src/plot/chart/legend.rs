@@ -1,4 +1,4 @@
-//! Which line is what: in a corner of the panel where nothing is drawn, or above the panels.
+//! The legend: the names of the lines, in a free corner of the panel or above the panels.
 
 use super::curve::{BAND_WHITE, hatch};
 use super::layout::{ChartLayout, PAGE_EDGE};
@@ -9,14 +9,14 @@ use crate::plot::scene::{PageScene, Point, StrokeStyle, TextAnchor, VectorPath};
 /// Length of the line of an entry, and its distance from the name, pt.
 const KEY: f64 = 17.0;
 const AFTER_KEY: f64 = 3.5;
-/// Half the height of a band beside its name, pt.
+/// Half the height of a band's sample next to its name, pt.
 const LEGEND_BAND: f64 = 2.6;
 const LEGEND_ROW_PT: f64 = 9.6;
 const LEGEND_ENTRY_GAP: f64 = 11.0;
-/// Between the legend and the panel's frame, and what must be free around it, pt.
+/// Distance between legend and frame, and the clearance around the legend, pt.
 const INSET: f64 = 4.5;
 const LEGEND_CLEARANCE: f64 = 2.5;
-/// The part of a panel's width that a legend inside may take.
+/// Maximum width and height of a legend inside a panel, relative to the panel.
 const LEGEND_WIDTH_SHARE: f64 = 0.62;
 
 #[derive(Clone, Debug)]
@@ -26,19 +26,19 @@ pub struct Legend {
 
 #[derive(Clone, Debug)]
 struct LegendEntry {
-    /// How the series is drawn; `None` for a remark.
+    /// The style of the series; `None` for a remark.
     style: Option<SeriesStyle>,
     name: String,
     width_pt: f64,
 }
 
-/// The longest name of an entry on a page of this width, pt.
+/// Returns the maximum length of an entry's name on a page of this width, pt.
 pub fn longest_name(width_pt: f64) -> f64 {
     width_pt - 2.0 * PAGE_EDGE - KEY - AFTER_KEY
 }
 
 impl Legend {
-    /// The legend of `series`, by name and style: every name once, and what there is to remark.
+    /// Creates the legend of `series`, given by name and style, with each name once, followed by the `remarks`.
     pub fn new<'a>(
         series: impl Iterator<Item = (&'a str, &'a SeriesStyle)>,
         remarks: impl IntoIterator<Item = String>,
@@ -68,7 +68,7 @@ impl Legend {
         Self::new(named, remarks)
     }
 
-    /// The rows in which it stands above the panels, within `room` pt.
+    /// Arranges the entries above the panels in rows of at most `room` pt.
     fn rows(&self, room: f64) -> Vec<Vec<&LegendEntry>> {
         let mut rows: Vec<Vec<&LegendEntry>> = Vec::new();
         let mut used = 0.0;
@@ -87,13 +87,13 @@ impl Legend {
         rows
     }
 
-    /// The height that it needs above the picture on a page of that width, pt.
+    /// Returns the height of the legend above the picture on a page of this width, pt.
     pub fn height_above(&self, width_pt: f64) -> f64 {
         let rows = self.rows(width_pt - 2.0 * PAGE_EDGE).len();
         rows as f64 * LEGEND_ROW_PT + rows.min(1) as f64
     }
 
-    /// A corner of the panel, where there is one panel, in which nothing is drawn.
+    /// Returns a corner of the only panel in which nothing is drawn, if there is one.
     pub fn free_corner(&self, chart: &Chart, layout: &ChartLayout) -> Option<PageRectangle> {
         let ([panel], [placed], []) =
             (&chart.panels[..], &layout.panels[..], &layout.magnified[..])
@@ -137,7 +137,7 @@ impl Legend {
         }
     }
 
-    /// Draws it above the picture on a page of that width, from `left` on where there is room, pt.
+    /// Draws the legend above the picture on a page of this width, starting at `left` if there is room, pt.
     pub fn draw_above(&self, width_pt: f64, left: f64, scene: &mut PageScene) {
         let label = ink::height(LABEL_PT);
         for (index, row) in self.rows(width_pt - 2.0 * PAGE_EDGE).iter().enumerate() {
@@ -154,7 +154,7 @@ impl Legend {
 }
 
 impl LegendEntry {
-    /// Draws it with its name's baseline at the height of `place`.
+    /// Draws the entry with the name's baseline at the height of `place`.
     fn draw(&self, place: Point, scene: &mut PageScene) {
         let Some(style) = &self.style else {
             scene.write(&self.name, LABEL_PT, place, TextAnchor::Start);

@@ -1,4 +1,4 @@
-//! A quantity over two others, as colors of cells, with the bar that explains the colors.
+//! A map: a quantity over two others, drawn as colored cells, with a color bar.
 
 use super::ChartAxis;
 use super::axis::AxisScale;
@@ -9,29 +9,29 @@ use crate::plot::extent;
 use crate::plot::ink::{self, BLACK, LABEL_PT, PageRectangle, at, grey, pen};
 use crate::plot::scene::{Color, PageScene, TextAnchor, VectorPath};
 
-/// A quantity over two others. Around each pair of their values is a cell, which has the color of the quantity there.
+/// A quantity over two others. Each pair of their values has a cell in the color of the quantity.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ColorMap {
-    /// The values along the axes x and y, from the least to the greatest; two of each at least.
+    /// The values along the x and the y axis, in ascending order; at least two of each.
     pub along: [Vec<f64>; 2],
-    /// The quantity, a row for each value along y; NaN where there is none.
+    /// The values of the quantity, one row per y value; NaN for missing values.
     pub values: Vec<Vec<f64>>,
-    /// The axis of the colors.
+    /// The axis of the color bar.
     pub color: ChartAxis,
 }
 
-/// Width of the bar that explains the colors, and its distance from the panel, pt.
+/// Width of the color bar, and its distance from the panel, pt.
 const BAR_PT: f64 = 7.0;
 const BAR_GAP: f64 = 6.0;
-/// Different colors of a map.
+/// Number of different colors.
 const LEVELS: f64 = 128.0;
-/// A cell reaches under the next ones by this, pt: no gap is seen between them.
+/// Overlap of a cell with the next ones, pt, which hides gaps between them.
 const OVERLAP_PT: f64 = 0.3;
-/// The cross of a cell without a value: width of its lines, pt, and their gray.
+/// Line width of the cross in a cell without a value, pt, and its gray level.
 const CROSS_PT: f64 = 0.3;
 const CROSS_GRAY: u8 = 150;
 
-/// The bar beside a panel that explains the colors of its map.
+/// The color bar next to a panel.
 #[derive(Clone, Debug)]
 pub struct PlacedBar {
     pub frame: PageRectangle,
@@ -42,30 +42,30 @@ pub struct PlacedBar {
 }
 
 impl ColorMap {
-    /// Returns from where to where its cells go along x (0) or y (1).
+    /// Returns the range of the cells along x (0) or y (1).
     pub fn range(&self, axis: usize, is_log: bool) -> Option<(f64, f64)> {
         extent(edges(&self.along[axis], is_log).into_iter())
     }
 
-    /// Returns the range of its colors.
+    /// Returns the range of the colors.
     fn colors(&self) -> (f64, f64) {
         let values = self.values.iter().flatten().copied();
         let axis = &self.color;
         let shown = values.filter(|value| value.is_finite() && (!axis.is_log || *value > 0.0));
         match extent(shown) {
             Some((low, high)) if low < high => (low, high),
-            // A map of one value has a bar with room around it.
+            // A map with a single value gets a color bar with some margin.
             one => axis.range_of(one.into_iter().flat_map(|(low, high)| [low, high])),
         }
     }
 
-    /// Whether a cell has no color.
+    /// Returns true if a cell has no color.
     pub fn has_gaps(&self) -> bool {
         let mut values = self.values.iter().flatten();
         values.any(|value| !value.is_finite() || (self.color.is_log && *value <= 0.0))
     }
 
-    /// Returns the room that its bar needs to the right of the panel, which is `height` pt high.
+    /// Returns the width that the color bar needs to the right of a panel that is `height` pt high.
     pub fn bar_room(&self, height: f64) -> f64 {
         let scale = AxisScale::new(&self.color, self.colors(), (height, 0.0));
         let ticks = scale.ticks_beside(&self.color);
@@ -77,7 +77,7 @@ impl ColorMap {
             + title_height()
     }
 
-    /// Returns its bar to the right of a panel with this `frame`.
+    /// Returns the color bar to the right of a panel with this `frame`.
     pub fn bar(&self, frame: &PageRectangle) -> PlacedBar {
         let left = frame.right + BAR_GAP;
         let scale = AxisScale::new(&self.color, self.colors(), (frame.bottom, frame.top));
@@ -96,7 +96,7 @@ impl ColorMap {
         }
     }
 
-    /// Draws its cells in the panel `placed`.
+    /// Draws the cells in the panel `placed`.
     pub fn draw(&self, placed: &PlacedPanel, scene: &mut PageScene) {
         let range = self.colors();
         let colors = AxisScale::new(&self.color, range, (0.0, 1.0));
@@ -106,7 +106,7 @@ impl ColorMap {
             places.collect::<Vec<f64>>()
         });
         let mut gaps = Vec::new();
-        // From the top to the bottom and from left to right: each cell covers the overlap of those before it.
+        // From top to bottom and left to right, so that each cell covers the overlap of the previous ones.
         for (row, values) in self.values.iter().enumerate().rev() {
             let (top, bottom) = (ys[row + 1], ys[row]);
             let levels: Vec<Option<u32>> = values
@@ -142,7 +142,7 @@ impl ColorMap {
             }
         }
         for gap in gaps {
-            // Overlaps of the cells before it end here.
+            // Covers the overlap of the previous cells.
             scene.fill_in(gap.outline(), ink::WHITE, Some(&placed.frame));
             let diagonals = [
                 [at(gap.left, gap.top), at(gap.right, gap.bottom)],
@@ -157,7 +157,7 @@ impl ColorMap {
 }
 
 impl PlacedBar {
-    /// Draws it with its labels.
+    /// Draws the color bar with its labels.
     pub fn draw(&self, scene: &mut PageScene) {
         let frame = &self.frame;
         let height = frame.height() / LEVELS;
@@ -187,8 +187,8 @@ impl PlacedBar {
     }
 }
 
-/// Returns the edges of the cells around `values`, which are in order: the middles between them, and beyond the first and the
-/// last as far.
+/// Returns the edges of the cells around `values`, which are sorted. Edges lie midway between values; the first and
+/// last cells are symmetric around their values.
 fn edges(values: &[f64], is_log: bool) -> Vec<f64> {
     let scaled: Vec<f64> = if is_log {
         values.iter().map(|value| libm::log(*value)).collect()
@@ -211,7 +211,7 @@ fn edges(values: &[f64], is_log: bool) -> Vec<f64> {
         .collect()
 }
 
-/// Returns the color that is at this `share` of a map's range; `None` where that is no number.
+/// Returns the color level at the fraction `share` of the map's range; `None` if it is NaN.
 fn level(share: f64) -> Option<u32> {
     let level = (share * (LEVELS - 1.0)).round();
     level
@@ -219,8 +219,9 @@ fn level(share: f64) -> Option<u32> {
         .then(|| level.clamp(0.0, LEVELS - 1.0) as u32)
 }
 
-/// Coefficients of red, green and blue in the powers of the share, from the constant on: the color map viridis (van der Walt
-/// and Smith, 2015) to two levels of 255. Its lightness rises evenly, so that it is read in gray too.
+/// Coefficients of red, green and blue in powers of the fraction, in ascending order: the color map viridis (van der
+/// Walt and Smith, 2015) to within two levels of 255. Its lightness increases evenly, so that the map is readable in
+/// gray too.
 const VIRIDIS: [[f64; 3]; 7] = [
     [
         0.277_727_327_223_417_7,
@@ -259,7 +260,7 @@ const VIRIDIS: [[f64; 3]; 7] = [
     ],
 ];
 
-/// Returns the color at this `share` of the range, from 0 to 1.
+/// Returns the color at the fraction `share` of the range, from 0 to 1.
 fn color_at(share: f64) -> Color {
     Color([0, 1, 2].map(|part| {
         let powers = VIRIDIS.iter().rev();

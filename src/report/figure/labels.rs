@@ -1,4 +1,4 @@
-//! Words and axes that a figure has instead of its own.
+//! Labels and axes that replace the defaults of a figure.
 
 use crate::engine::text::number::{shortest, significant};
 use crate::plot::chart::{Chart, ChartAxis, Panel};
@@ -12,35 +12,37 @@ use std::collections::BTreeMap;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FigureLabels {
-    /// Written above the figure.
+    /// Title above the figure.
     pub title: Option<String>,
-    /// What the legend calls the runs, in order.
+    /// Names of the runs in the legend, in order.
     pub names: Vec<String>,
     pub x: Option<String>,
-    /// Of the panels, from the top.
+    /// Titles of the y axes, from the top panel down.
     pub y: Vec<String>,
-    /// Whether the axes x and y are logarithmic.
+    /// True for each of the x and y axes that is logarithmic.
     pub is_log: [bool; 2],
-    /// Whether the colors of a map are logarithmic.
+    /// True if the colors of a map are logarithmic.
     #[serde(default)]
     pub is_log_color: bool,
-    /// The range of the axis y of every panel that `y_ranges` does not name.
+    /// Range of the y axis of every panel that is not in `y_ranges`.
     pub y_range: Option<(f64, f64)>,
-    /// The ranges of the axes y of panels, by column.
+    /// Ranges of the y axes of panels, by column.
     #[serde(default)]
     pub y_ranges: BTreeMap<String, (f64, f64)>,
 }
 
-/// The longest title of an axis y, pt.
+/// Maximum length of a y axis title, pt.
 const LONGEST_PT: f64 = 130.0;
-/// The longest title of an axis x, of the page's width.
+/// Maximum length of an x axis title, relative to the page's width.
 const AXIS_TITLE_SHARE: f64 = 0.62;
-/// Above and below the title of a figure, pt.
+/// Margin above and below the title of a figure, pt.
 const AROUND_PT: f64 = 4.0;
 
 impl FigureLabels {
+    /// Checks that all labels apply to a path in space.
+    ///
     /// # Errors
-    /// Where something is asked for that a path in space does not have.
+    /// Returns an error for axes that a path in space does not have.
     pub fn check_in_space(&self) -> Result<(), String> {
         let is_named = self.x.is_some() || !self.y.is_empty();
         if is_named || self.is_log != [false; 2] || self.has_y_range() {
@@ -83,12 +85,12 @@ impl FigureLabels {
         self.y_range.is_some() || !self.y_ranges.is_empty()
     }
 
-    /// Returns the range of the axis y of `panel` that was asked for.
+    /// Returns the requested range of the y axis of `panel`.
     fn range_of(&self, panel: &Panel) -> Option<(f64, f64)> {
         self.y_ranges.get(&panel.column).copied().or(self.y_range)
     }
 
-    /// Checks that each panel of `chart` shows something in the range that was asked for.
+    /// Checks that each panel of `chart` shows something in the requested range.
     ///
     /// # Errors
     /// Returns an error if a panel is empty.
@@ -118,10 +120,10 @@ impl FigureLabels {
         Ok(())
     }
 
-    /// Gives `chart` these axes. Returns what is to be said of values that a logarithmic one does not show.
+    /// Applies the labels and axes to `chart`. Returns a warning if a logarithmic axis hides values.
     ///
     /// # Errors
-    /// Where the chart cannot have them.
+    /// Returns an error if the chart cannot have these axes.
     pub fn apply(&self, chart: &mut Chart) -> Result<Option<String>, String> {
         self.check(chart)?;
         if let Some(text) = &self.x {
@@ -159,7 +161,7 @@ impl FigureLabels {
         Ok(hides.then(|| hidden.to_owned()))
     }
 
-    /// Writes the title above all that is on the page.
+    /// Writes the title above everything else on the page.
     pub fn write_title(&self, scene: &mut PageScene) {
         let Some(title) = &self.title else {
             return;
@@ -174,7 +176,7 @@ impl FigureLabels {
         scene.write(&markup, TITLE_PT, place, TextAnchor::Middle);
     }
 
-    /// Returns the height that the title takes, pt.
+    /// Returns the height of the title, pt.
     pub(super) fn title_height_pt(&self) -> f64 {
         match self.title {
             Some(_) => ink::height(TITLE_PT) + 2.0 * AROUND_PT,
@@ -183,7 +185,7 @@ impl FigureLabels {
     }
 }
 
-/// Writes `text` at `axis` in place of its name and unit.
+/// Replaces name and unit of `axis` by `text`.
 fn rename(axis: &mut ChartAxis, text: &str, room_pt: f64) {
     axis.name = letters::marked(text, TITLE_PT, room_pt);
     axis.unit.clear();

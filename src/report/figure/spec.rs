@@ -1,49 +1,49 @@
-//! What a figure shows, in words of its options.
+//! The request for a figure, as given by its options.
 
 use super::labels::FigureLabels;
 use super::page::PageStyle;
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
-/// The narrowest and the widest page, mm.
+/// The range of page widths, mm.
 pub const WIDTHS_MM: RangeInclusive<f64> = 30.0..=1000.0;
 
-/// What a figure shows of its runs; of a table kind, width and labels. The file of a figure holds it, `gyrolab figure` and
-/// the lab's command `figure` make one.
+/// The request for a figure: what to show of runs, or the kind, width and labels of a table's figure. It is embedded in
+/// the figure's file. `gyrolab figure` and the lab's command `figure` create it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct FigureSpec {
-    /// The name of a [`FigureKind`](super::kind::FigureKind), or the columns of a table; what is usual where there is none.
+    /// The name of a [`FigureKind`](super::kind::FigureKind), or the columns of a table; `None` for the default.
     pub kind: Option<String>,
-    /// The columns of a table that are drawn, where `kind` does not name them.
+    /// The columns of a table to draw, if `kind` does not name them.
     pub y: Vec<String>,
-    /// The column of a table along the axis below.
+    /// The column of a table on the horizontal axis.
     pub x: Option<String>,
-    /// From where to where that axis goes.
+    /// The range of the horizontal axis.
     pub x_range: Option<(f64, f64)>,
     pub from_s: f64,
-    /// Until when, s; `None`: to the end of the longest run.
+    /// End of the time range, s; `None` for the end of the longest run.
     pub to_s: Option<f64>,
-    /// Whether the exact motion is drawn beside the runs.
+    /// True to draw the exact motion with the runs.
     pub exact: bool,
-    /// What was measured later is not shown, s.
+    /// Measured data after this time are not shown, s.
     pub measured_until_s: Option<f64>,
-    /// The width of a column where there is none.
+    /// Width of the page, pt; `None` for the width of a column.
     pub width_pt: Option<f64>,
-    /// The height that the figure needs if there is none.
+    /// Height of the page, pt; `None` for the height that the figure needs.
     pub height_pt: Option<f64>,
-    /// The size of the letters of axis titles, pt; other letters change with it.
+    /// Font size of axis titles, pt. Other letters are scaled accordingly.
     pub font_pt: Option<f64>,
     pub style: PageStyle,
-    /// Whether numbers have a decimal comma.
+    /// True to write numbers with a decimal comma.
     pub decimal_comma: bool,
-    /// Whether an SVG has its text as text.
+    /// True to write the text of an SVG as text.
     pub text: bool,
     pub labels: FigureLabels,
 }
 
 impl FigureSpec {
-    /// Whether all of its numbers can be those of a figure: no command line gives others.
+    /// Returns true if all numbers are valid. Command lines allow no other numbers.
     pub(super) fn is_sound(&self) -> bool {
         let times_s = [Some(self.from_s), self.to_s, self.measured_until_s];
         times_s
