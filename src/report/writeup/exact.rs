@@ -26,8 +26,9 @@ const MOST_SAMPLES: u64 = 1_000_000;
 const BLOCK_SAMPLES: u64 = 1024;
 
 impl ExactNumbers {
-    /// Plays the exact motion of `scenario`, whose run ended with the readouts `run`. It has the run's own steps, or a whole
-    /// number of samples in each where the steps are too long to show the nutation. `watch` receives the samples taken and
+    /// Plays the exact motion of `scenario`, whose run ended with the readouts `run`. It is sampled at the run's steps, so that
+    /// minimum and maximum of both are of the same times. If the run's scheme cannot follow the nutation at its time step, it
+    /// is sampled several times in each step. `watch` receives the samples taken and
     /// their number; if it breaks, the result is `None`.
     pub fn play(
         scenario: &Arc<Scenario>,
@@ -93,11 +94,12 @@ fn why_missing(scenario: &Scenario, run: &Readouts) -> Option<String> {
     }
 }
 
-/// Returns the number of samples of the exact motion of `scenario` that show its nutation.
+/// Returns the number of samples of the exact motion of `scenario`.
 fn samples(scenario: &Scenario, run: &Readouts) -> u64 {
     let steps = scenario.steps.max(1);
+    let follows = run.nutation_is_resolved() != Some(false) || run.health.scheme.turns_exactly;
     // The force of a push that accumulates depends on the time step.
-    if rescale::accumulates(scenario) {
+    if follows || rescale::accumulates(scenario) {
         return steps;
     }
     let end_s = Clock::end_s(scenario);
@@ -115,7 +117,6 @@ fn samples(scenario: &Scenario, run: &Readouts) -> u64 {
         steps
     };
     match wanted.div_ceil(steps) {
-        // The samples are at the steps, so that minimum and maximum of both are of the same times.
         parts if has_one_time_step => (parts.max(1) * steps).min(most / steps * steps),
         _ => wanted.max(steps),
     }

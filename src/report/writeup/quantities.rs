@@ -65,7 +65,9 @@ impl RunNumbers<'_> {
     fn row(&self, readout: &'static Readout) -> Option<QuantityRow> {
         let run = stated(readout, self.run);
         let exact = self.exact.readouts();
-        let exact = exact.and_then(|exact| number(Some(readout), exact));
+        let exact = exact
+            .filter(|exact| readout.name != NUTATION || exact.nutation_is_resolved() != Some(false))
+            .and_then(|exact| number(Some(readout), exact));
         let predicted = self.predicted(readout);
         run.map(|it| it.number).or(exact).or(predicted)?;
         // To the last digit of the run's number, so that they are compared digit by digit.
