@@ -280,8 +280,8 @@ fn verify_checks_a_write_up_as_a_whole() {
     has_all(
         stdout(&verified),
         [
-            "w/README.md: differs: lines 13 to ",
-            "differ; line 13 is \"| body | 4.2197 g;",
+            "w/README.md: differs: lines 15 to ",
+            "differ; line 15 is \"| body | 4.2197 g;",
             "w/above.svg: differs: it is missing",
             "w/traces.svg: differs: it is a figure of another run",
             "w/traces.pdf: the same",

@@ -19,13 +19,14 @@ const PREAMBLE: &str = r"\documentclass[11pt,a4paper]{article}
 \usepackage[hidelinks]{hyperref}
 \setlength{\parindent}{0pt}
 \setlength{\parskip}{6pt}
+\setlength{\belowcaptionskip}{4pt}
 \emergencystretch=3em
 \renewcommand{\topfraction}{0.9}
 \renewcommand{\bottomfraction}{0.8}
 \renewcommand{\textfraction}{0.1}
 \renewcommand{\floatpagefraction}{0.8}
 % A line of code: broken where it is too long, with a hanging indent.
-\newcommand{\codeline}[1]{\noindent\hangindent=2em\hangafter=1{\small\ttfamily #1}\par}
+\newcommand{\codeline}[1]{\noindent\hangindent=2em\hangafter=1{\small\ttfamily\frenchspacing #1}\par}
 ";
 
 /// The width of the text on the page, mm.
@@ -95,7 +96,8 @@ fn write_list(out: &mut String, document: &Document, name: &str, items: &[Text])
 
 fn write_table(out: &mut String, document: &Document, table: &Table) -> fmt::Result {
     let formats = column_formats(table);
-    let is_long = lines(table, &formats) > MOST_LINES_OF_FLOAT;
+    let height = lines(table, &formats);
+    let is_long = height > MOST_LINES_OF_FLOAT;
     let columns: String = formats.iter().map(ToString::to_string).collect();
     let label = table.label.as_ref().map(|it| format!("\\label{{{it}}}"));
     let label = label.unwrap_or_default();
@@ -119,9 +121,7 @@ fn write_table(out: &mut String, document: &Document, table: &Table) -> fmt::Res
             "\\begin{{tabular}}{{{columns}}}\n\\toprule\n{header}\n\\midrule"
         )?;
     }
-    let are_broken = formats
-        .iter()
-        .any(|it| matches!(it, ColumnFormat::Lines(_)));
+    let are_broken = height > table.rows.len() as f64;
     for (index, cells) in table.rows.iter().enumerate() {
         if are_broken && index > 0 {
             writeln!(out, "\\addlinespace")?;
@@ -267,7 +267,8 @@ impl NumberFormat {
     /// Returns the width of a number, in characters, with the spaces between groups of digits.
     fn width(&self) -> usize {
         let digits = self.whole + self.decimals;
-        digits + digits / 4 + self.uncertainty + usize::from(self.has_sign) + 2
+        let brackets = if self.uncertainty > 0 { 2 } else { 0 };
+        digits + digits / 8 + self.uncertainty + brackets + usize::from(self.has_sign) + 1
     }
 }
 
