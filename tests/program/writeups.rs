@@ -362,7 +362,10 @@ fn a_write_up_can_contain_a_fit() {
     tex::check(&lab.file("w"), "report.tex");
     let json: serde_json::Value = serde_json::from_str(&lab.read("w/fit.json")).unwrap();
     let value = json["keys"][1]["value"].as_f64().unwrap();
-    has(&row_of(&page, "`start.spin_rpm`")[2], format!("{value:.0}"));
+    has(
+        &row_of(&page, "`start.spin_rpm`")[2],
+        format!("{value:.1}("),
+    );
     // The folder holds all that the fit needs.
     done(lab.shell("mv w moved && \"$G\" verify moved && cd moved && \"$G\" verify . fit.csv"));
     let other = "writeup fit.csv --measured lab.csv -o no";
