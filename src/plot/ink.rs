@@ -1,4 +1,4 @@
-//! Lines, marks and words, put on a page.
+//! Draws lines, marks and words on a page.
 
 use super::letters::{self, SetLabel};
 pub use super::scene::at;
@@ -18,7 +18,7 @@ pub const fn grey(level: u8) -> Color {
     Color([level; 3])
 }
 
-/// `color` mixed with white; `white` is the part of that.
+/// Mixes `color` with white; `white` is the fraction of white.
 pub fn paler(Color(parts): Color, white: f64) -> Color {
     Color(parts.map(|part| (f64::from(part) + white * (255.0 - f64::from(part))).round() as u8))
 }
@@ -53,7 +53,7 @@ impl PageRectangle {
         (self.left..=self.right).contains(&point.x) && (self.top..=self.bottom).contains(&point.y)
     }
 
-    /// The place in the frame that is nearest to `point`; the lower end where that is no number.
+    /// Returns the point of the rectangle that is closest to `point`. A NaN coordinate gives the right or the lower edge.
     pub fn nearest(&self, point: Point) -> Point {
         at(
             point.x.min(self.right).max(self.left),
@@ -77,7 +77,7 @@ impl PageRectangle {
 }
 
 pub fn circle(middle: Point, radius_pt: f64) -> VectorPath {
-    /// Distance of the control points of a quarter of a circle, in radii.
+    /// Distance of the control points of a quarter circle from its ends, in radii.
     const BEND: f64 = 0.552_285;
     let (r, b) = (radius_pt, BEND * radius_pt);
     let quarters = [
@@ -95,12 +95,12 @@ pub fn circle(middle: Point, radius_pt: f64) -> VectorPath {
     VectorPath(path)
 }
 
-/// Returns the polygon whose `corners` are given from `middle`, pt.
+/// Creates a polygon with these `corners` relative to `middle`, pt.
 fn polygon(middle: Point, corners: &[(f64, f64)]) -> VectorPath {
     VectorPath::polygon(corners.iter().map(|corner| off(middle, *corner)))
 }
 
-/// Returns the point that is `x` to the right of `from` and `y` below it, pt.
+/// Returns the point `x` to the right of and `y` below `from`, pt.
 fn off(from: Point, (x, y): (f64, f64)) -> Point {
     at(from.x + x, from.y + y)
 }
@@ -120,7 +120,7 @@ pub enum PointMark {
     Square,
     Triangle,
     Diamond,
-    /// A triangle that stands on its tip.
+    /// A triangle that points down.
     Tip,
     Star,
     Ring,
@@ -135,7 +135,7 @@ pub enum PointMark {
 }
 
 impl PointMark {
-    /// Whether it marks what can have an error: neither theory nor a number that is known exactly.
+    /// Returns true if the mark shows values that can have an error, neither theory nor exactly known numbers.
     pub fn is_of_measured(self) -> bool {
         !matches!(self, Self::Cross | Self::Plus | Self::Speck)
     }
@@ -145,7 +145,7 @@ pub fn width(markup: &str, size_pt: f64) -> f64 {
     letters::label(markup, size_pt).width_pt
 }
 
-/// The height of a figure 0 at this size, pt.
+/// Returns the height of a digit 0 at this font size, pt.
 pub fn height(size_pt: f64) -> f64 {
     letters::label("0", size_pt).ascent_pt
 }
@@ -178,14 +178,14 @@ impl PageScene {
         self.stroke(VectorPath::polyline(ends), pen(width_pt, color), None);
     }
 
-    /// Writes `markup` with its `anchor` at `place`, which is on its baseline.
+    /// Writes `markup` on a baseline through `place`, positioned by its `anchor`.
     pub fn write(&mut self, markup: &str, size_pt: f64, place: Point, anchor: TextAnchor) {
         let label = letters::label(&self.with_comma(markup), size_pt);
         let left = place.x - anchor.share() * label.width_pt;
         self.letters(label, anchor, false, |p| at(left + p.x, place.y + p.y));
     }
 
-    /// Writes `markup` upwards, its middle at `middle`, which is on its baseline.
+    /// Writes `markup` upward, with its baseline centered at `middle`.
     pub fn write_up(&mut self, markup: &str, size_pt: f64, middle: Point) {
         let label = letters::label(&self.with_comma(markup), size_pt);
         let bottom = middle.y + 0.5 * label.width_pt;
@@ -193,7 +193,7 @@ impl PageScene {
         self.letters(label, TextAnchor::Middle, true, to);
     }
 
-    /// Returns `markup` with the decimal sign of this page in its numbers. Both signs are equally wide.
+    /// Returns `markup` with the decimal sign of this page in its numbers. Both signs have the same width.
     fn with_comma(&self, markup: &str) -> String {
         let letters: Vec<char> = markup.chars().collect();
         let is_digit = |place: Option<usize>| {
@@ -237,7 +237,7 @@ impl PageScene {
         self.mark_of_size(mark, MARK_PT, middle, color);
     }
 
-    /// Draws a mark whose dot would have the radius `r`, pt.
+    /// Draws a mark in the size that corresponds to a dot of radius `r`, pt.
     pub fn mark_of_size(&mut self, mark: PointMark, r: f64, middle: Point, color: Color) {
         let (x, y) = (1.2 * r, 0.9 * r);
         let (path, is_filled) = match mark {
@@ -294,7 +294,7 @@ impl PageScene {
         self.stroke(path, pen(0.6 * r / MARK_PT, color), None);
     }
 
-    /// Draws the two lines of a mark about `middle`.
+    /// Draws the two lines of a mark around `middle`.
     fn thin_lines(&mut self, middle: Point, lines: [[(f64, f64); 2]; 2], color: Color) {
         for line in lines {
             self.line(line.map(|end| off(middle, end)), 0.5, color);
