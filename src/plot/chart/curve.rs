@@ -1,4 +1,4 @@
-//! The line of a series on the page, without the points that nobody could see.
+//! The line of a series on the page, without points that are too close to be seen.
 
 use super::layout::PlacedPanel;
 use super::{ChartSeries, Panel, SeriesStyle};
@@ -8,20 +8,21 @@ use crate::plot::scene::{Color, PageScene, Point, StrokeStyle, VectorPath};
 use crate::plot::stroke_outline;
 use std::collections::HashSet;
 
-/// How far a line may leave its points, of its width: a tenth of a dot at 600 an inch for a line of 0.7 pt.
+/// Maximum distance of a line from its points, relative to its width: a tenth of a dot at 600 dots per inch for a line
+/// of 0.7 pt.
 const TOLERANCE: f64 = 0.02;
-/// And at most, of however wide a line, pt.
+/// Absolute maximum of this distance, pt.
 const UNSEEN_PT: f64 = 0.014;
-/// A line of more points than this is drawn by the outline of its ink if that has fewer: a file of 40 kB. Dashes would not be
-/// told apart in it.
+/// A line with more points than this is drawn as the outline of its ink if the outline has fewer points (about 40 kB).
+/// Dashes would merge in it.
 const MANY_LINE_POINTS: usize = 5_000;
-/// The part of white in the color of a band, which its line has pure.
+/// Fraction of white in the color of a band.
 pub const BAND_WHITE: f64 = 0.72;
 /// Ripples of a dashed line that are lower than this part of its width are not followed.
 const UNSEEN_RIPPLE: f64 = 0.35;
 /// A dashed line is drawn once where it comes so near to itself again, in its widths.
 const AGAIN: f64 = 2.0;
-/// How far outside of its panel a line is followed, pt: half its width, which is cut off at the edge.
+/// Distance beyond the panel up to which a line is drawn before it is clipped, pt: at least half its width.
 const BEYOND_PT: f64 = 2.0;
 
 impl PlacedPanel {
@@ -29,12 +30,12 @@ impl PlacedPanel {
         at(self.x.place(point[0]), self.y.place(point[1]))
     }
 
-    /// Draws the line of `series`, if it has one; of a band its two edges.
+    /// Draws the line of `series`, or both edges of its band.
     pub fn draw_line(&self, series: &ChartSeries, scene: &mut PageScene) {
         self.draw_with(&series.style.pen(), series, scene);
     }
 
-    /// Draws a white edge around the dashes of an exact motion, which are seen on dense swings then.
+    /// Draws a white border around the dashes of an exact motion, so that they are visible on dense swings.
     pub fn draw_halo(&self, series: &ChartSeries, scene: &mut PageScene) {
         if series.style.halo_pt() > 0.0 {
             let pen = series.style.pen();
@@ -66,8 +67,8 @@ impl PlacedPanel {
         draw_curve(&pieces, pen, Some(&self.frame), scene);
     }
 
-    /// Draws the marks along the line of `series`, if it has them: so many at equal distances, those of the series `place` of a
-    /// panel beside those of the others.
+    /// Draws the sparse marks along the line of `series`, if it has them, at equal distances. `place` is the index of
+    /// the series in its panel; it shifts the marks so that they do not collide.
     pub fn draw_sparse_marks(&self, series: &ChartSeries, place: usize, scene: &mut PageScene) {
         let Some(mark) = series.style.sparse_mark else {
             return;
@@ -121,7 +122,7 @@ impl PlacedPanel {
         scene.fill_in(VectorPath::polygon(outline), color, Some(&self.frame));
     }
 
-    /// The lower and the upper edge of a `band`.
+    /// Returns the lower and upper edge of a `band`.
     fn edges(&self, band: &[[f64; 3]]) -> [Vec<Point>; 2] {
         [1, 2].map(|edge| {
             band.iter()
@@ -130,13 +131,13 @@ impl PlacedPanel {
         })
     }
 
-    /// Whether nothing of `panel` is in `frame`.
+    /// Returns true if `frame` contains nothing of `panel`.
     pub fn is_clear(&self, frame: &PageRectangle, panel: &Panel) -> bool {
         let mut series = panel.series.iter();
         series.all(|series| !self.has_in(frame, series))
     }
 
-    /// Whether something of `series` is in `frame`.
+    /// Returns true if `frame` contains a part of `series`.
     pub fn has_in(&self, frame: &PageRectangle, series: &ChartSeries) -> bool {
         let mut bars =
             (0..series.points.len()).flat_map(|index| [0, 1].map(|axis| series.ends(index, axis)));
@@ -153,7 +154,7 @@ impl PlacedPanel {
         is_along_x && top.is_some_and(|top| top < frame.bottom)
     }
 
-    /// Returns whether a part of the line through `points` is in `frame`.
+    /// Returns true if `frame` contains a part of the line through `points`.
     fn has_line_in(&self, frame: &PageRectangle, points: &[[f64; 2]]) -> bool {
         let places = points.iter().map(|point| self.place(point));
         !clipped(places, frame).is_empty()
@@ -202,7 +203,7 @@ pub fn as_dashed<P: Copy>(
     first_passes(&steady, &place, AGAIN * style.width_pt)
 }
 
-/// Draws a line that is cut off outside of `clip`, in fewer pieces that look the same.
+/// Draws a line that is clipped at `clip`, with fewer points and the same appearance.
 pub fn draw_curve(
     pieces: &[Vec<Point>],
     pen: &StrokeStyle,
@@ -217,7 +218,7 @@ pub fn draw_curve(
     let count: usize = lines.iter().map(Vec::len).sum();
     if count > MANY_LINE_POINTS {
         let area = stroke_outline::area(&lines, pen.width_pt);
-        // There is none of lines that need too large a grid.
+        // The area is empty if the lines need too large a grid.
         if !area.0.is_empty() && area.0.len() < count {
             return scene.fill_in(area, pen.color, clip);
         }
@@ -227,7 +228,7 @@ pub fn draw_curve(
     }
 }
 
-/// The marks along a line, and the part of the distance between two of them by which a series is before the next.
+/// Number of marks along a line, and the shift between consecutive series as a fraction of the distance between marks.
 const SPARSE_MARKS: usize = 6;
 const SPARSE_SHIFT: f64 = 0.23;
 
@@ -254,13 +255,13 @@ pub fn spread(pieces: &[Vec<Point>], place: usize, metric: fn(Point, Point) -> f
     places
 }
 
-/// The squares of the page on which a line lies.
+/// The squares of the page that a line crosses.
 pub struct Squares(HashSet<[i32; 2]>);
 
 impl Squares {
     /// Side of a square, pt.
     const SIDE_PT: f64 = 0.5;
-    /// The part of a line that must lie on another one for both to look like one line.
+    /// Fraction of a line that must lie on another line if both are to look like one.
     const SAME: f64 = 0.98;
 
     pub fn new(pieces: &[Vec<Point>]) -> Self {
@@ -280,7 +281,7 @@ impl Squares {
         Self(squares)
     }
 
-    /// Returns whether both lines look like one.
+    /// Returns true if both lines look like one line.
     pub fn coincide(&self, other: &Self) -> bool {
         self.are_covered_by(other) && other.are_covered_by(self)
     }

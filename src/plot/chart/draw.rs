@@ -1,4 +1,4 @@
-//! A chart drawn on its page.
+//! Draws a chart on its page.
 
 use super::curve::Squares;
 use super::layout::{self, ChartLayout, PAGE_EDGE, PlacedPanel, TICK_LENGTH};
@@ -12,16 +12,16 @@ use crate::plot::letters;
 use crate::plot::scene::{PageScene, Point, TextAnchor};
 use std::collections::HashSet;
 
-/// The most marks in a panel.
+/// Maximum number of marks in a panel.
 const MOST_MARKS: f64 = 10_000.0;
 pub const FRAME_PT: f64 = 0.5;
 /// Length of a tick without a label, pt.
 const MINOR_TICK: f64 = 1.7;
 const BAR_END: f64 = 1.7;
-/// Marks that are nearer to each other on the mean are smaller, pt, and the smallest of them, of the size of others.
+/// Mean distance below which marks are drawn smaller, pt, and their minimum size relative to the default.
 const MARK_SPACING_PT: f64 = 2.5;
 const LEAST_MARK_SHARE: f64 = 0.5;
-/// An error bar from end to end that the lowest of the marks covers, pt.
+/// Length of an error bar that even the lowest mark covers, pt.
 const COVERED_PT: f64 = 2.8;
 
 impl Chart {
@@ -30,8 +30,8 @@ impl Chart {
         self.as_seen(&bare).placed(bare)
     }
 
-    /// The chart in the places of `layout`, without points that stand upon each other. Runs whose curves coincide in all panels
-    /// are one curve with both names, and what is not in any panel has no name in the legend.
+    /// Returns the chart as it can be seen with this `layout`: without overlapping marks. Runs whose curves coincide in
+    /// all panels become one curve with both names. Curves outside all panels have no name in the legend.
     fn as_seen(&self, layout: &ChartLayout) -> Self {
         let mut seen = self.clone();
         seen.x.range = layout.panels.first().map(|placed| placed.x.range);
@@ -64,7 +64,7 @@ impl Chart {
         }
     }
 
-    /// Makes one curve of runs whose curves coincide in all panels.
+    /// Joins runs whose curves coincide in all panels into one curve.
     fn join_coinciding(&mut self, layout: &ChartLayout) {
         let counts = self.panels.iter().map(|panel| panel.series.len());
         let count = counts.min().unwrap_or(0);
@@ -77,7 +77,7 @@ impl Chart {
         }
     }
 
-    /// Returns whether two runs look like one in all panels.
+    /// Returns true if two runs look the same in all panels.
     fn coincide(&self, first: usize, second: usize, layout: &ChartLayout) -> bool {
         let mut panels = self.panels.iter().zip(&layout.panels);
         panels.all(|(panel, placed)| {
@@ -89,7 +89,7 @@ impl Chart {
         })
     }
 
-    /// Draws the curve `second` of each panel no more: that of `first` has both names, if they have room in the legend.
+    /// Removes the curve `second` from each panel and adds its name to `first`, if both names fit into the legend.
     fn join(&mut self, first: usize, second: usize) {
         let magnified = self
             .magnified
@@ -109,7 +109,7 @@ impl Chart {
         }
     }
 
-    /// The chart in its places; `bare` leaves no room for a legend above the panels.
+    /// Draws the chart. `bare` is the layout without a legend above the panels.
     fn placed(&self, bare: ChartLayout) -> PageScene {
         let remarks = self.remark(&bare).into_iter().chain(self.magnified());
         let remarks = remarks.chain(self.remark_of_gaps());
@@ -145,7 +145,7 @@ impl Chart {
         scene
     }
 
-    /// What the legend says of the stretch that is magnified.
+    /// Returns the legend's remark on the magnified range.
     fn magnified(&self) -> Option<String> {
         let (from, to) = self.magnified.as_ref()?.x.range?;
         let [from, to] = [from, to].map(|end| with_minus(&significant(end, 9)));
@@ -158,14 +158,14 @@ impl Chart {
         Some(letters::shortened(&remark, LABEL_PT, room))
     }
 
-    /// What the legend says of the cells of a map that have no color.
+    /// Returns the legend's remark on cells of a map without a color.
     fn remark_of_gaps(&self) -> Option<String> {
         let mut maps = self.panels.iter().filter_map(|panel| panel.map.as_ref());
         maps.any(ColorMap::has_gaps)
             .then(|| "crossed: no value".to_owned())
     }
 
-    /// Whether something measured has marks without a known error.
+    /// Returns true if a measured quantity has marks without a known error.
     fn lacks_errors(&self) -> bool {
         let mut series = self.panels.iter().flat_map(|panel| &panel.series);
         series.any(|series| {
@@ -176,7 +176,7 @@ impl Chart {
         })
     }
 
-    /// What the legend says of error bars that are too small to be drawn.
+    /// Returns the legend's remark on error bars that are too small to be drawn.
     fn remark(&self, layout: &ChartLayout) -> Option<String> {
         let panels = self.panels.iter().zip(&layout.panels);
         let bars = panels.flat_map(|(panel, placed)| {
@@ -207,14 +207,13 @@ impl Chart {
     }
 }
 
-/// Whether a mark would cover an error bar.
+/// Returns true if a mark would cover an error bar.
 fn is_covered(&[a, b]: &[Point; 2]) -> bool {
     (a.x - b.x).abs() + (a.y - b.y).abs() < COVERED_PT
 }
 
 impl PlacedPanel {
-    /// Leaves out those points of `series`, which are marks, that stand where another one does: marks that are nearer to each
-    /// other than half of their width cannot be told apart.
+    /// Removes marks of `series` that overlap others. Marks closer than half their width cannot be distinguished.
     fn thin_marks(&self, series: &mut ChartSeries) {
         self.shrink_marks(series);
         let area = self.frame.width() * self.frame.height();
@@ -239,7 +238,7 @@ impl PlacedPanel {
         series.points = kept.iter().map(|&index| series.points[index]).collect();
     }
 
-    /// Makes the marks of `series` smaller where many stand beside each other.
+    /// Reduces the size of the marks of `series` if they are close together.
     fn shrink_marks(&self, series: &mut ChartSeries) {
         let places = series.points.iter().map(|point| self.place(point));
         let count = places.filter(|place| self.frame.holds(*place)).count();
@@ -247,7 +246,7 @@ impl PlacedPanel {
         series.style.mark_share = (apart_pt / MARK_SPACING_PT).clamp(LEAST_MARK_SHARE, 1.0);
     }
 
-    /// The ends of the error bars along an axis of those points of `series` that are in the panel, cut off at its frame.
+    /// Returns the ends of the error bars along an axis for the points of `series` in the panel, clipped to its frame.
     fn bars<'a>(
         &'a self,
         series: &'a ChartSeries,
@@ -347,7 +346,7 @@ impl Panel {
     }
 }
 
-/// The frame and its ticks, on all four sides, inwards.
+/// Draws the frame with ticks on all four sides, pointing inward.
 fn draw_frame(placed: &PlacedPanel, scene: &mut PageScene) {
     let frame = &placed.frame;
     scene.stroke(frame.outline(), pen(FRAME_PT, BLACK), None);
@@ -365,7 +364,7 @@ fn draw_frame(placed: &PlacedPanel, scene: &mut PageScene) {
     }
 }
 
-/// Draws the frame and its ticks, below and at the left, outwards: on the colors of a map they would not be seen.
+/// Draws the frame with ticks below and on the left, pointing outward, because the colors of a map would hide them.
 fn draw_frame_outwards(placed: &PlacedPanel, scene: &mut PageScene) {
     let frame = &placed.frame;
     scene.stroke(frame.outline(), pen(FRAME_PT, BLACK), None);
@@ -384,7 +383,7 @@ fn draw_frame_outwards(placed: &PlacedPanel, scene: &mut PageScene) {
     }
 }
 
-/// The value of each tick and its length on paper, pt.
+/// Returns the value of each tick and its length on the page, pt.
 fn lengths(ticks: &Ticks) -> impl Iterator<Item = (f64, f64)> {
     let major = ticks.major.iter().map(|tick| (tick.at, TICK_LENGTH));
     major.chain(ticks.minor.iter().map(|&at| (at, MINOR_TICK)))

@@ -1,7 +1,7 @@
-//! What a figure with axes shows, before anything of it has a place: panels one above the other over one axis.
+//! A chart: panels on top of each other over a common axis, before anything has a position on the page.
 //!
-//! [`axis`] and [`ticks`] say what stands at an axis, [`layout`] gives the parts their places, and [`draw`] puts them on a
-//! page: [`curve`] the curves, [`map`] colors, [`legend`] the names of the curves.
+//! [`axis`] and [`ticks`] define the ticks and labels of an axis, and [`layout`] positions all parts. [`draw`] puts
+//! them on a page, with curves from [`curve`], colors from [`map`], and the names of the curves from [`legend`].
 
 pub mod axis;
 pub mod curve;
@@ -22,13 +22,13 @@ pub struct Chart {
     pub title: String,
     pub width_pt: f64,
     pub x: ChartAxis,
-    /// The panels, from the top; one at least.
+    /// The panels, from top to bottom; at least one.
     pub panels: Vec<Panel>,
-    /// Whether a unit is as long on both axes; then there is one panel.
+    /// True if both axes have the same scale. The chart then has one panel.
     pub is_true_to_scale: bool,
-    /// A stretch of the axis x that is magnified, to the right: its panels have the axes y of these.
+    /// A magnified part of the x axis, shown on the right. Its panels have the same y axes.
     pub magnified: Option<Box<Chart>>,
-    /// Whether its errors are those of reading a number off a run: they do not hold what the scheme does to the run.
+    /// True if the errors are those of measuring numbers in a run, without the effect of the scheme on the run.
     pub are_read_off: bool,
     /// Its height with its legend, pt; `None`: as its panels need it. A chart that is true to scale has its own.
     pub height_pt: Option<f64>,
@@ -38,16 +38,16 @@ pub struct Chart {
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ChartAxis {
-    /// What is measured on it, as markup.
+    /// The quantity on the axis, as markup.
     pub name: String,
-    /// Its unit, as markup; empty for a pure number.
+    /// The unit, as markup; empty for a pure number.
     pub unit: String,
     pub is_log: bool,
-    /// From where to where it goes; `None`: as the data need it.
+    /// The range of the axis; `None` to fit the data.
     pub range: Option<(f64, f64)>,
-    /// How large the quantity is by its nature, in its unit: differences far below that are rounding. 0: not known.
+    /// Typical size of the quantity, in its unit. Differences far below it are rounding errors. 0 if unknown.
     pub size: f64,
-    /// Differences below this part of that size are drawn flat, where it is more than rounding.
+    /// Differences below this fraction of `size` are drawn flat, if it exceeds the limit of rounding.
     pub flat_below: f64,
 }
 
@@ -55,7 +55,7 @@ pub struct ChartAxis {
 pub struct Panel {
     pub y: ChartAxis,
     pub series: Vec<ChartSeries>,
-    /// A quantity over both axes, as colors behind the series.
+    /// A quantity over both axes, drawn as colors behind the series.
     pub map: Option<ColorMap>,
     /// The name of the column along its axis y; empty if there is none.
     pub column: String,
@@ -83,14 +83,13 @@ impl Panel {
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ChartSeries {
-    /// Its name in the legend, as markup; empty for none.
+    /// Name in the legend, as markup; empty for none.
     pub name: String,
-    /// Its points in order; the line is interrupted where one is not finite.
+    /// The points in order. The line is interrupted at points that are not finite.
     pub points: Vec<[f64; 2]>,
-    /// One standard error of each point's first and of its second number; empty where there are none, NaN where one is not
-    /// known.
+    /// Standard errors of the x and of the y values. Empty without errors; NaN for an unknown error.
     pub errors: [Vec<f64>; 2],
-    /// Where its line turns too often to be told apart: along the axis x, from where to where it goes.
+    /// A band that replaces the line where it turns too often: x, minimum and maximum.
     pub band: Vec<[f64; 3]>,
     pub style: SeriesStyle,
 }
@@ -105,14 +104,15 @@ impl ChartSeries {
         }
     }
 
-    /// Returns whether it and `other` are curves of runs, each with a name, which one curve can show where they coincide.
+    /// Returns true if this and `other` are curves of runs, each with a name, that can be drawn as one curve if they
+    /// coincide.
     pub fn can_join(&self, other: &Self) -> bool {
         [self, other].iter().all(|series| {
             series.style.is_of_run() && !series.name.is_empty() && series.band.is_empty()
         }) && self.style.is_dots == other.style.is_dots
     }
 
-    /// The time of a push, which acts between these values of the axis x.
+    /// Creates the stripe of a push that acts between these values of the x axis.
     pub fn push(from: f64, to: f64) -> Self {
         Self::stripe("push", SeriesStyle::push(), from, to)
     }
@@ -131,7 +131,7 @@ impl ChartSeries {
         }
     }
 
-    /// The values from 0 to `limit` of the axis y, all along the axis x.
+    /// Creates the stripe of the y values from 0 to `limit`, along the whole x axis.
     pub fn below(name: &str, limit: f64) -> Self {
         let ends = [f64::MIN_POSITIVE, f64::INFINITY];
         Self {
@@ -140,7 +140,7 @@ impl ChartSeries {
         }
     }
 
-    /// A line of the legend without a curve.
+    /// Creates an entry of the legend without a curve.
     pub fn named(name: String) -> Self {
         let style = SeriesStyle {
             width_pt: 0.0,
@@ -149,13 +149,13 @@ impl ChartSeries {
         Self::new(name, Vec::new(), style)
     }
 
-    /// The line of zero across `range`.
+    /// Creates the zero line across `range`.
     pub fn level((begin, end): (f64, f64)) -> Self {
         let points = vec![[begin, 0.0], [end, 0.0]];
         Self::new("", points, SeriesStyle::theory(0, 0))
     }
 
-    /// The ends of the error bar of a point along the axis x (0) or y (1); without an error, the point.
+    /// Returns the ends of a point's error bar along x (0) or y (1). Without an error, both ends are the point.
     pub fn ends(&self, index: usize, axis: usize) -> [[f64; 2]; 2] {
         let error = self.errors[axis]
             .get(index)
@@ -169,7 +169,7 @@ impl ChartSeries {
         })
     }
 
-    /// The numbers of the points along an axis, and those of the ends of their error bars.
+    /// Returns the coordinates of the points along an axis, and of the ends of their error bars.
     pub fn reach(&self, axis: usize) -> impl Iterator<Item = f64> {
         (0..self.points.len()).flat_map(move |index| {
             let [high, low] = self.ends(index, axis);
@@ -181,22 +181,22 @@ impl ChartSeries {
 #[derive(Clone, Debug, PartialEq)]
 pub struct SeriesStyle {
     pub color: Color,
-    /// Width of its line, pt; 0 for points alone.
+    /// Width of the line, pt; 0 for points only.
     pub width_pt: f64,
     /// Lengths of strokes and gaps, pt; empty for a solid line.
     pub dash_pt: &'static [f64],
     pub mark: Option<PointMark>,
-    /// The size of its marks, of the usual one.
+    /// Size of the marks, relative to the default.
     pub mark_share: f64,
-    /// Whether it is drawn behind the others, and behind those of its kind that come before it.
+    /// True to draw the series behind the others, and behind earlier series of this kind.
     pub is_behind: bool,
-    /// Whether its line is a dot at each of its points, which are not joined.
+    /// True to draw a dot at each point instead of a line.
     pub is_dots: bool,
-    /// Whether it is a band where its series has one.
+    /// True to draw the band of the series, if it has one.
     pub is_band: bool,
     /// Whether that band is hatched.
     pub is_hatched: bool,
-    /// The mark at a few places along its line, which tells it from others without color.
+    /// A mark at a few positions along the line, which distinguishes it without color.
     pub sparse_mark: Option<PointMark>,
     /// Whether its line has a white edge, so that it is seen on dense curves.
     pub has_halo: bool,
@@ -220,12 +220,14 @@ impl Default for SeriesStyle {
     }
 }
 
-/// The most curves, or series of points, that can be told apart.
+/// Maximum number of curves, or series of points, that can be distinguished.
 pub const MOST_CURVES: usize = 12;
 
-/// Colors that people with any color vision tell apart (Okabe and Ito, 2008), without those of the exact motion. Curves of
-/// the second half of [`MOST_CURVES`] have them again, with dashes and open marks. The grays of the first three differ; from
-/// the fourth curve on, marks tell all of them apart without color.
+/// Colors that are distinguishable with any color vision (Okabe and Ito, 2008), except for the color of the exact
+/// motion.
+///
+/// The second half of [`MOST_CURVES`] reuses the colors with dashes and open marks. The first three colors have
+/// different grays. With four or more curves, marks distinguish all curves without color.
 const COLORS: [Color; MOST_CURVES / 2] = [
     BLACK,
     Color([0, 114, 178]),
@@ -234,9 +236,9 @@ const COLORS: [Color; MOST_CURVES / 2] = [
     Color([204, 121, 167]),
     Color([86, 180, 233]),
 ];
-/// The dashes of the curves of the second half: strokes and gaps, pt.
+/// Dashes of the second half of the curves: strokes and gaps, pt.
 const SECOND_DASH: &[f64] = &[5.0, 1.6];
-/// With so many curves in a panel each has marks.
+/// Number of curves in a panel from which on each curve has marks.
 const FEWEST_MARKED_CURVES: usize = 4;
 const MARKS: [PointMark; MOST_CURVES] = [
     PointMark::Dot,
@@ -253,11 +255,11 @@ const MARKS: [PointMark; MOST_CURVES] = [
     PointMark::Ring,
 ];
 
-/// The color of the exact motion, as in the lab on a light background.
+/// Color of the exact motion, as in the lab on a light background.
 pub const EXACT_COLOR: Color = Color([207, 74, 6]);
-/// The dashes of exact motions: the only one, and those of further runs.
+/// Dashes of exact motions: the first one, then those of further runs.
 const EXACT_DASHES: [&[f64]; 4] = [&[3.2, 1.6], &[1.0, 1.2], &[5.0, 1.4, 1.0, 1.4], &[7.0, 2.0]];
-/// The dashes of theory: strokes and gaps, pt. Those of the exact motion come last.
+/// Dashes of theory: strokes and gaps, pt. The dashes of the exact motion come last.
 const THEORY_DASHES: [&[f64]; 6] = [
     &[],
     &[1.0, 1.2],
@@ -266,7 +268,7 @@ const THEORY_DASHES: [&[f64]; 6] = [
     &[2.0, 1.0, 2.0, 3.0],
     &[3.2, 1.6],
 ];
-/// The color of the time of a push, before it is made pale.
+/// Color of a push, before it is mixed with white.
 const PUSH_COLOR: Color = grey(120);
 
 /// The color of a hatched time, which is seen on a band too.
@@ -276,7 +278,7 @@ const HATCH_COLOR: Color = grey(100);
 const DOT_PT: f64 = 1.1;
 
 impl SeriesStyle {
-    /// The line of the curve `index` of `count` in a panel: the first is on top.
+    /// Returns the style of curve `index` of `count` in a panel. The first curve is on top.
     pub fn curve(index: usize, count: usize) -> Self {
         Self {
             color: COLORS[index % COLORS.len()],
@@ -291,7 +293,7 @@ impl SeriesStyle {
         }
     }
 
-    /// The exact motion number `index` of a panel: dashed, on top of the runs.
+    /// Returns the style of the exact motion number `index` in a panel: dashed, on top of the runs.
     pub fn exact(index: usize) -> Self {
         Self {
             color: EXACT_COLOR,
@@ -301,7 +303,7 @@ impl SeriesStyle {
         }
     }
 
-    /// The time of a push: a pale stripe behind the curves.
+    /// Returns the style of a push: a pale stripe behind the curves.
     pub fn push() -> Self {
         Self {
             color: PUSH_COLOR,
@@ -320,12 +322,12 @@ impl SeriesStyle {
         }
     }
 
-    /// Returns whether it is the line of a run, which may coincide with that of another run.
+    /// Returns true for the line of a run, which may coincide with the line of another run.
     fn is_of_run(&self) -> bool {
         self.width_pt > 0.0 && self.mark.is_none() && self.color != EXACT_COLOR && !self.is_band
     }
 
-    /// Points on a thin line, for the series `index` of several.
+    /// Returns the style of points on a thin line, for series `index`.
     pub fn marked_line(index: usize) -> Self {
         Self {
             width_pt: 0.5,
@@ -342,8 +344,8 @@ impl SeriesStyle {
         }
     }
 
-    /// What was measured, so many points of it: empty circles, which no run has, over the run's line. Many of them would
-    /// hide that line: they are grey and behind it.
+    /// Returns the style of `count` measured points: open circles on top of the run's line. If there are many, they are
+    /// gray and behind the line, which they would hide.
     pub fn measured(count: usize) -> Self {
         const MANY_MARKS: usize = 150;
         let are_many = count > MANY_MARKS;
@@ -356,7 +358,7 @@ impl SeriesStyle {
         }
     }
 
-    /// A faint line behind the others, for a limit.
+    /// Returns the style of a limit: a faint line behind the others.
     pub fn limit() -> Self {
         Self {
             color: grey(165),
@@ -366,7 +368,8 @@ impl SeriesStyle {
         }
     }
 
-    /// A thin line of theory beside the series `index` of several; `place` tells it from other theory of the same quantity.
+    /// Returns the style of a thin line of theory for series `index`. `place` distinguishes several theories of the
+    /// same quantity.
     pub fn theory(index: usize, place: usize) -> Self {
         Self {
             color: if index == 0 {
@@ -379,7 +382,7 @@ impl SeriesStyle {
         }
     }
 
-    /// The same as marks, which fine strokes join.
+    /// Returns the style of theory as marks joined by fine strokes.
     pub fn theory_marked(index: usize, place: usize) -> Self {
         Self {
             width_pt: 0.35,
@@ -388,7 +391,7 @@ impl SeriesStyle {
         }
     }
 
-    /// Returns the style of the same thing of the exact motion.
+    /// Returns the corresponding style for the exact motion.
     pub fn as_exact(self) -> Self {
         Self {
             color: EXACT_COLOR,
@@ -397,7 +400,7 @@ impl SeriesStyle {
         }
     }
 
-    /// Small points of what was neither measured nor is theory, for the series `index` of several.
+    /// Returns the style of small points for values that are neither measured nor theory, for series `index`.
     pub fn specks(index: usize) -> Self {
         Self {
             mark: Some(PointMark::Speck),
@@ -405,7 +408,7 @@ impl SeriesStyle {
         }
     }
 
-    /// The same with a dot at each point in place of a line.
+    /// Returns the style with a dot at each point instead of a line.
     pub fn as_dots(self) -> Self {
         Self {
             dash_pt: &[],
@@ -435,9 +438,9 @@ impl SeriesStyle {
     }
 }
 
-/// The farthest that an axis reaches: the distance of its ends is still finite.
+/// Maximum value on an axis, so that the distance between its ends is finite.
 const FARTHEST_AXIS_END: f64 = 1e306;
-/// The room beyond the data, of their span, and where that is rounding, of their size.
+/// Margin beyond the data, relative to their range; if the range is only rounding, relative to their size.
 const DATA_MARGIN: f64 = 0.045;
 const CONSTANT_MARGIN: f64 = 0.1;
 
@@ -457,7 +460,7 @@ impl ChartAxis {
         }
     }
 
-    /// Name, offset and unit, as it is written along the axis with these ticks.
+    /// Returns the title of the axis with these ticks: name, offset and unit.
     pub fn title(&self, ticks: &Ticks) -> String {
         let offset = match ticks.offset.as_deref() {
             None => String::new(),
@@ -476,10 +479,11 @@ impl ChartAxis {
         }
     }
 
-    /// From where to where the axis goes for these `values`; those that it cannot show are passed over. Without a value: any
-    /// stretch.
+    /// Returns the range of the axis for these `values`, ignoring values that it cannot show. Without values, any range
+    /// is returned.
     pub fn range_of(&self, values: impl Iterator<Item = f64>) -> (f64, f64) {
-        /// Values that differ by less than this part of themselves, or of the quantity's own size, differ by rounding.
+        /// Values that differ by less than this fraction of their size, or of the quantity's typical size, differ only
+        /// by rounding.
         const VALUE_ROUNDING: f64 = 1e-10;
         if let Some(range) = self.range {
             return range;
@@ -499,7 +503,7 @@ impl ChartAxis {
             return (low - DATA_MARGIN * span, high + DATA_MARGIN * span);
         }
         if self.size > 0.0 && largest <= VALUE_ROUNDING.max(self.flat_below) * self.size {
-            // Zero, as well as the numbers tell it.
+            // The values are zero within their precision.
             return (-CONSTANT_MARGIN * self.size, CONSTANT_MARGIN * self.size);
         }
         let half = if largest > 1e-290 {
@@ -512,7 +516,7 @@ impl ChartAxis {
     }
 }
 
-/// A logarithmic axis for values from `low` to `high`, with some room.
+/// Returns the range of a logarithmic axis for values from `low` to `high`, with a margin.
 fn decades_around(low: f64, high: f64) -> (f64, f64) {
     let (low, high) = (
         low.max(1.0 / FARTHEST_AXIS_END),

@@ -10,10 +10,11 @@ use std::ops::ControlFlow;
 use std::slice;
 
 impl FigureSource {
-    /// Draws it. `watch` is told the step reached and the last one, and says whether to go on; `None` where it said no.
+    /// Draws the figure. `watch` is called with the current and the last step. Returns `None` if `watch` stopped the
+    /// computation.
     ///
     /// # Errors
-    /// When it cannot be drawn so, in words.
+    /// Returns an error if the figure cannot be drawn as requested.
     pub fn draw(
         &self,
         watch: impl FnMut(u64, u64) -> ControlFlow<()>,
@@ -33,7 +34,7 @@ impl FigureSource {
     }
 }
 
-/// The figure of `table` that is asked for.
+/// Draws the requested figure of `table`.
 fn of_table(table: &TableSource, spec: &FigureSpec) -> Result<DrawnFigure, String> {
     let mut chart = of_table::chart(table, &TableView::new(table, spec))?;
     let without_point = of_table::warning(table, &chart);

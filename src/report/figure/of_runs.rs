@@ -1,4 +1,4 @@
-//! Figures of runs: their curves over time, their paths from above and in space.
+//! Figures of runs: curves over time, and paths from above and in space.
 
 pub(super) mod charts;
 
@@ -35,12 +35,14 @@ struct SampledRuns {
     broke: Option<String>,
 }
 
-/// Draws the figures of `sources`, all of the same runs, one at least: for those of one stretch of time these are played
-/// once, and not at all where there is a single run of which enough is `known`. `watch` is told the step reached and the last
-/// one, and says whether to go on; `None` where it said no.
+/// Draws the figures of `sources`, which all have the same runs.
+///
+/// Figures with the same time range play the runs only once, and not at all if there is a single run with enough
+/// `known` numbers. `watch` is called with the current and the last step. Returns `None` if `watch` stopped the
+/// computation.
 ///
 /// # Errors
-/// When the stretch of time lies beyond the ends of the runs.
+/// Returns an error if the time range lies beyond the ends of the runs.
 pub fn figures(
     sources: &[FigureSource],
     known: &KnownNumbers,
@@ -141,7 +143,7 @@ fn play(
     }))
 }
 
-/// Plays the runs as far as nothing is known of them; `None` where `watch` said no.
+/// Plays the runs, unless their numbers are known. Returns `None` if `watch` stopped the computation.
 fn play_runs(
     job: &FigureJob<'_>,
     wanted: &SampleRequest,
@@ -174,7 +176,7 @@ fn play_runs(
     drawn.collect()
 }
 
-/// Plays the exact motions beside the runs; `None` where `watch` said no.
+/// Computes the exact motions to draw with the runs. Returns `None` if `watch` stopped the computation.
 fn play_truths(
     job: &FigureJob<'_>,
     wanted: &SampleRequest,
@@ -193,10 +195,10 @@ fn play_truths(
     drawn.collect()
 }
 
-/// Draws the figure; `None` where `watch` said no.
+/// Draws the figure. Returns `None` if `watch` stopped the computation.
 ///
 /// # Errors
-/// When what was measured cannot be drawn so.
+/// Returns an error if the measured data cannot be drawn in this figure.
 fn draw(
     job: &FigureJob<'_>,
     played: &SampledRuns,
@@ -259,7 +261,7 @@ fn draw(
     }))
 }
 
-/// The chart of `columns` with what was measured of them and the axes that were asked for, and what is to be said of it.
+/// Returns the chart of `columns` with measured data and the requested axes, and its warnings.
 fn over_time(
     job: &FigureJob<'_>,
     columns: &[&'static CsvColumn],
@@ -274,7 +276,8 @@ fn over_time(
     Ok((chart, none.into_iter().chain(hidden).collect()))
 }
 
-/// The chart of the stretch in which what is `dense` is told apart; `None` where `watch` said no.
+/// Returns the chart of the time range that resolves the `dense` curves. Returns `None` if `watch` stopped the
+/// computation.
 fn magnified(
     job: &FigureJob<'_>,
     columns: &[&'static CsvColumn],
@@ -327,10 +330,10 @@ fn check_range(job: &FigureJob<'_>) -> Result<(), String> {
     Ok(())
 }
 
-/// What draws the exact motion beside the runs, on the command line.
+/// Hint at the option that adds the exact motion.
 pub const EXACT_BESIDE: &str = "--exact draws that beside it";
 
-/// What is said of `run` where it is not to be believed.
+/// Returns a warning if `run` is not accurate enough.
 fn not_believed(run: &FigureRun, course: &SampledRun, exact: bool) -> Option<String> {
     let health = course
         .health
@@ -366,16 +369,16 @@ fn not_believed(run: &FigureRun, course: &SampledRun, exact: bool) -> Option<Str
     Some(format!("do not believe {what}{beside}"))
 }
 
-/// Returns what limits every computation of the motion of `run`, where something does.
+/// Returns a warning if something limits every computation of the motion of `run`.
 fn limited(run: &FigureRun, course: &SampledRun) -> Option<String> {
     let limits = course.health?.limits();
     (limits != Predictability::default())
         .then(|| format!("the motion of {} is {limits}", run.named))
 }
 
-/// A nutation with fewer time steps than these is not seen in the lines from one to the next.
+/// Minimum number of time steps per nutation for which straight lines show the nutation.
 const LEAST_A_SWING: f64 = 6.0;
-/// Time steps in a nutation that show it as a smooth curve.
+/// Number of time steps per nutation that show it as a smooth curve.
 const A_SMOOTH_SWING: f64 = 20.0;
 
 /// Returns whether what is `wanted` of `run` is known between its steps too.
@@ -395,7 +398,7 @@ fn is_coarse(run: &FigureRun) -> bool {
     }
 }
 
-/// What is said of `run` where it has too few time steps in a nutation for a curve over time.
+/// Returns a warning if `run` has too few time steps per nutation for a curve over time.
 fn few_a_swing(run: &FigureRun) -> Option<String> {
     let truth = Truth::new(Arc::clone(&run.scenario));
     let motion = truth.motion().closed_form()?;
@@ -413,7 +416,7 @@ fn few_a_swing(run: &FigureRun) -> Option<String> {
     })
 }
 
-/// Refuses more curves than can be told apart.
+/// Returns an error for more curves than can be distinguished.
 fn check_count(job: &FigureJob<'_>) -> Result<(), String> {
     let room_pt = longest_name(job.spec.page_width_pt());
     let exact = if job.spec.exact {
@@ -430,23 +433,23 @@ fn check_count(job: &FigureJob<'_>) -> Result<(), String> {
     ))
 }
 
-/// Returns how many of `runs` are exact motions.
+/// Returns the number of exact motions among `runs`.
 fn exact_before(runs: &[FigureRun]) -> usize {
     runs.iter().filter(|run| is_exact(&run.scenario)).count()
 }
 
-/// Whether every step of `scenario` is the exact motion's.
+/// Returns true if every step of `scenario` is exact.
 pub(crate) fn is_exact(scenario: &Scenario) -> bool {
     let edited = scenario.edits.iter().map(|edit| &edit.motion);
     let mut motions = edited.chain([&scenario.motion]);
     motions.all(|motion| motion.scheme.order.is_none())
 }
 
-/// What is said of a run that is no less exact than what is drawn beside it.
+/// Warning for a run that is itself the exact motion.
 const IS_EXACT: &str =
     "the scheme exact gives the exact motion itself: no second curve of it is drawn";
 
-/// The runs whose exact motions differ and are drawn by none of `runs`, each with the name of that motion.
+/// Returns the runs with different exact motions that none of `runs` shows, each with the name of that motion.
 fn truths(runs: &[FigureRun], room_pt: f64) -> Vec<(&FigureRun, String)> {
     let mut distinct: Vec<&FigureRun> = Vec::new();
     for run in runs {
@@ -472,7 +475,7 @@ fn truths(runs: &[FigureRun], room_pt: f64) -> Vec<(&FigureRun, String)> {
         .collect()
 }
 
-/// Returns what decides the exact motion of `run`: its file without title, view, scheme and time step.
+/// Returns the part of the file of `run` that determines the exact motion: without title, view, scheme and time step.
 fn motion(run: &FigureRun) -> ScenarioFile {
     let mut file = run.scenario.file.clone();
     (file.motion.scheme, file.motion.time_step_s) = (None, 0.0);
