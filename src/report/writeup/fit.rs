@@ -184,9 +184,12 @@ impl<'a> FitWriteup<'a> {
         ));
         let rows = self.report.fit.keys.iter().enumerate().map(|(index, key)| {
             let free = &key.free;
+            let [from, to] = [free.from, free.to].map(shown);
             let bounds = match (free.from.is_finite(), free.to.is_finite()) {
+                (true, true) => format!("{from} to {to}"),
+                (true, false) => format!("at least {from}"),
+                (false, true) => format!("at most {to}"),
                 (false, false) => String::new(),
-                _ => format!("{} to {}", shown(free.from), shown(free.to)),
             };
             let stated = key.stated();
             [
