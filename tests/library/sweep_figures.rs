@@ -258,11 +258,11 @@ fn a_map_needs_two_keys_with_numbers() {
     let refusal = |text: &str, x| of_table::chart(&table(text), &map_view(x)).unwrap_err();
     let told = refusal(&two_keys("motion.scheme", rows), None);
     assert!(told.contains("two keys that vary over numbers"), "{told}");
-    let told = refusal(&grid(), Some("reliable"));
+    let of_readout = refusal(&grid(), Some("reliable"));
     assert!(
-        told.contains("start.spin_rpm or start.tilt_deg")
-            || told.contains("start.tilt_deg or start.spin_rpm"),
-        "{told}"
+        of_readout.contains("start.spin_rpm or start.tilt_deg")
+            || of_readout.contains("start.tilt_deg or start.spin_rpm"),
+        "{of_readout}"
     );
 }
 
@@ -291,8 +291,8 @@ fn any_column_can_be_the_x_axis() {
         x_range: Some(range),
         ..over("turns_per_step")
     };
-    let chart = of_table::chart(&table(&text), &within((1.0, 2.5))).unwrap();
-    let (low, high) = chart.panels[0].y.range.unwrap();
+    let part = of_table::chart(&table(&text), &within((1.0, 2.5))).unwrap();
+    let (low, high) = part.panels[0].y.range.unwrap();
     assert!(0.7 < low && high < 0.9, "{low} to {high}");
     let none = of_table::chart(&table(&text), &within((5.0, 6.0))).unwrap_err();
     assert!(none.contains("no point"), "{none}");

@@ -12,7 +12,7 @@ use crate::studies::table::{SweepTable, TableSource};
 /// Maximum number of maps on a page.
 const MOST_MAPS: usize = 4;
 /// Maximum number of cells of a map.
-const MOST_CELLS: usize = 250_000;
+const MOST_CELLS: usize = 40_000;
 
 /// A key along an axis of a map.
 struct MapKey {
@@ -36,7 +36,7 @@ pub(in crate::report::figure::of_table) fn drawn(
     let cells = keys[0].values.len() * keys[1].values.len();
     if cells > MOST_CELLS {
         return Err(format!(
-            "a map shows at most {MOST_CELLS} cells, and this one has {cells}"
+            "a map shows at most {MOST_CELLS} cells, and this one has {cells}: sweep fewer values"
         ));
     }
     let [x, y] = [0, 1].map(|place| keys[place].axis(swept, view.is_log[place]));
