@@ -3,6 +3,7 @@
 use crate::support::scenarios::{parse, preset};
 use crate::support::words::has;
 use gyrolab::engine::analysis::compare;
+use gyrolab::engine::analysis::verdict::warning_at_start;
 use gyrolab::engine::export::columns::COLUMNS;
 use gyrolab::engine::export::layout::LayoutFile;
 use gyrolab::engine::export::layout::commented;
@@ -212,9 +213,9 @@ fn the_layout_precedes_the_run_file_and_is_read_back() {
     let scenario = edited();
     let bytes = csv(&scenario, file.clone());
     let run_file = commented(&scenario.to_toml());
-    let header = format!(
-        "# # every = 10\n# # from_s = 1.0\n# # columns = [\"t_s\", \"z_m\"]\n{run_file}t_s,z_m\n"
-    );
+    let layout = "# # every = 10\n# # from_s = 1.0\n# # columns = [\"t_s\", \"z_m\"]\n";
+    let warning = warning_at_start(&scenario).unwrap();
+    let header = format!("{layout}# # warning: {warning}\n{run_file}t_s,z_m\n");
     assert!(bytes.starts_with(header.as_bytes()));
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.csv");

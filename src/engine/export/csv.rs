@@ -46,7 +46,7 @@ impl<W: Write> CsvWriter<W> {
         });
         let (above, run_file) = (layout.comments(), commented(&scenario.to_toml()));
         let names = layout.names().join(&char::from(separator).to_string());
-        writeln!(out, "{mark}{warning}{above}{run_file}{names}")?;
+        writeln!(out, "{mark}{above}{warning}{run_file}{names}")?;
         let points = if layout.file().points {
             NamedPoint::all_of(scenario, |name| field(name, separator))
         } else {
