@@ -90,7 +90,7 @@ for call, words in [
     (lambda: gyrolab.run("no-such-preset"), "no-such-preset"),
     (lambda: gyrolab.run("cusps", set={"start.tilt": 3}), "start.tilt"),
     (lambda: gyrolab.verify("no-such-file.csv"), "no-such-file"),
-    (lambda: gyrolab.figure(pd.DataFrame({"a": [1]})), "table-1.csv"),
+    (lambda: gyrolab.figure(pd.DataFrame({"a": [1]})), "DataFrame-1.csv"),
 ]:
     try:
         call()

@@ -257,7 +257,7 @@ class _Words:
 
     def _file(self, rows: Any) -> Path:
         self._files += 1
-        path = self.folder / f"table-{self._files}.csv"
+        path = self.folder / f"DataFrame-{self._files}.csv"
         header = "".join(f"# {line}".rstrip() + "\n" for line in rows.attrs.get("header", "").splitlines())
         path.write_text(header + rows.to_csv(index=False), encoding="utf-8")
         return path
