@@ -93,11 +93,10 @@ fn pages_have_the_requested_height_and_font() {
 fn text_is_aligned_where_fonts_differ() {
     let scene = drawn(&[run("cusps", &["motion.steps=300"])], &spec("z_m")).scene;
     let svg = String::from_utf8(write(&scene, PageFormat::SvgText, None).unwrap()).unwrap();
-    let tick = svg
+    let ticks = svg
         .lines()
-        .find(|line| line.contains(">0.96</tspan>"))
-        .unwrap();
-    assert!(tick.contains("text-anchor=\"end\""), "{tick}");
+        .filter(|line| line.contains("text-anchor=\"end\""));
+    assert!(ticks.count() >= 3, "{svg}");
     let title = svg
         .lines()
         .find(|line| line.contains(">t</tspan>"))
