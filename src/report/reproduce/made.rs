@@ -98,7 +98,7 @@ pub const TABLES: &[Made] = &[
     ),
     Made::table(
         "faster-spin",
-        "sweep method-2-slow --set motion.time_step_s=0.0001 --duration 10 --vary start.momentum_Js.2=100,10000 \
+        "sweep method-2-slow --set motion.time_step_s=0.0001 --duration 10 --vary start.momentum_Js.2=200,20000 \
          --vary motion.scheme=report,exact --measure spin_rpm,measured_precession_rad_per_s",
     ),
     Made::table(
@@ -121,6 +121,11 @@ pub const TABLES: &[Made] = &[
         "sweep wobble-push --vary motion.time_step_s=0.1,0.05,0.02,0.01,0.005,0.002,0.001 \
          --vary motion.scheme=report,exact \
          --measure turns_per_step,measured_lowest_z_m,measured_highest_z_m,most_distance_m",
+    ),
+    Made::table(
+        "other-heights",
+        "sweep wobble-push --vary body.rim.height_m=0.4,0.5,0.65,0.8 --vary motion.time_step_s=0.1,0.001 \
+         --vary motion.scheme=report,exact --measure measured_lowest_z_m,measured_highest_z_m",
     ),
     Made::table("comb", "sweep wobble-over-time-step"),
 ];
@@ -170,6 +175,6 @@ pub const FIGURES: &[Made] = &[
     ),
     Made::figure(
         "wobble-push-finer",
-        "figure wobble-push --time-step 0.002 --exact --kind z_m --y-range 0.6..0.95 --width 160mm",
+        "figure wobble-push --vary motion.time_step_s=0.1,0.002 --exact --kind z_m --to 60 --width 160mm",
     ),
 ];

@@ -1,7 +1,7 @@
 //! The numbers of the document, read from its tables and from the presets.
 
 use super::tables::Tables;
-use crate::engine::scenario::{Document, Problems, Scenario};
+use crate::engine::scenario::{Document, Problems, Scenario, Window};
 use crate::engine::text::number::{fixed, significant};
 use crate::physics::SymmetricTop;
 use crate::report::document::quantity;
@@ -18,8 +18,10 @@ pub(super) struct Numbers {
     /// x of the traced point in Method 1, in the whole run and half a turn of the precession later, m.
     pub first_x_m: Range,
     pub later_x_m: Both<Range>,
+    /// Greatest z of the traced point in the second half of Method 1, m.
+    pub back_up_z_m: f64,
     pub without_weight: Both<Flight>,
-    /// With 100 J s, and with 100 times that.
+    /// With 200 J s, and with 100 times that.
     pub spins: [Both<Flight>; 2],
     /// Precession at the tilts of [`TILTS_DEG`], rad/s: of the report's top with steps of 0.1 s, and of a slow one.
     pub of_fast_top: [Both<f64>; 3],
@@ -28,10 +30,14 @@ pub(super) struct Numbers {
     /// The push, from the longest time step to the shortest.
     pub finer: [Finer; 7],
     pub lag: Lag,
+    /// The push with the wheel at other heights.
+    pub heights: [OtherHeight; 4],
     /// The torque of weight and push together, as a multiple of the weight's.
     pub push_torque: f64,
     /// Distance from the foot to the axle's upper end in every row of the push, m.
     pub length_m: Range,
+    /// Greatest distance from the vertical in the two halves of the time after the push, m.
+    pub radii_m: [f64; 2],
 }
 
 /// The same by the report's scheme and of the exact motion.
@@ -115,15 +121,26 @@ pub(super) struct Finer {
     pub most_distance_m: f64,
 }
 
+/// The push with the wheel at another height on the axle.
+pub(super) struct OtherHeight {
+    pub height_m: f64,
+    pub z_m: Range,
+    /// The same with a time step of 0.001 s.
+    pub finer_z_m: Range,
+    pub exact_z_m: Range,
+}
+
 /// What the linear theory of the scheme says of Method 2, and what its run shows, degrees.
 pub(super) struct Lag {
-    pub lag_deg: f64,
+    /// Angle between axle and L in a steady precession.
+    pub offset_deg: f64,
     pub predicted_swing_deg: f64,
     pub swing_deg: f64,
 }
 
 pub(super) const TILTS_DEG: [f64; 3] = [15.0, 45.0, 75.0];
 const MOMENTA: [&str; 4] = ["20.0", "40.0", "60.0", "1000.0"];
+const HEIGHTS_M: [&str; 4] = ["0.4", "0.5", "0.65", "0.8"];
 const TIME_STEPS_S: [&str; 7] = ["0.1", "0.05", "0.02", "0.01", "0.005", "0.002", "0.001"];
 
 /// The readouts that are the ends of a range.
@@ -137,6 +154,8 @@ impl Numbers {
     /// # Errors
     /// When a preset cannot be read.
     pub fn read(tables: &Tables) -> Result<Self, Problems> {
+        let pushed = Document::open("wobble-push")?.scenario()?;
+        let heights = tables.column("method-1", "z_m");
         Ok(Self {
             top: Top::new(&Document::open("method-2")?.scenario()?),
             method_1: Run::read(tables, "method-1")?,
@@ -149,8 +168,9 @@ impl Numbers {
                 report: Range::of(&tables.column("half-a-turn-later", "x_m")),
                 exact: Range::of(&tables.column("half-a-turn-later-exact", "x_m")),
             },
+            back_up_z_m: Range::of(&heights[heights.len() / 2..]).high,
             without_weight: Both::of(|scheme| Flight::read(tables, "no-weight", &["0.0", scheme])),
-            spins: ["100.0", "10000.0"].map(|momentum| {
+            spins: ["200.0", "20000.0"].map(|momentum| {
                 Both::of(|scheme| Flight::read(tables, "faster-spin", &[momentum, scheme]))
             }),
             of_fast_top: at_tilts(tables, "tilt-fast-top"),
@@ -161,9 +181,18 @@ impl Numbers {
             }),
             finer: TIME_STEPS_S.map(|time_step_s| Finer::read(tables, time_step_s)),
             lag: Lag::read(tables),
-            push_torque: push_torque(&Document::open("wobble-push")?.scenario()?),
-            length_m: length_m(tables),
+            heights: HEIGHTS_M.map(|height_m| OtherHeight::read(tables, height_m)),
+            push_torque: push_torque(&pushed),
+            length_m: Range::of(&distances(tables, &["x_m", "y_m", "z_m"])),
+            radii_m: radii_m(tables, &pushed),
         })
+    }
+
+    /// By how much the torque of the weight is too small in Method 2, because the axle is more upright than L, %.
+    pub fn weaker_torque_percent(&self) -> f64 {
+        let tilt_rad = self.top.tilt_rad;
+        let upright_rad = tilt_rad - self.lag.offset_deg.to_radians();
+        100.0 * (1.0 - libm::sin(upright_rad) / libm::sin(tilt_rad))
     }
 
     /// The report's five runs in its order, each with its name.
@@ -271,6 +300,12 @@ impl Top {
         (torque * time_step_s / self.momentum).to_degrees()
     }
 
+    /// How far the tilt swings if z of the axle's upper end has this range, degrees.
+    pub fn tilt_swing_deg(&self, z_m: Range) -> f64 {
+        let [low, high] = [z_m.high, z_m.low].map(|z| libm::acos(z / self.arm_m));
+        (high - low).to_degrees()
+    }
+
     /// The distance of the axle's upper end from the vertical at the height `z_m`, m.
     pub fn radius_m(&self, z_m: f64) -> f64 {
         (self.arm_m * self.arm_m - z_m * z_m).sqrt()
@@ -358,11 +393,26 @@ impl Finer {
     }
 }
 
+impl OtherHeight {
+    fn read(tables: &Tables, height_m: &str) -> Self {
+        let range = |rest: [&str; 2]| {
+            let labels = [height_m, rest[0], rest[1]];
+            tables.range("other-heights", &labels, Z)
+        };
+        Self {
+            height_m: height_m.parse().unwrap_or(f64::NAN),
+            z_m: range(["0.1", "report"]),
+            finer_z_m: range(["0.001", "report"]),
+            exact_z_m: range(["0.001", "exact"]),
+        }
+    }
+}
+
 impl Lag {
     fn read(tables: &Tables) -> Self {
         let labels = ["0.1"];
         Self {
-            lag_deg: tables.number("comb", &labels, "predicted_lag_deg"),
+            offset_deg: tables.number("comb", &labels, "predicted_lag_deg"),
             predicted_swing_deg: tables.number("comb", &labels, "predicted_tilt_swing_deg"),
             swing_deg: tables.number("comb", &labels, "measured_tilt_swing_deg"),
         }
@@ -383,15 +433,30 @@ pub(super) fn chord(turns: f64) -> f64 {
     2.0 * libm::sin(PI * turns).abs()
 }
 
-fn length_m(tables: &Tables) -> Range {
-    let columns = ["x_m", "y_m", "z_m"].map(|name| tables.column("wobble-push", name));
-    let lengths: Vec<f64> = (0..columns[0].len())
-        .map(|row| {
-            let place = columns.iter().filter_map(|column| column.get(row));
-            place.map(|number| number * number).sum::<f64>().sqrt()
-        })
+/// Returns the length of the vector of these columns in each row of the push.
+fn distances(tables: &Tables, names: &[&str]) -> Vec<f64> {
+    let columns: Vec<Vec<f64>> = names
+        .iter()
+        .map(|name| tables.column("wobble-push", name))
         .collect();
-    Range::of(&lengths)
+    let rows = 0..columns.first().map_or(0, Vec::len);
+    let squares = rows.map(|row| {
+        let place = columns.iter().filter_map(|column| column.get(row));
+        place.map(|number| number * number).sum::<f64>()
+    });
+    squares.map(f64::sqrt).collect()
+}
+
+/// Returns the greatest distance from the vertical in the two halves of the time after the push of `pushed`, m.
+fn radii_m(tables: &Tables, pushed: &Scenario) -> [f64; 2] {
+    let end = pushed.pushes.iter().map(|push| match push.window {
+        Window::Steps { first, count } => (first + count) as usize,
+        Window::Time { .. } => 0,
+    });
+    let radii = distances(tables, &["x_m", "y_m"]);
+    let after = radii.get(end.max().unwrap_or(0)..).unwrap_or_default();
+    let (first, second) = after.split_at(after.len() / 2);
+    [first, second].map(|half| Range::of(half).high)
 }
 
 /// Returns the markup of `number` with so many decimals and its unit.

@@ -2,6 +2,7 @@
 
 use super::made::{FIGURES, Made};
 use super::numbers::{Numbers, with_digits};
+use crate::engine::text::number::significant;
 use crate::report::document::{Block, Column, Document, Table, Text};
 
 /// Adds the questions that the report leaves open, each with our answer and its reason.
@@ -12,7 +13,9 @@ pub(super) fn open_questions(document: &mut Document, numbers: &Numbers) {
     document.section("What the report leaves open");
     document.paragraph(
         "The report does not say everything that a program must know. [#open] lists the questions, our answers, and why we \
-         chose them. The first answer matters most. The others change the numbers little or not at all.",
+         chose them. Four of the answers decide what the runs show: the height of the wheel, the unit matrix E, the time step \
+         of the push, and that its force does not add up. We chose them so that the method shows what the report describes. \
+         The others change the numbers, but not the findings.",
     );
     let rows = [
         (
@@ -20,7 +23,7 @@ pub(super) fn open_questions(document: &mut Document, numbers: &Numbers) {
             format!("The hub is at {hub}, the radius divided by √2; the axle is twice as long."),
             format!(
                 "The body then has the same moment of inertia along and across the axle ({along}, {across}). Only then does \
-                 the report's method neither damp nor feed the nutation, and shows what the report describes: an axle that \
+                 the report's method neither damp nor feed the nutation, and show what the report describes: an axle that \
                  comes back upright again and again, a circle that is almost nice, and a wobble that is periodic and lasts. \
                  We tried other heights, masses on the axle, and other readings of the formulas: only bodies with equal \
                  moments show all of it."
@@ -34,11 +37,11 @@ pub(super) fn open_questions(document: &mut Document, numbers: &Numbers) {
         (
             "About which point are the moments taken?",
             "About the foot.".to_owned(),
-            "The report fixes \"the bottom of axis at (0,0,0)\". Its remark that the center of mass is there too cannot be: it is the hub.".to_owned(),
+            "The report fixes \"the bottom of axis (center of spinning) at (0,0,0)\". Its remark that the center of mass is there too cannot be: it is the hub.".to_owned(),
         ),
         (
             "Section 3 prints the inertia tensor without the unit matrix E. Which formula is meant?",
-            "With E, as in its equation (2).".to_owned(),
+            "With E, as in equation (2) of section 2.".to_owned(),
             "Without E the formula is not the inertia tensor, and no height of the wheel gives what the report shows.".to_owned(),
         ),
         (
@@ -59,7 +62,7 @@ pub(super) fn open_questions(document: &mut Document, numbers: &Numbers) {
         (
             "With which time step does it push?",
             "0.1 s.".to_owned(),
-            "It has just changed to it, and 0.001 s shows no wobble.".to_owned(),
+            "The report uses 0.001 s and 0.1 s, and does not say which one here. With 0.001 s there is no wobble that a figure can show, and the report shows one.".to_owned(),
         ),
         (
             "Is t in the condition of the push the time at the beginning or at the end of the step?",
@@ -87,6 +90,38 @@ pub(super) fn open_questions(document: &mut Document, numbers: &Numbers) {
             })
             .collect(),
     }));
+    other_heights(document, numbers);
+}
+
+/// Says that the wobble of the push does not depend on the height of the wheel.
+fn other_heights(document: &mut Document, numbers: &Numbers) {
+    document.paragraph(
+        "Does the wobble depend on the height of the wheel that we chose? [#other-heights] has the push with four others. In \
+         the exact motion the swing of z is small at every height. In the report's method with its long time step it is large \
+         at every height. If the wheel is low, the method feeds the nutation even with the short time step, until the wheel \
+         tips over. If it is high, the method damps the nutation.",
+    );
+    let rows = numbers.heights.iter().map(|wheel| {
+        let swings = [wheel.z_m, wheel.finer_z_m, wheel.exact_z_m];
+        let cells = swings.map(|z_m| Text::number(&significant(z_m.size_mm(), 3)));
+        let height = Text::number(&significant(wheel.height_m, 3));
+        [vec![height], cells.to_vec()].concat()
+    });
+    document.blocks.push(Block::Table(Table {
+        label: Some("other-heights".to_owned()),
+        caption: Text::plain(
+            "The push with the wheel at other heights: by how much z of the axle's upper end swings.",
+        ),
+        columns: [
+            "height (m)",
+            "report, 0.1 s (mm)",
+            "report, 0.001 s (mm)",
+            "exact (mm)",
+        ]
+        .map(Column::number)
+        .into(),
+        rows: rows.collect(),
+    }));
 }
 
 /// Says what is in the folder, and how to make it again.
@@ -98,7 +133,8 @@ pub(super) fn files(document: &mut Document) {
     );
     document.code("sh", "gyrolab reproduce -o FOLDER\ngyrolab verify FOLDER");
     document.paragraph(
-        "The second command computes everything again, and says of each file whether it is the same. In the folder `data` are \
+        "The second command computes everything again, and says of each file whether it is the same. This page is also in \
+         `report.tex`, with `refs.bib`, for pdflatex. In the folder `data` are \
          the five runs step by step and the tables of numbers, as CSV. In `figures` are the figures as SVG and PDF. \
          `claims.json` has the claims for a program. Each figure is drawn by a command of its own:",
     );
