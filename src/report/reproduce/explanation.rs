@@ -81,7 +81,7 @@ fn findings(numbers: &Numbers) -> [String; 4] {
              {steps} of its short time steps: the animation was too short."
         ),
         format!(
-            "**The slow turn about the vertical, the *precession*, is nearly right.** Even with the long time step, the upper \
+            "**The precession, its slow turn about the vertical, is nearly right.** Even with the long time step, the upper \
              end goes around on almost the right circle, and in Method 2 a turn takes only {slower} too long."
         ),
     ]
@@ -92,8 +92,8 @@ fn summary_row(name: &str, run: &Run) -> [Text; 6] {
         Text::plain(name),
         Text::number(&significant(run.time_step_s, 3)),
         Text::number(&fixed(run.exact.turns_per_step, 3)),
-        Text::number(&significant(run.report.z_m.size_mm(), 3)),
-        Text::number(&significant(run.exact.z_m.size_mm(), 3)),
+        Text::number(&fixed(run.report.z_m.size_mm(), 2)),
+        Text::number(&fixed(run.exact.z_m.size_mm(), 2)),
         Text::number(&significant(1000.0 * run.most_distance_m, 2)),
     ]
 }

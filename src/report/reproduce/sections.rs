@@ -302,8 +302,8 @@ fn finer_row(finer: &Finer) -> Vec<Text> {
     vec![
         Text::number(&significant(finer.time_step_s, 2)),
         Text::number(&fixed(finer.turns_per_step, 3)),
-        Text::number(&significant(finer.z_m.report.size_mm(), 3)),
-        Text::number(&significant(finer.z_m.exact.size_mm(), 3)),
+        Text::number(&fixed(finer.z_m.report.size_mm(), 2)),
+        Text::number(&fixed(finer.z_m.exact.size_mm(), 2)),
         Text::number(&significant(1000.0 * finer.most_distance_m, 2)),
     ]
 }
@@ -372,7 +372,7 @@ fn conclusions(document: &mut Document, numbers: &Numbers) {
         rows: rows.collect(),
     }));
     let [short, long] = [&numbers.method_2_slow, &numbers.method_2]
-        .map(|run| with_digits(run.report.z_m.size_mm(), 2, "mm"));
+        .map(|run| with_digits(run.report.z_m.size_mm(), 3, "mm"));
     document.paragraph(&format!(
         "Is the simulation accurate? For the precession it nearly is. For the wobble it is not. The report could have seen \
          this in Method 2, where z swings by {short} with short time steps and by {long} with long ones. With the push it \
