@@ -284,8 +284,8 @@ fn push_finer(document: &mut Document, numbers: &Numbers) {
         columns: vec![
             Column::number("time step (s)"),
             Column::number("turns per step"),
-            Column::number("swing, report (mm)"),
-            Column::number("swing, exact (mm)"),
+            Column::number("z, report (mm)"),
+            Column::number("z, exact (mm)"),
             Column::number("apart (mm)"),
         ],
         rows: numbers.finer.iter().map(finer_row).collect(),
