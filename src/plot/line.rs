@@ -303,14 +303,14 @@ mod tests {
 
     #[test]
     fn dashed_lines_ignore_invisible_ripples() {
-        let rippled = |height: f64| -> Vec<Point> {
+        let rippled = |apart: f64, height: f64| -> Vec<Point> {
             (0..2000)
-                .map(|i| at(0.1 * f64::from(i), height * f64::from(i % 2)))
+                .map(|i| at(apart * f64::from(i), height * f64::from(i % 2)))
                 .collect()
         };
-        let straight = without_ripples(&rippled(0.2), |place| *place, 0.25);
+        let straight = without_ripples(&rippled(0.1, 0.2), |place| *place, 0.25);
         assert!(length(&straight) < 1.01 * 199.9, "{}", length(&straight));
-        let seen = rippled(1.0);
+        let seen = rippled(1.0, 1.0);
         assert_eq!(without_ripples(&seen, |place| *place, 0.25), seen);
         // A bend is no ripple.
         let bend: Vec<Point> = (0..100)
