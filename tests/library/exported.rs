@@ -226,10 +226,11 @@ fn the_layout_precedes_the_run_file_and_is_read_back() {
         scenario.to_toml(),
         "the run file is read back"
     );
-    let layout = CsvLayout::read(&header.replace("\n# ", "\n")[2..]).unwrap();
-    assert_eq!(*layout.file(), file);
+    let read_back = CsvLayout::read(&header.replace("\n# ", "\n")[2..]).unwrap();
+    assert_eq!(*read_back.file(), file);
     let plain = csv(&scenario, whole());
-    assert!(plain.starts_with(format!("{run_file}step,t_s,").as_bytes()));
+    let plain_header = format!("# # warning: {warning}\n{run_file}step,t_s,");
+    assert!(plain.starts_with(plain_header.as_bytes()));
 }
 
 #[test]
