@@ -118,3 +118,14 @@ fn exported_runs_and_comparisons_are_drawn_from_their_files() {
     let exact = ["figure", "error.csv", "--exact", "-o", "exact.svg"];
     failed(&ground.run(&exact), &["as they are"]);
 }
+
+#[test]
+fn a_path_has_a_mark_at_its_start_if_it_shows_the_start() {
+    let ground = Ground::new();
+    for (from, count) in [("0", 1), ("2", 0)] {
+        let kind = ["--kind", "above", "--text", "--from", from];
+        let figure = [&["cusps"], &kind[..], &["-o", "a.svg", "--force"]];
+        draw(&ground, &figure.concat());
+        assert_eq!(ground.read("a.svg").matches(">start</text>").count(), count);
+    }
+}

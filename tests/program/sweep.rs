@@ -476,7 +476,9 @@ fn every_command_reports_the_rows_without_readouts() {
         let continued = run_sweep(&ground, args, "cut.csv");
         has(
             &continued,
-            format!("behind {kept} of 4 rows in cut.csv.part, {empty} of them without readouts\n"),
+            format!(
+                "continuing after {kept} of 4 rows in cut.csv.part, {empty} of them without readouts\n"
+            ),
         );
         is_told(&continued);
         assert_eq!(ground.read("cut.csv"), whole);

@@ -358,6 +358,16 @@ impl SeriesStyle {
         }
     }
 
+    /// Returns the style of an open circle at the start of a path of this style.
+    pub fn start(path: &Self) -> Self {
+        Self {
+            color: path.color,
+            width_pt: 0.0,
+            mark: Some(PointMark::Ring),
+            ..Self::default()
+        }
+    }
+
     /// Returns the style of a limit: a faint line behind the others.
     pub fn limit() -> Self {
         Self {

@@ -134,6 +134,10 @@ pub(super) fn above(
         })
         .chain(measured)
         .collect();
+    if job.spec.from_s == 0.0 {
+        let starts = starts(&series[..drawn.len()]);
+        series.extend(starts);
+    }
     let [x, y] = both_ranges(&series, job.runs);
     if let (true, [run]) = (job.spec.exact, job.runs) {
         series.extend(limits(run, job.spec.page_width_pt() / (x.1 - x.0)));
@@ -143,6 +147,20 @@ pub(super) fn above(
         is_true_to_scale: true,
         ..job.chart(quantity::axis("x_m").within(x), vec![panel])
     }
+}
+
+/// Returns an open circle at the start of each of `paths`, one where several paths start at the same place.
+fn starts(paths: &[ChartSeries]) -> Vec<ChartSeries> {
+    let mut starts: Vec<ChartSeries> = Vec::new();
+    for path in paths {
+        let is_new = |start: &&[f64; 2]| starts.iter().all(|other| other.points[0] != **start);
+        if let Some(start) = path.points.first().filter(is_new) {
+            let name = if starts.is_empty() { "start" } else { "" };
+            let style = SeriesStyle::start(&path.style);
+            starts.push(ChartSeries::new(name.to_owned(), vec![*start], style));
+        }
+    }
+    starts
 }
 
 pub(super) fn path_warning(
@@ -202,19 +220,20 @@ fn circle(radius_m: f64, pt_per_m: f64) -> Vec<[f64; 2]> {
     places.collect()
 }
 
-/// Returns the ranges of both axes of a path. Neither is less than half of the other, so that even a straight path has
-/// a picture.
+/// Returns the ranges of both axes of a path. Even a straight path has a picture: y has at least half the range of x. The
+/// picture is not much higher than wide: x has at least three quarters of the range of y.
 fn both_ranges(series: &[ChartSeries], runs: &[FigureRun]) -> [(f64, f64); 2] {
-    const LEAST_MAGNIFIED_SHARE: f64 = 0.5;
+    const LEAST_SHARES: [f64; 2] = [0.75, 0.5];
     let size = size::axis(runs, "x_m");
     let ranges = [0, 1].map(|axis| {
         let values = series.iter().flat_map(|series| series.reach(axis));
         size.range_of(values)
     });
-    let longest = ranges.iter().map(|(low, high)| high - low);
-    let least = LEAST_MAGNIFIED_SHARE * longest.fold(0.0, f64::max);
-    ranges.map(|(low, high)| {
-        let missing = (least - (high - low)).max(0.0);
+    let lengths = ranges.iter().map(|(low, high)| high - low);
+    let longest = lengths.fold(0.0, f64::max);
+    [0, 1].map(|axis| {
+        let (low, high) = ranges[axis];
+        let missing = (LEAST_SHARES[axis] * longest - (high - low)).max(0.0);
         (low - 0.5 * missing, high + 0.5 * missing)
     })
 }
