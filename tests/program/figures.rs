@@ -126,6 +126,9 @@ fn a_path_has_a_mark_at_its_start_if_it_shows_the_start() {
         let kind = ["--kind", "above", "--text", "--from", from];
         let figure = [&["cusps"], &kind[..], &["-o", "a.svg", "--force"]];
         draw(&ground, &figure.concat());
-        assert_eq!(ground.read("a.svg").matches(">start</text>").count(), count);
+        assert_eq!(
+            ground.read("a.svg").matches(">start</tspan>").count(),
+            count
+        );
     }
 }
