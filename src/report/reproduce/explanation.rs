@@ -24,7 +24,7 @@ pub(super) fn summary(document: &mut Document, numbers: &Numbers) {
     document.paragraph(
         "The report's text does not fix everything that a program must know. The height of the wheel and the time step of \
          the push are *our reading*: we chose them so that the method shows what the report describes. [#open] lists all \
-         such choices. With the wheel at other heights the first finding is the same ([#other-heights]).",
+         such choices. With the wheel at other heights, the exact gyroscope does not wobble either ([#other-heights]).",
     );
     document.paragraph(
         "The report starts its gyroscope in two ways. In *Method 1* the wheel stands upright and is given an angular momentum \
@@ -32,7 +32,7 @@ pub(super) fn summary(document: &mut Document, numbers: &Numbers) {
          with short time steps, with long ones, and with a push.",
     );
     document.table(
-        "The report's five computations: how often the body turns in a time step; by how much the height z of the axle's \
+        "The report's five computations: how often the body turns in a time step, at the start; by how much the height z of the axle's \
          upper end swings, by the report's method and in the exact motion; and how far the two are apart at most.",
         [
             Column::text("run"),
@@ -190,8 +190,8 @@ pub(super) fn sampling(document: &mut Document, numbers: &Numbers) {
             "How far the tilt swings in Method 2, computed with many different time steps. The axis below counts how often \
              the wheel turns per step. Points: the report's method. Solid: twice the offset by the formula above, where it \
              holds. Dashed: the exact motion. The report's long time step, {all_turns} turns, is close to peak number \
-             {number}. How high the highest point of a peak is depends on chance: on how near its time step comes to a whole \
-             number of turns."
+             {number}. The scale of the swing is logarithmic. The height of a peak only says how near the time step of a point comes to a whole number of \
+             turns."
         ),
     );
     document.subsection("How to find out");
@@ -255,10 +255,11 @@ fn offset(document: &mut Document, numbers: &Numbers) {
     let kick_deg = numbers.top.kick_deg(run.time_step_s);
     let kick = with_digits(kick_deg, 3, "deg");
     document.paragraph(&format!(
-        "How large is the swing? A kick turns $L$ by the angle $δ = |τ| Δt/L$, here {kick}. There is one position in which \
-         the axle goes around with $L$ and does not swing. In it the axle does not point along $L$, but beside it, by a small \
-         angle $r$, the *offset*. In a step, the turn by $ψ$ moves the axle by the chord $2 r |sin(ψ/2)|$, and the kick moves \
-         $L$ by $δ$. If the two are equal, $r$ stays as it is:"
+        "How large is the swing? A kick turns $L$ by the angle $δ = |τ| Δt/L$, here {kick}. The axle can go \
+         around with $L$ without swinging, if it leans away from $L$ by one small angle $r$, the *offset*. Seen from $L$, the \
+         tip of the axle is a point on a circle of radius $r$. In a step it goes around by $ψ$, and ends at the distance \
+         $2 r |sin(ψ/2)|$ from where it was. The kick moves $L$, the center of the circle, by $δ$. If the two moves are \
+         equal, the offset does not change:"
     ));
     document.formula("r = δ / (2 |sin(ψ/2)|)");
     let sine = with_digits(chord(run.exact.turns_per_step), 3, "");
@@ -269,11 +270,12 @@ fn offset(document: &mut Document, numbers: &Numbers) {
         [lag.predicted_swing_deg, lag.swing_deg].map(|swing| with_digits(swing, 3, "deg"));
     let swing = with_digits(run.report.z_m.size_mm(), 3, "mm");
     document.paragraph(&format!(
-        "If $ψ$ is small, the chord is $r ψ$, and the offset is the true one, $δ/ψ$. If $ψ$ is a whole number of turns, the \
+        "If $ψ$ is small, the distance is $r ψ$, and the offset is the true one, $δ/ψ$. If $ψ$ is a whole number of turns, the \
          sine is zero, and the offset grows without limit. With the report's long time step, $2 |sin(ψ/2)|$ is {sine}, and \
          the offset is {offset_deg}. The true one is {true_offset}. Method 2 begins without an offset, so its axle swings \
          about this position, from no offset to twice the offset: by {predicted} after this formula, and by {found}, or \
-         {swing} in height, in the run. In the exact motion the offset is downward. In the program it is upward, because the \
-         circle seems to run backward."
+         {swing} in height, in the run. In the exact motion the offset is downward. In the program it is upward: just below a \
+         whole number of turns, each step looks like a small turn backward, so the same kick needs the offset on the other \
+         side."
     ));
 }

@@ -23,7 +23,7 @@ pub(super) fn open_questions(document: &mut Document, numbers: &Numbers) {
             format!("The hub is at {hub}, the radius divided by √2; the axle is twice as long."),
             format!(
                 "The body then has the same moment of inertia along and across the axle ({along}, {across}). Only then does \
-                 the report's method neither damp nor feed the nutation, and show what the report describes: an axle that \
+                 the report's method make the nutation neither smaller nor larger, and show what the report describes: an axle that \
                  comes back upright again and again, a circle that is almost nice, and a wobble that is periodic and lasts. \
                  We tried other heights, masses on the axle, and other readings of the formulas: only bodies with equal \
                  moments show all of it."
@@ -98,8 +98,9 @@ fn other_heights(document: &mut Document, numbers: &Numbers) {
     document.paragraph(
         "Does the wobble depend on the height of the wheel that we chose? [#other-heights] has the push with four others. In \
          the exact motion the swing of z is small at every height. In the report's method with its long time step it is large \
-         at every height. If the wheel is low, the method feeds the nutation even with the short time step, until the wheel \
-         tips over. If it is high, the method damps the nutation.",
+         at every height. If the wheel is low, the method makes the nutation larger even with the short time step, until \
+         the wheel tips over and its upper end hangs below the foot: there a short time step alone is not enough. If the \
+         wheel is high, the method makes the nutation smaller.",
     );
     let rows = numbers.heights.iter().map(|wheel| {
         let swings = [wheel.z_m, wheel.finer_z_m, wheel.exact_z_m];

@@ -247,16 +247,16 @@ fn push(document: &mut Document, numbers: &Numbers) {
     document.paragraph(&format!(
         "Why so large? Weight and push together have {torque} times the torque of the weight. So the kicks and the offset are \
          {torque} times as large as before. A swing from no offset to twice the offset would be {expected}. But the tilt \
-         swings by {found}. The kicks are so large that they make $L$ longer, by {longer} in all, and the wheel faster: at \
-         the end it turns {later_turns} times per step, and not {turns} times. On the way it passes a whole number of turns, \
+         swings by {found}. The kicks are so large that they make $L$ longer, by {longer} in all (a straight step at right \
+         angles to $L$ ends a little outside the circle), and the wheel faster: at the end it turns {later_turns} times per step, and not {turns} times. On the way it passes a whole number of turns, \
          the peak in [#comb]. When the push ends, the large swing stays. In the exact motion, the push does not make the \
          wheel faster."
     ));
     let length = numbers.length_m.markup(6);
     document.paragraph(&format!(
         "That the radius grows as the height drops is no sign of an error. The axle is rigid, so its upper end keeps its \
-         distance from the foot: in all rows of the run, $√(x^2 + y^2 + z^2)$ runs from {length} m. Whoever lowers the end \
-         of a leaning pole moves it outward. In every swing the radius grows while the height drops, and shrinks while it \
+         distance from the foot: in all rows of the run, $√(x^2 + y^2 + z^2)$ runs from {length} m. If you lower the \
+         end of a leaning pole, it moves outward. In every swing the radius grows while the height drops, and shrinks while it \
          rises. The error is that there is a swing at all."
     ));
 }
@@ -270,10 +270,11 @@ fn push_finer(document: &mut Document, numbers: &Numbers) {
     let from_s = first_true.map_or(f64::NAN, |it| it.time_step_s);
     let true_from = with_digits(from_s, 2, "s");
     document.paragraph(&format!(
-        "The wobble does not survive a shorter time step. [#push-finer] has the same push, 20 s long, with seven of them. At \
-         {second_s} the wheel turns {second_turns} times per step. Kicks then meet the axle on opposite sides of its circle \
+        "The wobble does not survive a time step that is short enough. [#push-finer] has the same push, 20 s long, with seven \
+         time steps. At {second_s} the wheel turns {second_turns} times per step. Kicks then meet the axle on opposite sides of its circle \
          and cancel, and the wobble is small. At {third_s} the wheel turns {third_turns} times per step, nearly a whole \
-         number, and the wobble is back. From {true_from} on, z swings hardly more than in the exact motion."
+         number, and the wobble is back: to halve the time step once can mislead. With {true_from} or less, z swings hardly \
+         more than in the exact motion."
     ));
     document.blocks.push(Block::Table(Table {
         label: Some("push-finer".to_owned()),
@@ -346,7 +347,7 @@ fn conclusions(document: &mut Document, numbers: &Numbers) {
     );
     document.paragraph(
         "A gyroscope with a large $L$ precesses at $M g h/L$ at any tilt. Looked at closely, the rate does depend on the \
-         tilt, a little if $L$ is large and more if it is small, and in the sense that the report gives. The report's own \
+         tilt, a little if $L$ is large and more if it is small, and in the direction that the report gives. The report's own \
          method shows the opposite at 0.1 s ([#tilt]): the effect of its time step is larger than the true one.",
     );
     let tops = numbers.of_fast_top.iter().zip(&numbers.of_slow_top);
