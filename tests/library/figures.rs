@@ -403,6 +403,8 @@ fn the_label_of_the_limit_circles_covers_none_of_them() {
             .iter()
             .filter(|item| matches!(item.paint, Paint::Fill(color) if color == WHITE))
             .map(extent)
+            // not the mark at the start, which is on a limit of method-1
+            .filter(|[left, _, right, _]| right - left > 10.0)
         {
             for circle in &circles {
                 assert!(

@@ -149,11 +149,18 @@ pub(super) fn above(
     }
 }
 
+/// Starts closer together than this are one, m.
+const SAME_START_M: f64 = 1e-6;
+
 /// Returns an open circle at the start of each of `paths`, one where several paths start at the same place.
 fn starts(paths: &[ChartSeries]) -> Vec<ChartSeries> {
     let mut starts: Vec<ChartSeries> = Vec::new();
     for path in paths {
-        let is_new = |start: &&[f64; 2]| starts.iter().all(|other| other.points[0] != **start);
+        let is_new = |start: &&[f64; 2]| {
+            let mut others = starts.iter().map(|other| other.points[0]);
+            !others
+                .any(|other| libm::hypot(other[0] - start[0], other[1] - start[1]) < SAME_START_M)
+        };
         if let Some(start) = path.points.first().filter(is_new) {
             let name = if starts.is_empty() { "start" } else { "" };
             let style = SeriesStyle::start(&path.style);
